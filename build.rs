@@ -1,5 +1,5 @@
-//! Lists the sample files to embed (the page does not embed them; they lie beside it), and strips the shaders of comments
-//! and indentation, which would be downloaded with every program.
+//! Lists the sample files to embed, except in the page, which serves them as separate files. Strips comments and
+//! indentation from the shaders, which are part of the page's download.
 
 use std::fmt::Write;
 use std::path::Path;

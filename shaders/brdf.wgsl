@@ -1,11 +1,11 @@
-// What a surface makes of a light: its BRDF times the cosine.
+// The BRDF of a surface times the cosine, for one light direction.
 
 struct Surface {
     normal: vec3f,
     to_eye: vec3f,
-    // Reflected diffusely, without what metal swallows and what passes through.
+    // Diffuse reflectance, less what metal absorbs and what is transmitted.
     diffuse: vec3f,
-    // Reflectance at normal and at grazing incidence, of the whole and of what is not metal.
+    // Reflectance at normal and at grazing incidence: of the whole surface, and of its dielectric part.
     specular: vec3f,
     grazing: f32,
     dielectric: vec3f,
@@ -15,7 +15,7 @@ struct Surface {
 #if CLEARCOAT
     coat_normal: vec3f,
     coat_roughness: f32,
-    // Fraction of light that the coat reflects towards the viewer.
+    // Weight of the coat towards the viewer.
     coat: f32,
 #endif
 #if SHEEN
@@ -23,19 +23,19 @@ struct Surface {
     sheen_roughness: f32,
 #endif
 #if ANISOTROPY
-    // Directions along and across the stretched highlight.
+    // Directions along and across the anisotropic highlight.
     tangent: vec3f,
     bitangent: vec3f,
     anisotropy: f32,
 #endif
 #if IRIDESCENCE
     iridescence: f32,
-    // Reflectance of the film over the dielectric, and over the mixture of that and metal.
+    // Reflectance of the film over the dielectric, and over its mixture with metal.
     film_dielectric: vec3f,
     film: vec3f,
 #endif
 #if TRANSMISSION
-    // Tint of what passes through, and how rough it is.
+    // Tint and roughness of transmitted light.
     transmitted: vec3f,
     transmission_roughness: f32,
 #endif
@@ -45,7 +45,7 @@ struct Surface {
 }
 
 const DIELECTRIC: f32 = 0.04;
-// A light has no size; below this roughness its highlight would be too small to see.
+// Punctual lights have no size: below this roughness, their highlights would be too small to see.
 const MIN_ROUGHNESS: f32 = 0.045;
 
 fn max3(color: vec3f) -> f32 {
@@ -64,7 +64,7 @@ fn ggx(roughness: f32, normal_half: f32, normal_light: f32, normal_view: f32) ->
     return min(distribution * 0.5 / (masked.x + masked.y), 64.0);
 }
 
-// Everything below sheen and coat, with Schlick's Fresnel term.
+// Reflection of everything below sheen and clearcoat, with Schlick's Fresnel term.
 fn reflect_base(surface: Surface, to_light: vec3f) -> vec3f {
     let normal_light = dot(surface.normal, to_light);
     if normal_light <= 0.0 {
@@ -82,7 +82,8 @@ fn reflect_base(surface: Surface, to_light: vec3f) -> vec3f {
     let lobe = ggx(surface.roughness, max(dot(surface.normal, half_way), 0.0), normal_light, surface.normal_view);
 #endif
     let dielectric = mix(surface.dielectric, vec3f(surface.dielectric_grazing), grazing);
-    var color = (1.0 - dielectric) * surface.diffuse / PI + lobe * mix(surface.specular, vec3f(surface.grazing), grazing);
+    let specular = mix(surface.specular, vec3f(surface.grazing), grazing);
+    var color = (1.0 - dielectric) * surface.diffuse / PI + lobe * specular;
 #if IRIDESCENCE
     let film = (1.0 - max3(surface.film_dielectric)) * surface.diffuse / PI + lobe * surface.film;
     color = mix(color, film, surface.iridescence);
@@ -91,7 +92,7 @@ fn reflect_base(surface: Surface, to_light: vec3f) -> vec3f {
 }
 
 #if TRANSMISSIVE
-// Light from behind, as if it were mirrored to the front.
+// Transmission of light from behind, computed like reflection of the light mirrored to the front.
 fn transmit_light(surface: Surface, to_light: vec3f) -> vec3f {
     let cosine = -dot(surface.normal, to_light);
     let half_way = normalize(to_light + 2.0 * cosine * surface.normal + surface.to_eye);

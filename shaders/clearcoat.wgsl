@@ -1,8 +1,8 @@
-// KHR_materials_clearcoat: a clear layer of varnish over everything else, of index of refraction 1.5.
+// KHR_materials_clearcoat: a clear layer over everything else, with an index of refraction of 1.5.
 
 #if CLEARCOAT
 
-// Replaces a fraction `surface.coat` of what is below.
+// Blended over what is below with a weight of `surface.coat`.
 fn coat_light(surface: Surface, to_light: vec3f) -> vec3f {
     let normal_light = max(dot(surface.coat_normal, to_light), 0.0);
     let normal_half = max(dot(surface.coat_normal, normalize(to_light + surface.to_eye)), 0.0);

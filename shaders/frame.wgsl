@@ -47,7 +47,8 @@ struct Frame {
     // sRGB.
     background_center: vec4f,
     background_edge: vec4f,
-    // The direction of a pixel in the environment: at the center, and what x and y in normalized device coordinates add.
+    // The direction of a pixel in the environment: at the center, and what x and y in normalized device coordinates
+    // add.
     sky_ahead: vec4f,
     sky_right: vec4f,
     sky_up: vec4f,

@@ -64,38 +64,38 @@ fn shadow_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
         + frame.shadow_center);
 }
 
-// Offset of a tap in a spiral that fills a disc of radius 1.
+// Offset of a tap on a spiral that fills the unit disc.
 fn spiral(tap: u32, taps: u32, turn: f32) -> vec2f {
     let angle = turn + 2.3999632 * f32(tap);
     return sqrt((f32(tap) + 0.5) / f32(taps)) * vec2f(cos(angle), sin(angle));
 }
 
-// Radii in texels: of the search for what blocks the light, and the narrowest and widest edge of a shadow.
+// Radii in texels: of the blocker search, and of the sharpest and the softest penumbra.
 const SEARCH_RADIUS: f32 = 18.0;
 const MIN_RADIUS: f32 = 1.5;
 const MAX_RADIUS: f32 = 12.0;
 const SEARCH_TAPS: u32 = 12u;
-// How much of its distance from the ground a thing's shadow is blurred by.
+// Penumbra radius relative to the blocker's distance from the ground.
 const LIGHT_SIZE: f32 = 0.03;
-// Heights in texels between which the search tells things apart.
+// Heights in texels that the search distinguishes.
 const LOW: f32 = 24.0;
 const HIGH: f32 = 240.0;
-// Darkest that the ground gets where something touches it.
+// Maximum darkening where something touches the ground.
 const CONTACT: f32 = 0.5;
 
-// A comparison with the ground's own depth at that offset, raised by `height`: otherwise a slanting light would shine below what
-// stands on the ground.
+// Compares with the ground's own depth at the offset, raised by `height`. Otherwise slanting light would leak under
+// whatever stands on the ground.
 fn ground_tap(at: vec3f, slope: vec2f, offset: vec2f, height: f32) -> f32 {
     return shadow_tap(vec3f(at.xy, min(at.z + dot(slope, offset), 1.0) - height), offset);
 }
 
-// Opacity of the shadow. The further away what blocks the light, the softer the edge (percentage-closer soft shadows, Fernando
-// 2005); comparisons at several heights stand in for reading the map, which WebGL2 doesn't allow together with comparisons.
-// What is close to the ground also hides it from the light of the surroundings.
+// Opacity of the shadow, with penumbrae that grow with the blocker's distance (percentage-closer soft shadows, Fernando
+// 2005). WebGL2 can't both compare with and read a depth texture, so comparisons at several heights estimate the
+// distance. Blockers close to the ground also occlude ambient light.
 fn ground_shade(world: vec3f, pixel: vec2f) -> f32 {
     let at = shadow_coordinates(world);
     let texel = 1.0 / vec2f(textureDimensions(shadow_map));
-    // How the depth of the ground changes across the map, and depth per texel along the light.
+    // Gradient of the ground's depth across the map, and depth per texel along the light.
     let m = frame.shadow_from_world;
     let depth = vec3f(m[0].z, m[1].z, m[2].z);
     let slope = 2.0 * vec2f(dot(depth.xz, frame.shadow_x), -dot(depth.xz, frame.shadow_y));
@@ -108,7 +108,7 @@ fn ground_shade(world: vec3f, pixel: vec2f) -> f32 {
         return frame.ground_shadow * (1.0 - 0.25 * lit);
     }
     let turn = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
-    // Shares of the map around that are above each height.
+    // Fractions of the surroundings in which a blocker is above each height.
     var above = vec3f(0.0);
     for (var tap = 0u; tap < SEARCH_TAPS; tap++) {
         let offset = SEARCH_RADIUS * texel * spiral(tap, SEARCH_TAPS, turn);

@@ -1,9 +1,9 @@
-// KHR_materials_iridescence: a thin film that interferes with itself (Belcour and Barla 2017, "A Practical Extension to
-// Microfacet Theory for the Modeling of Varying Iridescence"), as the extension's specification has it.
+// KHR_materials_iridescence: thin-film interference (Belcour and Barla 2017, "A Practical Extension to
+// Microfacet Theory for the Modeling of Varying Iridescence"), as in the extension's specification.
 
 #if IRIDESCENCE
 
-// What the eye makes of a difference between light paths: the Fourier transform of the CIE colour matching functions, in
+// Sensitivity of the eye to an optical path difference: the Fourier transform of the CIE colour matching functions, in
 // linear Rec. 709.
 fn interference(path_nanometres: f32, shift: vec3f) -> vec3f {
     let rec709_from_xyz = mat3x3f(
@@ -21,7 +21,7 @@ fn reflectance_between(a: vec3f, b: vec3f) -> vec3f {
     return ratio * ratio;
 }
 
-// Reflectance of a film over a base with this reflectance at normal incidence.
+// Reflectance of a film over a base, given the base's reflectance at normal incidence.
 fn film_reflectance(film_ior: f32, cosine: f32, nanometres: f32, base: vec3f) -> vec3f {
     let ior = mix(1.0, film_ior, smoothstep(0.0, 0.03, nanometres));
     let cosine_squared = 1.0 - (1.0 - cosine * cosine) / (ior * ior);

@@ -6,7 +6,7 @@
 @group(1) @binding(3) var shadow_sampler: sampler_comparison;
 @group(1) @binding(4) var reflectance: texture_2d<f32>;
 @group(1) @binding(5) var irradiance: texture_cube<f32>;
-@group(1) @binding(6) var opaque_picture: texture_2d<f32>;
+@group(1) @binding(6) var transmission_buffer: texture_2d<f32>;
 
 const PI: f32 = 3.14159265;
 // Edge length of the reflectance table, environment/reflectance.rs.

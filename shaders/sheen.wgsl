@@ -1,4 +1,4 @@
-// KHR_materials_sheen: fibres that stand on the surface, with the Charlie distribution (Estevez and Kulla 2017, "Production
+// KHR_materials_sheen: fibres on the surface, with the Charlie distribution (Estevez and Kulla 2017, "Production
 // Friendly Microfacet Sheen BRDF").
 
 #if SHEEN
@@ -18,8 +18,7 @@ fn charlie_masking(cosine: f32, alpha: f32) -> f32 {
     return exp(select(near, 2.0 * charlie_fit(0.5, alpha) - near, cosine >= 0.5));
 }
 
-// Fraction of white light from all directions that white fibres reflect towards the viewer. Fits the integral of the lobe
-// with a mean error of 0.005 and at most 0.02.
+// Directional albedo of white sheen. Fits the integral of the lobe with a mean error of 0.005 and a maximum of 0.02.
 fn sheen_albedo(roughness: f32, cosine: f32) -> f32 {
     let inverse = 1.0 / roughness;
     let powers = vec4f(roughness, roughness * roughness, inverse, inverse * inverse);
@@ -29,7 +28,7 @@ fn sheen_albedo(roughness: f32, cosine: f32) -> f32 {
     return min(exp(a + cosine * (b + cosine * c)), 1.0);
 }
 
-// Adds the fibres to what is below, which gets what they leave.
+// Adds the sheen, and attenuates what is below by its albedo.
 fn sheen_light(surface: Surface, below: vec3f, to_light: vec3f) -> vec3f {
     let alpha = surface.sheen_roughness * surface.sheen_roughness;
     let normal_light = clamp(dot(surface.normal, to_light), 0.001, 1.0);

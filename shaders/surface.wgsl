@@ -1,5 +1,5 @@
-// Fragment stages of meshes: metallic-roughness with lobes (MToon is in toon.wgsl), unlit, heat map, wireframe, shadow. Overrides remove unused
-// features; `#if` and `#maps` are explained in src/render/shaders.rs.
+// Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, depth, shadow; MToon is in
+// toon.wgsl. Overrides remove unused features; src/render/shaders.rs explains `#if` and `#maps`.
 
 override BASE_COLOR_MAP: bool = false;
 override METALLIC_ROUGHNESS_MAP: bool = false;
@@ -11,16 +11,16 @@ override VERTEX_COLORS: bool = false;
 override FLAT: bool = false;
 override TANGENTS: bool = false;
 override MASK: bool = false;
-// Masks set the coverage of the pixel's samples instead of discarding it.
+// Masks set the pixel's coverage instead of discarding it.
 override COVERAGE: bool = false;
 override BLEND: bool = false;
 override SHADOW: bool = false;
 // Uses the file's lights instead of the key light.
 override FILE_LIGHTS: bool = false;
-// Draws MToon's outline: the mesh inflated and inside out.
+// Draws MToon's outline: the inflated mesh's back faces.
 override OUTLINE: bool = false;
 
-// Alpha from which a blended surface counts as opaque; must match model.rs.
+// Minimum alpha at which a blended surface counts as opaque; must match model.rs.
 const OPAQUE_ALPHA: f32 = 0.9;
 
 struct UvTransform {
@@ -57,7 +57,7 @@ struct Material {
     iridescence_ior: f32,
     // Nanometres.
     iridescence_thickness: vec2f,
-    // Unit vector from the tangent.
+    // Unit vector in tangent space.
     anisotropy_direction: vec2f,
     anisotropy: f32,
     transmission: f32,
@@ -109,7 +109,7 @@ fn emissive(in: VertexOut) -> vec3f {
     return material.emissive;
 }
 
-// Coverage of a pixel by a mask: its edge, as wide as a pixel (Golus 2017, "Anti-aliased Alpha Test").
+// Coverage of a pixel by a mask whose edge is a pixel wide (Golus 2017, "Anti-aliased Alpha Test").
 fn mask_coverage(alpha: f32) -> f32 {
     let smallest = 1e-4;
     return clamp((alpha - material.alpha_cutoff + smallest) / max(fwidth(alpha), smallest) + 0.5, 0.0, 1.0);
@@ -165,7 +165,7 @@ fn tangent_frame(in: VertexOut, normal: vec3f, front: bool, uv: vec2f) -> mat3x3
     return mat3x3f(scale * tangent, scale * bitangent, normal);
 }
 
-// The normal that a texel of a normal map stands for.
+// Transforms a texel of a normal map to world space.
 fn mapped_normal(basis: mat3x3f, texel: vec4f, scale: f32) -> vec3f {
     let sample = 2.0 * texel.xyz - 1.0;
     return normalize_or_zero(basis * vec3f(sample.xy * scale, sample.z));
@@ -244,14 +244,14 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     var diffuse = base.rgb * environment_diffuse(surface.normal);
 #if VOLUME
     let thickness = material.thickness * thickness_texel(in.uv).g * in.scale;
-    let clearness = exp(-material.absorption * thickness);
+    let transmittance = exp(-material.absorption * thickness);
 #else
     let thickness = 0.0;
-    let clearness = vec3f(1.0);
+    let transmittance = vec3f(1.0);
 #endif
 #if DIFFUSE_TRANSMISSION
     let passed = clamp(material.diffuse_transmission * diffuse_transmission_texel(in.uv).a, 0.0, 1.0);
-    let tint = clearness * material.diffuse_transmission_color * diffuse_transmission_color_texel(in.uv).rgb;
+    let tint = transmittance * material.diffuse_transmission_color * diffuse_transmission_color_texel(in.uv).rgb;
     diffuse = mix(diffuse, tint * environment_diffuse(-surface.normal), passed);
     surface.diffuse *= 1.0 - passed;
     surface.diffuse_transmitted = (1.0 - metallic) * passed * tint;
@@ -260,10 +260,10 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     let transmission = clamp(material.transmission * transmission_texel(in.uv).r, 0.0, 1.0);
     surface.transmission_roughness = transmission_roughness(surface.roughness);
     surface.diffuse *= 1.0 - transmission;
-    surface.transmitted = (1.0 - metallic) * transmission * clearness * base.rgb;
-    let shown = shown_behind(in, surface, thickness);
-    let seen = scene_from_display(shown.rgb);
-    diffuse = mix(diffuse, clearness * base.rgb * seen / frame.exposure, transmission);
+    surface.transmitted = (1.0 - metallic) * transmission * transmittance * base.rgb;
+    let behind = color_behind(in, surface, thickness);
+    let scene_behind = scene_from_display(behind.rgb);
+    diffuse = mix(diffuse, transmittance * base.rgb * scene_behind / frame.exposure, transmission);
 #if DIFFUSE_TRANSMISSION
     surface.diffuse_transmitted *= 1.0 - transmission;
 #endif
@@ -323,11 +323,11 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     }
     var display = tone_map(frame.exposure * (color + emitted));
 #if TRANSMISSION
-    // Colours that tone mapping cannot make, such as unlit ones, keep what they differ by.
-    display += surface.transmitted * (shown.rgb - tone_map(seen));
-    // Nothing behind stays nothing. What is reflected is added to it.
+    // Keeps colours that tone mapping can't produce, such as unlit ones.
+    display += surface.transmitted * (behind.rgb - tone_map(scene_behind));
+    // A transparent background stays transparent; reflections are added to it.
     let finished = finish(display, base.a);
-    return vec4f(finished.rgb, finished.a * mix(1.0, shown.a, transmission * (1.0 - metallic)));
+    return vec4f(finished.rgb, finished.a * mix(1.0, behind.a, transmission * (1.0 - metallic)));
 #else
     return finish(display, base.a);
 #endif
@@ -367,7 +367,7 @@ fn wireframe(in: VertexOut) -> @location(0) vec4f {
     return vec4f(draw.color.rgb * draw.color.a, draw.color.a);
 }
 
-// What a blended surface hides of itself: all that is behind its opaque parts.
+// Depth of the opaque parts of a blended surface, which hide its layers behind them.
 @fragment
 fn depth_mask(in: VertexOut) -> @location(0) vec4f {
     if base_color(in).a < OPAQUE_ALPHA {

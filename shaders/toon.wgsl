@@ -1,7 +1,7 @@
-// MToon (VRMC_materials_mtoon-1.0): two colours of each light, an even ambient light, a rim and an outline.
+// MToon (VRMC_materials_mtoon-1.0): lit and shade colour for each light, even ambient light, rim and outline.
 
 #if TOON
-// What the outline's vertices are moved by.
+// Displacement of the outline's vertices.
 fn outline_offset(in: VertexIn, shape: Shape) -> vec3f {
     var width = material.outline_width * outline_width_texel(in.uv).g;
     if material.outline_on_screen == 1u {
@@ -13,7 +13,7 @@ fn outline_offset(in: VertexIn, shape: Shape) -> vec3f {
     return width * normalize_or_zero(shape.normal);
 }
 
-// 0 in the shade, 1 in the light.
+// 0 in shade, 1 in light.
 fn toon_step(cosine: f32, shift: f32) -> f32 {
     return clamp(0.5 + (cosine + shift) / max(2.0 * (1.0 - material.shading_toony), 1e-3), 0.0, 1.0);
 }
@@ -56,7 +56,7 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
 #if MATCAP_MAP
     let right = normalize_or_zero(vec3f(to_eye.z, 0.0, -to_eye.x));
     let up = cross(to_eye, right);
-    // Half the edge, less a margin that keeps filtering inside.
+    // Half the texture, less a margin that keeps filtering inside.
     let at = 0.5 + 0.495 * vec2f(dot(right, normal), -dot(up, normal));
     rim += material.matcap_color * matcap_texel(vec4f(at, at)).rgb;
 #endif

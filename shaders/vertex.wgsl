@@ -23,7 +23,7 @@ struct Influences8 {
 }
 
 struct VertexOut {
-    // Invariant, since surfaces are compared with the depth that another pipeline has drawn.
+    // Invariant, since other pipelines compare with the depth that this one writes.
     @builtin(position) @invariant position: vec4f,
     // World-space vector to the eye. Unlike positions it stays small far from the origin, which keeps derivatives
     // precise.
@@ -72,7 +72,7 @@ fn position_out(in: VertexIn, blend: Blend) -> vec4f {
     return frame.projection_from_world * vec4f(moved, 1.0);
 }
 
-// Without influences, each copy of the mesh has a palette entry.
+// Without influences, each copy of the mesh has its own palette entry.
 @vertex
 fn position_0(in: VertexIn, @builtin(instance_index) copy: u32) -> @builtin(position) vec4f {
     return position_out(in, single(copy));

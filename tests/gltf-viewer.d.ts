@@ -1,4 +1,4 @@
-// What the tests use of @khronosgroup/gltf-viewer, which has no types of its own.
+// Types for the part of @khronosgroup/gltf-viewer that the tests use; the package has none.
 declare module "@khronosgroup/gltf-viewer/dist/gltf-viewer.module.js" {
   type Gltf = { scene?: number };
   type Environment = { readonly isEnvironment: never };
@@ -8,7 +8,14 @@ declare module "@khronosgroup/gltf-viewer/dist/gltf-viewer.module.js" {
     environment: Environment;
     sceneIndex: number;
     animationIndices: number[];
-    renderingParameters: { clearColor: number[]; environmentRotation: number; renderEnvironmentMap: boolean; toneMap: string; useIBL: boolean; usePunctual: boolean };
+    renderingParameters: {
+      clearColor: number[];
+      environmentRotation: number;
+      renderEnvironmentMap: boolean;
+      toneMap: string;
+      useIBL: boolean;
+      usePunctual: boolean;
+    };
     userCamera: {
       perspective: { aspectRatio: number; znear: number; zfar: number };
       transform: Float32Array;

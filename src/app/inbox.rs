@@ -18,7 +18,7 @@ pub enum Message {
         contents: Box<Contents>,
         /// `None` keeps what still fits of the current state.
         state: Option<Box<ViewerState>>,
-        /// `state` is the current one with some keys changed, not that of a link.
+        /// Whether `state` is a change of the current state rather than a link's.
         is_change: bool,
         /// Answered with the active model's inspect document once the viewport shows it, or with the error.
         reply: Option<Reply<serde_json::Value>>,

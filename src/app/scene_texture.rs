@@ -46,12 +46,13 @@ impl SceneTexture {
         }
     }
 
-    /// Whether the last image lacks samples.
+    /// Whether the last image can be refined.
     pub fn can_refine(&self) -> bool {
         self.renderer.can_refine()
     }
 
-    /// Adds a sample per pixel to the image on screen, which must be that of this frame. Returns whether it lacks more.
+    /// Adds a sample per pixel to the image on screen, which must show this frame. Returns whether it can be refined
+    /// further.
     pub fn refine(&mut self, frame: &Frame) -> bool {
         self.renderer.refine(&self.gpu.device, &self.gpu.queue, frame)
     }

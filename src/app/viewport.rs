@@ -14,7 +14,7 @@ pub(super) struct Viewport {
     /// Size in pixels of the last image; `None` before the first.
     drawn_size: Option<[u32; 2]>,
     needs_redraw: bool,
-    /// The image on screen lacks samples.
+    /// Whether the image on screen can be refined.
     can_refine: bool,
     /// When the image on screen was drawn, on egui's clock.
     drawn_at_secs: f64,
@@ -43,10 +43,10 @@ impl Viewport {
         Ok(())
     }
 
-    /// Draws the view if it changed. Otherwise refines its image, one sample with each call, once it has been still for a
-    /// moment. Returns in how many seconds there is a sample to add, if any. `now_secs` is egui's clock.
+    /// Draws the view if it changed; otherwise, once it has been still for a moment, refines its image by one sample.
+    /// Returns the seconds until the next sample, if the image can be refined. `now_secs` is egui's clock.
     pub fn draw(&mut self, editor: &mut Editor, size: [u32; 2], now_secs: f64) -> Option<f64> {
-        /// Longer than between two steps of an interaction, which further samples would slow down.
+        /// Longer than the pauses within an interaction, which refinement would slow down.
         const STILL_SECS: f64 = 0.25;
         self.needs_redraw |= editor.take_needs_redraw();
         if self.needs_redraw || self.drawn_size != Some(size) {
@@ -76,15 +76,15 @@ impl Viewport {
         self.can_refine = self.scene.can_refine();
     }
 
-    /// Adds all the samples that the image on screen lacks.
+    /// Refines the image on screen completely.
     pub fn refine(&mut self) {
         while self.can_refine {
             self.can_refine = self.scene.refine(&self.frame);
         }
     }
 
-    /// Returns the size of an image that was asked for in this size: smaller with the same aspect ratio if the device cannot
-    /// draw it.
+    /// Returns the size of an image that was requested at this size: smaller with the same aspect ratio if the device
+    /// cannot draw it.
     pub fn picture_size(&self, size: [u32; 2]) -> [u32; 2] {
         fitted(size, self.scene.max_size())
     }

@@ -111,7 +111,7 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments, disk: &Di
     Ok(editor)
 }
 
-/// What of a link command-line options override.
+/// Parts of a link that command-line options override.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Overrides {
     pub clip: bool,

@@ -12,13 +12,8 @@ use crate::frame::{NodePose, PoseDocument};
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     if let Some(link) = &arguments.view {
-        apply_link(
-            &mut editor,
-            link,
-            &arguments.motion,
-            Overrides { clip: arguments.moment.clip.is_some(), ..Overrides::default() },
-            disk,
-        )?;
+        let overrides = Overrides { clip: arguments.moment.clip.is_some(), ..Overrides::default() };
+        apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     let document = PoseDocument::new(editor.library(), editor.state());

@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
 fn show_variant(editor: &mut Editor, name: &str) -> Outcome {
     editor.apply(Command::SetVariant(Some(name.to_owned())));
     let Some(model) = editor.library().active() else { return Ok(()) };
-    // A link's unknown variant stays in the state.
+    // The command ignores unknown names, which may leave the link's in the state.
     if active_variant(model, editor.state()).is_some_and(|index| model.asset.variants[index] == name) {
         return Ok(());
     }

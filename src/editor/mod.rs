@@ -131,7 +131,7 @@ impl Editor {
         if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
             return;
         }
-        let command = self.calmed(command);
+        let command = self.command_with_reduced_motion(command);
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
@@ -222,7 +222,7 @@ impl Editor {
         new.model == now.model && new.motion == now.motion
     }
 
-    /// A clip or variant that the view names and the model lacks is not an error: the rest is shown.
+    /// Notifies about a clip or variant that the model lacks. It isn't an error: the rest of the view is shown.
     pub(super) fn notify_unknown_names(&mut self) {
         let model = self.library.active().filter(|model| !model.is_placeholder());
         let Some(model) = model else { return };

@@ -9,7 +9,7 @@ use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMapFile;
 use crate::state::{
-    ClipChoice, Command, EnvironmentChoice, MotionMap, Overridden, RetargetEdits, Sources, ViewerState, apply,
+    ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
 };
 
 /// What is kept of a loaded model besides the model.
@@ -25,7 +25,7 @@ pub(super) struct Shelved {
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub state: ViewerState,
-    overridden: Overridden,
+    saved_motion: SavedMotion,
     pub loaded: Loaded,
     /// The active clip if it was retargeted.
     pub playing: Option<ClipIdentity>,
@@ -164,7 +164,7 @@ impl Editor {
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
-        let view = self.calmed_view(view);
+        let view = self.view_with_reduced_motion(view);
         (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
@@ -243,7 +243,7 @@ impl Editor {
     pub(super) fn snapshot(&self) -> Option<Snapshot> {
         self.library.active()?;
         let (state, loaded) = (self.state.clone(), self.library.loaded());
-        Some(Snapshot { state, overridden: self.reduced_motion.overridden, loaded, playing: self.retargeted_clip() })
+        Some(Snapshot { state, saved_motion: self.reduced_motion.saved, loaded, playing: self.retargeted_clip() })
     }
 
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
@@ -255,7 +255,7 @@ impl Editor {
         {
             shelved.last_view = Some(before.clone());
         }
-        self.history.opened(before.state, before.overridden, before.loaded);
+        self.history.opened(before.state, before.saved_motion, before.loaded);
     }
 
     /// Adds a model to the library and activates it; if the same file is already loaded, activates that model.

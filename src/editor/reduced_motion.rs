@@ -1,15 +1,14 @@
 //! The user's preference for reduced motion: views start paused and without turntable until the user starts them. It never gets
 //! into links.
 
-use super::Editor;
-use super::{Admit, Contents};
-use crate::state::{Command, Overridden, ViewerState};
+use super::{Admit, Contents, Editor};
+use crate::state::{Command, SavedMotion, ViewerState};
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ReducedMotion {
     is_preferred: bool,
-    /// Of the current view.
-    pub overridden: Overridden,
+    /// The current view's own settings.
+    pub saved: SavedMotion,
 }
 
 impl Editor {
@@ -21,44 +20,44 @@ impl Editor {
     /// Returns the state for links: as it is, except that the preference for reduced motion leaves no trace.
     pub fn shared_state(&self) -> ViewerState {
         let mut state = self.state.clone();
-        let Overridden { playing, turntable } = self.reduced_motion.overridden;
+        let SavedMotion { playing, turntable } = self.reduced_motion.saved;
         state.playback.playing = playing.unwrap_or(state.playback.playing);
         state.camera_options.turntable = turntable.unwrap_or(state.camera_options.turntable);
         state
     }
 
-    /// Calms a view that is about to replace the state.
-    pub(super) fn calmed_view(&mut self, mut view: ViewerState) -> ViewerState {
+    /// Applies the preference to a view that is about to replace the state.
+    pub(super) fn view_with_reduced_motion(&mut self, mut view: ViewerState) -> ViewerState {
         let is_preferred = self.reduced_motion.is_preferred;
-        self.reduced_motion.overridden = if is_preferred { view.calm() } else { Overridden::default() };
+        self.reduced_motion.saved = if is_preferred { view.reduce_motion() } else { SavedMotion::default() };
         view
     }
 
-    /// Opens the files that a change of the current view needs, in the changed view. Unlike a link, it doesn't stop what
-    /// the user has started.
+    /// Opens files together with a changed version of the current view that needs them. Unlike a link, the change
+    /// doesn't stop motion that the user has started.
     ///
     /// # Errors
     /// As [`Editor::open`].
     pub fn open_change(&mut self, contents: Contents, view: ViewerState, admit: Admit<'_>) -> Result<(), String> {
-        let Overridden { playing, turntable } = self.reduced_motion.overridden;
+        let SavedMotion { playing, turntable } = self.reduced_motion.saved;
         let (plays, turns) = self.moving_parts();
         let keeps_playing = playing.is_none() && plays == view.playback.playing;
         let keeps_turning = turntable.is_none() && turns == view.camera_options.turntable;
         self.open(contents, Some(view), admit)?;
         if keeps_playing {
-            (self.state.playback.playing, self.reduced_motion.overridden.playing) = (plays, None);
+            (self.state.playback.playing, self.reduced_motion.saved.playing) = (plays, None);
         }
         if keeps_turning {
-            (self.state.camera_options.turntable, self.reduced_motion.overridden.turntable) = (turns, None);
+            (self.state.camera_options.turntable, self.reduced_motion.saved.turntable) = (turns, None);
         }
         Ok(())
     }
 
     /// Calms the view of a command that replaces the state.
-    pub(super) fn calmed(&mut self, command: Command) -> Command {
+    pub(super) fn command_with_reduced_motion(&mut self, command: Command) -> Command {
         match command {
             Command::Replace(view) => {
-                let view = self.calmed_view(*view);
+                let view = self.view_with_reduced_motion(*view);
                 self.held_camera = None;
                 // Set before the command is recorded, so that it doesn't count as the user's own change.
                 let calm = (view.playback.playing, view.camera_options.turntable);
@@ -76,8 +75,8 @@ impl Editor {
     /// Drops the override of what the user has set since.
     pub(super) fn note_moving_parts(&mut self, (playing, turntable): (bool, f32)) {
         let now = self.moving_parts();
-        let overridden = &mut self.reduced_motion.overridden;
-        overridden.playing.take_if(|_| now.0 != playing);
-        overridden.turntable.take_if(|_| now.1 != turntable);
+        let saved = &mut self.reduced_motion.saved;
+        saved.playing.take_if(|_| now.0 != playing);
+        saved.turntable.take_if(|_| now.1 != turntable);
     }
 }

@@ -40,7 +40,7 @@ impl Editor {
     pub fn undo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let view = if self.can_undo_retargeting() { self.automatic_view() } else { None };
-        let done = self.history.undo(&mut self.state, &mut self.reduced_motion.overridden, &mut self.library);
+        let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Y");
             self.hold_view(view);
@@ -52,7 +52,7 @@ impl Editor {
     pub fn redo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let view = if self.can_redo_retargeting() { self.automatic_view() } else { None };
-        let done = self.history.redo(&mut self.state, &mut self.reduced_motion.overridden, &mut self.library);
+        let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Z");
             self.hold_view(view);

@@ -13,12 +13,12 @@ use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
 use crate::state::{EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
-/// What is loaded already and need not be opened again, by origin.
+/// Loaded files that need not be opened again, identified by their origin.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Held<'a> {
-    /// Motions of the library.
+    /// The library's motions.
     pub motions: &'a [Motion],
-    /// Images that light scenes.
+    /// The library's environment images.
     pub environments: &'a [Environment],
 }
 
@@ -32,9 +32,10 @@ impl<'a> Held<'a> {
     }
 }
 
-/// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. A model that the user has
-/// yet to supply is an empty stage, and nothing else is opened then. A motion or map that cannot be opened becomes a problem of
-/// the contents. Maps that were read take the place of their addresses in the view. Progress is reported as "2 of 3: walk.bvh".
+/// Opens the files of a view that aren't `held`; its model only if `with_model` is set. If the user has yet to supply
+/// the model, returns an empty stage and opens nothing else. A motion or map that cannot be opened becomes a problem of
+/// the contents. In the view, maps replace the addresses they were read from. Progress is reported as "2 of 3:
+/// walk.bvh".
 pub(super) async fn open_view<S: Source>(
     source: &S,
     view: ViewerState,
@@ -99,7 +100,7 @@ pub(super) async fn open_view<S: Source>(
     Ok((contents, ViewerState { sources, retarget, ..view }))
 }
 
-/// Opens a motion of a view, with a joint map beside it; what keeps it from being one becomes a problem.
+/// Opens a motion of a view, with a joint map beside it. A failure becomes a problem of the contents.
 async fn open_motion<S: Source>(
     source: &S,
     origin: &str,
@@ -118,7 +119,7 @@ async fn open_motion<S: Source>(
     }
 }
 
-/// Adds the image that lights a view to the contents; what keeps it from being one becomes a problem.
+/// Adds the image that lights a view to the contents. A failure becomes a problem of the contents.
 async fn open_environment<S: Source>(source: &S, origin: &String, contents: &mut Contents, progress: Progress<'_>) {
     match open_items(source, vec![Item::Address(origin.into())], Role::Any, progress).await {
         // The view's own name for it.

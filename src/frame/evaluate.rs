@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
-use crate::anim::{JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint, model_from_one};
+use crate::anim::{
+    JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint, model_from_single_joint,
+};
 use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
@@ -178,7 +180,7 @@ impl Scene {
     }
 }
 
-/// Fills `out` with the animated materials and their numbers, in ascending order.
+/// Fills `out` with the animated materials and their indices, in ascending order. Reuses the materials that it holds.
 fn write_materials(asset: &Asset, properties: &PropertyValues, out: &mut Vec<(usize, Material)>) {
     let mut count = 0;
     for (target, value) in properties.iter() {
@@ -246,7 +248,7 @@ pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     travel(model, active_clip(model, state), state, &mut scratch)
 }
 
-/// Expects the motion to be sampled.
+/// Returns [`travelled`] for the motion in the sampler.
 fn travel(model: &Model, clip: Option<usize>, state: &ViewerState, scratch: &mut Scratch) -> Vec3 {
     let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
@@ -255,7 +257,7 @@ fn travel(model: &Model, clip: Option<usize>, state: &ViewerState, scratch: &mut
         clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     }
     let position = |pose| {
-        let world_from_root = world_from_model(state.edits.up) * model_from_one(skeleton, pose, root);
+        let world_from_root = world_from_model(state.edits.up) * model_from_single_joint(skeleton, pose, root);
         Vec3::from(world_from_root.translation)
     };
     let travel = (position(&scratch.sampler.pose) - position(&scratch.first_pose)) * Vec3::new(1.0, 0.0, 1.0);

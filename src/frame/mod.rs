@@ -60,13 +60,12 @@ impl Frame {
         &self.scratch.sampler.pose
     }
 
-    /// What the clip and the expressions change besides joints: the values of materials, lights, cameras and
-    /// visibility.
+    /// The values of material, light, camera and visibility properties that the clip or the expressions change.
     pub fn properties(&self) -> &PropertyValues {
         &self.scratch.sampler.properties
     }
 
-    /// The weights of the active model's expressions, by the clip or set manually, before they override each other.
+    /// The weights of the active model's expressions from the clip or set manually, before they override each other.
     pub fn expressions(&self) -> &[f32] {
         self.scratch.sampler.expressions()
     }
@@ -141,7 +140,7 @@ pub struct Character {
     pub skinning: SkinningMode,
     /// Index of its pane, row by row; none for all panes.
     pub pane: Option<u32>,
-    /// Index of the material variant in [`crate::asset::AssetParts::variants`]; none for the file's own materials.
+    /// Index of the material variant in [`crate::asset::AssetParts::variants`]; `None` for the file's own materials.
     pub variant: Option<usize>,
     /// One per joint of the model.
     pub world_from_joint: Vec<Affine3A>,
@@ -174,7 +173,7 @@ pub struct Draw {
     pub instance: usize,
     /// Index into [`crate::asset::AssetParts::meshes`].
     pub mesh: usize,
-    /// The same mesh at the same node as the draw before it: a copy (EXT_mesh_gpu_instancing).
+    /// Whether this is another EXT_mesh_gpu_instancing copy of the draw before it.
     pub is_copy: bool,
     /// False if the file or the clip hides the node or an ancestor.
     pub visible: bool,

@@ -3,7 +3,7 @@
 use super::model::{GpuModel, GpuPrimitive};
 use super::palette::PaletteTexture;
 use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shading};
-use super::shaders::SurfaceVariant;
+use super::shaders::SurfacePermutation;
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
@@ -22,21 +22,22 @@ pub(super) struct Item {
     model: usize,
     mesh: usize,
     primitive: usize,
+    /// The character's material variant.
     variant: Option<usize>,
     pub pipeline: MeshPipeline,
     /// Byte offset of the draw's uniform in the dynamic buffer.
     pub offset: u32,
-    /// How many copies to draw; each has a palette entry.
+    /// Number of copies to draw, each with its own palette entry.
     pub copies: u32,
     /// Draws the edges instead of the triangles.
     pub edges: bool,
-    /// Draws no colour.
+    /// Writes depth but no colour.
     pub depth_only: bool,
     /// View depth, for sorting.
     distance: f32,
 }
 
-/// Draws that are sorted by distance; the instances of a blended mesh that exceed them share one draw.
+/// Maximum number of blended draws. Copies of a blended mesh beyond it share one draw and aren't sorted.
 const MAX_SORTED: usize = 1 << 14;
 
 impl Item {
@@ -47,12 +48,12 @@ impl Item {
     }
 }
 
-/// What the primitives of one mesh instance, or of several copies of one, have in common.
+/// What the primitives of a mesh instance and its copies have in common.
 struct Instance<'a> {
     frame: &'a Frame,
     character: &'a Character,
     draw: &'a Draw,
-    /// The draw and its copies that follow.
+    /// Number of copies, including `draw`.
     copies: u32,
     /// Index into the renderer's models.
     model: usize,
@@ -94,7 +95,7 @@ impl Instance<'_> {
         }
         MeshKey {
             shading,
-            surface: primitive.surface,
+            permutation: primitive.permutation,
             influences: geometry.influences,
             skinning: self.character.skinning,
             topology: geometry.topology,
@@ -103,7 +104,7 @@ impl Instance<'_> {
             mirrored: self.draw.mirrored,
             // The other kinds of shading have no use for it.
             tone_map: if shading == Shading::Lit { self.frame.look.tone_map } else { ToneMap::default() },
-            // In front of nothing, the alpha of the picture would be wrong.
+            // A transparent background needs the alpha that coverage replaces.
             coverage: self.multisampled
                 && features.has(Features::MASK)
                 && self.frame.look.background != Background::Transparent,
@@ -121,14 +122,14 @@ fn shadow_key(key: MeshKey) -> MeshKey {
     MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map, coverage: false, ..key }
 }
 
-/// The key that draws the depth of a blended surface's opaque parts.
+/// The key that draws the depth of the opaque parts of a blended surface.
 fn depth_key(key: MeshKey) -> MeshKey {
     let features = key.features.only(Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true));
     MeshKey { shading: Shading::Depth, features, tone_map: ToneMap::default(), ..key }
 }
 
-/// The key that draws an MToon surface's outline; `None` if it has none. Blended surfaces would show it through themselves,
-/// and flat shading would tear it apart.
+/// The key that draws an MToon surface's outline, if it has one. Blended surfaces get none, because it would show
+/// through them; nor do flat-shaded ones, because it would tear at the edges.
 fn outline_key(primitive: &GpuPrimitive, key: MeshKey) -> Option<MeshKey> {
     let has_outline = primitive.outlined
         && key.shading == Shading::Lit
@@ -153,13 +154,13 @@ fn wireframe_key(key: MeshKey) -> MeshKey {
     }
 }
 
-/// What a primitive draws besides colours.
+/// Depth-only draws of a primitive.
 #[derive(Clone, Copy)]
-struct Depths {
-    /// It casts a shadow.
+struct DepthDraws {
+    /// Into the shadow map.
     shadow: bool,
-    /// It is blended and hides what is behind it in places.
-    surface: bool,
+    /// Into the scene, for the opaque parts of a blended surface.
+    opaque_parts: bool,
 }
 
 /// Draw calls of a frame, reused between frames.
@@ -168,7 +169,7 @@ pub(super) struct DrawList {
     solid: Vec<Item>,
     transmissive: Vec<Item>,
     blended: Vec<Item>,
-    shows_behind: bool,
+    has_transmission: bool,
     uniforms: Vec<u8>,
     uploaded: Vec<u8>,
     buffer: wgpu::Buffer,
@@ -183,7 +184,7 @@ impl DrawList {
             solid: Vec::new(),
             transmissive: Vec::new(),
             blended: Vec::new(),
-            shows_behind: false,
+            has_transmission: false,
             uniforms: Vec::new(),
             uploaded: Vec::new(),
             buffer,
@@ -200,14 +201,14 @@ impl DrawList {
         &self.solid
     }
 
-    /// Back to front, so that a volume's front is in front of its back.
+    /// Back to front, so that the front of a volume covers its back.
     pub fn transmissive(&self) -> &[Item] {
         &self.transmissive
     }
 
-    /// Whether anything shows what is behind it through the picture of opaque surfaces.
-    pub fn shows_behind(&self) -> bool {
-        self.shows_behind
+    /// Whether anything reads the transmission buffer.
+    pub fn has_transmission(&self) -> bool {
+        self.has_transmission
     }
 
     /// Back to front, then wireframes.
@@ -219,7 +220,7 @@ impl DrawList {
         &self.bind_group
     }
 
-    /// Fills the lists and the palette. `shadow`: a shadow map is drawn.
+    /// Fills the lists and the palette. `shadow` says whether a shadow map is drawn.
     pub fn collect<'a>(
         &mut self,
         device: &wgpu::Device,
@@ -233,7 +234,7 @@ impl DrawList {
         self.solid.clear();
         self.transmissive.clear();
         self.blended.clear();
-        self.shows_behind = false;
+        self.has_transmission = false;
         self.uniforms.clear();
         palette.clear();
         if !frame.look.mesh && !frame.look.wireframe {
@@ -278,7 +279,7 @@ impl DrawList {
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
     }
 
-    /// Adds the items of a mesh and its copies. `instance` makes one of several of them.
+    /// Adds the items of a mesh and its copies. `instance` combines adjacent copies into one instance.
     fn add_mesh<'a>(
         &mut self,
         device: &wgpu::Device,
@@ -290,23 +291,23 @@ impl DrawList {
         let Some(primitives) = copies.first().and_then(|draw| model.meshes.get(draw.mesh)) else { return };
         for (index, primitive) in primitives.iter().enumerate() {
             let Some(primitive) = primitive else { continue };
-            let whole = instance(copies);
-            let shown = primitive.in_variant(whole.character.variant);
-            let depths = Depths {
-                shadow: whole.shadow && model.casts_shadow(shown),
-                surface: shown.features.has(Features::BLEND) && model.has_opaque_parts(shown),
+            let combined = instance(copies);
+            let shown = primitive.in_variant(combined.character.variant);
+            let depth_draws = DepthDraws {
+                shadow: combined.shadow && model.casts_shadow(shown),
+                opaque_parts: shown.features.has(Features::BLEND) && model.has_opaque_parts(shown),
             };
-            if shown.can_repeat() || self.blended.len() + copies.len() > MAX_SORTED {
-                self.add(device, pipelines, &whole, index, primitive, depths);
+            if shown.can_be_instanced() || self.blended.len() + copies.len() > MAX_SORTED {
+                self.add(device, pipelines, &combined, index, primitive, depth_draws);
                 continue;
             }
             for draw in copies.chunks(1) {
-                self.add(device, pipelines, &instance(draw), index, primitive, depths);
+                self.add(device, pipelines, &instance(draw), index, primitive, depth_draws);
             }
         }
     }
 
-    /// Adds the items of one primitive, in the character's variant.
+    /// Adds the items of one primitive, with the material of the character's variant.
     fn add(
         &mut self,
         device: &wgpu::Device,
@@ -314,11 +315,11 @@ impl DrawList {
         instance: &Instance<'_>,
         index: usize,
         primitive: &GpuPrimitive,
-        depths: Depths,
+        depth_draws: DepthDraws,
     ) {
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
-        let edges = wireframe_key(instance.mesh_key(primitive));
+        let wireframe = wireframe_key(instance.mesh_key(primitive));
         let primitive = primitive.in_variant(instance.character.variant);
         let offset = self.push_uniform(&instance.uniform(primitive));
         let key = instance.mesh_key(primitive);
@@ -336,17 +337,17 @@ impl DrawList {
             distance: instance.distance,
         };
         if look.mesh {
-            // Of a blended surface, only the nearest of its opaque layers shows, whatever the order of its triangles.
-            if depths.surface {
+            // The nearest opaque layer of a blended surface hides the others, whatever the order of the triangles.
+            if depth_draws.opaque_parts {
                 self.blended.push(item(depth_key(key), false));
             }
-            let is_transmissive = key.shading == Shading::Lit && key.surface.has(SurfaceVariant::TRANSMISSION);
-            self.shows_behind |= is_transmissive;
+            let is_transmissive = key.shading == Shading::Lit && key.permutation.has(SurfacePermutation::TRANSMISSION);
+            self.has_transmission |= is_transmissive;
             if is_transmissive && !key.features.has(Features::BLEND) {
                 self.transmissive.push(item(key, false));
             } else if !key.features.has(Features::BLEND) {
                 self.solid.push(item(key, false));
-                // Wireframes are for looking at the mesh itself.
+                // An outline would hide the wireframe.
                 if let Some(key) = outline_key(primitive, key).filter(|_| !look.wireframe) {
                     self.solid.push(item(key, false));
                 }
@@ -359,12 +360,12 @@ impl DrawList {
                 self.blended.push(item(key, false));
             }
             // All panes share one shadow map.
-            if depths.shadow && pane.is_none_or(|pane| pane == 0) {
+            if depth_draws.shadow && pane.is_none_or(|pane| pane == 0) {
                 self.shadow.push(item(shadow_key(key), false));
             }
         }
         if look.wireframe && is_surface {
-            self.blended.push(item(edges, true));
+            self.blended.push(item(wireframe, true));
         }
     }
 

@@ -1,7 +1,7 @@
-//! Light from all around: an environment prefiltered by roughness into a small cube map, with diffuse light by normal in a
-//! second one, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some milliseconds for
-//! a set-up and noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders
-//! for it would take longer.
+//! Image-based lighting: a small cube map of the environment prefiltered by roughness, another of its irradiance, and
+//! the table of how much of it a surface reflects. All are computed on the CPU, in milliseconds for a set-up and
+//! noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders would
+//! take longer.
 
 mod cube;
 mod reflectance;
@@ -20,7 +20,7 @@ use crate::state::LightSetup;
 
 /// Edge length of the sharpest level in texels, of set-ups and of images.
 const SIZES: [usize; 2] = [128, 256];
-/// Width and height of a set-up's panorama in pixels.
+/// Width and height in pixels of the panorama of a set-up.
 const SETUP_PANORAMA: [usize; 2] = [1024, 512];
 /// More samples than set-ups need: images have small bright spots, and nobody waits for a first picture.
 const IMAGE_QUALITY: usize = 12;
@@ -51,7 +51,7 @@ impl PartialEq for Source {
 pub(super) struct Environment {
     pub source: Source,
     pub view: wgpu::TextureView,
-    /// What a white diffuse surface reflects, by its normal.
+    /// Cube map of the radiance that a white diffuse surface reflects, by its normal.
     pub irradiance: wgpu::TextureView,
     /// Index of the roughest level of the cube map.
     pub last_level: u32,
@@ -93,10 +93,10 @@ impl Environment {
     }
 }
 
-/// The lights of an image are part of it, so it has no key light; the shadow falls away from its brightest side.
-fn shadow_only(from: Vec3) -> DirectionalLight {
-    // Of the same light from everywhere, only rounding errors are left.
-    let Vec3 { x, y, z } = if from.length() < 1e-3 { Vec3::Y } else { from };
+/// An image contains its lights, so it has no key light. The shadow falls away from the mean direction of its light.
+fn shadow_only(mean_direction: Vec3) -> DirectionalLight {
+    // For uniform light, the mean direction is only rounding errors.
+    let Vec3 { x, y, z } = if mean_direction.length() < 1e-3 { Vec3::Y } else { mean_direction };
     let direction = Vec3::new(x, 0.0, z).normalize_or_zero() + Vec3::Y * (y / x.hypot(z).max(1e-6)).clamp(0.7, 3.0);
     DirectionalLight { direction: direction.normalize_or(Vec3::Y), color: Vec3::ZERO }
 }

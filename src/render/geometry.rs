@@ -15,7 +15,7 @@ const VERTEX_TEXTURE_WIDTH: u32 = 2048;
 /// Where the vertex stage reads influences from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InfluenceSource {
-    /// Every vertex uses the palette entry of its copy: the draw's first one, unless the mesh is copied.
+    /// Every vertex uses one palette entry: the draw's first or, for a copy, the copy's own.
     None,
     /// Four per vertex, as vertex attributes.
     Four,

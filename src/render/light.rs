@@ -1,5 +1,4 @@
-//! What lights meshes and ground, bound together: environment, reflectance table, shadow map and the picture of what is behind
-//! glass.
+//! What lights meshes and ground, bound together: environment, reflectance table, shadow map and transmission buffer.
 
 use super::environment::{self, Environment, Source};
 use super::pipelines::Layouts;
@@ -12,8 +11,8 @@ pub(super) struct LightSources {
     pub shadow_map: ShadowMap,
     pub sampler: wgpu::Sampler,
     reflectance: wgpu::TextureView,
-    /// What transmissive surfaces let through; a single texel until one is drawn.
-    behind: wgpu::TextureView,
+    /// The transmission buffer; a single texel until a transmissive surface is drawn.
+    transmission: wgpu::TextureView,
     pub group: wgpu::BindGroup,
     /// Used while the shadow map itself is drawn: binds a placeholder instead.
     pub without_shadow: wgpu::BindGroup,
@@ -27,18 +26,18 @@ impl LightSources {
         let shadow_map = ShadowMap::new(device);
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);
-        let behind = single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[0; 4]);
+        let transmission = single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[0; 4]);
         let [group, without_shadow] = [&shadow_map.view, &shadow_map.placeholder].map(|shadow| {
-            let views = [&environment.view, shadow, &reflectance, &environment.irradiance, &behind];
+            let views = [&environment.view, shadow, &reflectance, &environment.irradiance, &transmission];
             light_group(device, layouts, views, [&sampler, &shadow_map.sampler])
         });
-        Self { environment, shadow_map, sampler, reflectance, behind, group, without_shadow, sky: None }
+        Self { environment, shadow_map, sampler, reflectance, transmission, group, without_shadow, sky: None }
     }
 
-    /// Lets transmissive surfaces show another picture.
-    pub fn show_behind(&mut self, device: &wgpu::Device, layouts: &Layouts, behind: &wgpu::TextureView) {
-        if self.behind != *behind {
-            self.behind = behind.clone();
+    /// Replaces the transmission buffer.
+    pub fn set_transmission(&mut self, device: &wgpu::Device, layouts: &Layouts, buffer: &wgpu::TextureView) {
+        if self.transmission != *buffer {
+            self.transmission = buffer.clone();
             self.bind(device, layouts);
         }
     }
@@ -47,7 +46,7 @@ impl LightSources {
         let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
         [self.group, self.without_shadow] = shadows.map(|shadow| {
             let environment = &self.environment;
-            let views = [&environment.view, shadow, &self.reflectance, &environment.irradiance, &self.behind];
+            let views = [&environment.view, shadow, &self.reflectance, &environment.irradiance, &self.transmission];
             light_group(device, layouts, views, [&self.sampler, &self.shadow_map.sampler])
         });
     }
@@ -80,7 +79,7 @@ impl LightSources {
 fn light_group(
     device: &wgpu::Device,
     layouts: &Layouts,
-    [environment, shadow, reflectance, irradiance, behind]: [&wgpu::TextureView; 5],
+    [environment, shadow, reflectance, irradiance, transmission]: [&wgpu::TextureView; 5],
     [environment_sampler, shadow_sampler]: [&wgpu::Sampler; 2],
 ) -> wgpu::BindGroup {
     let resources = [
@@ -90,12 +89,12 @@ fn light_group(
         wgpu::BindingResource::Sampler(shadow_sampler),
         wgpu::BindingResource::TextureView(reflectance),
         wgpu::BindingResource::TextureView(irradiance),
-        wgpu::BindingResource::TextureView(behind),
+        wgpu::BindingResource::TextureView(transmission),
     ];
     bind_group(device, &layouts.light, "light", resources)
 }
 
-/// Binds resources in order, from binding 0 on.
+/// Binds resources in order, starting at binding 0.
 fn bind_group<const N: usize>(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,

@@ -1,38 +1,39 @@
-//! What the GPU gets of a material's lobes or MToon: the variant of the shader and the uniform.
+//! A material's lobes or MToon on the GPU: the permutation of the shader and the uniform's values.
 
 use glam::Vec3;
 
-use super::shaders::SurfaceVariant as Variant;
+use super::shaders::SurfacePermutation as Permutation;
 use super::uniforms::MaterialUniform;
 use crate::anim::{LobeFactor, MaterialProperty, PropertyTarget, TextureSlot};
 use crate::asset::Asset;
 use crate::mesh::{Lobes, Material, OutlineMode, Toon};
 
-/// Returns MToon, or the lobes that a material, whose index in the asset this is, shows or that a clip can show, as bits of a variant.
+/// Returns the bits of MToon, or of the lobes that are visible at rest or that a clip animates. `index` is that of the
+/// material in the asset.
 pub(super) fn visible(asset: &Asset, index: Option<usize>, material: &Material) -> u64 {
     if material.toon.is_some() {
-        return Variant::TOON;
+        return Permutation::TOON;
     }
     let Some(lobes) = material.lobes.as_deref() else { return 0 };
-    at_rest(lobes) | index.map_or(0, |index| animated(asset, index))
+    visible_at_rest(lobes) | index.map_or(0, |index| animated(asset, index))
 }
 
-fn at_rest(lobes: &Lobes) -> u64 {
+fn visible_at_rest(lobes: &Lobes) -> u64 {
     let default = Lobes::default();
     let has_specular = (lobes.ior, lobes.specular, lobes.specular_color)
         != (default.ior, default.specular, default.specular_color)
         || [TextureSlot::Specular, TextureSlot::SpecularColor].iter().any(|&slot| lobes.texture(slot).is_some());
     [
-        (Variant::SPECULAR, has_specular),
-        (Variant::GLOSSINESS, lobes.glossiness_in_specular_color),
-        (Variant::CLEARCOAT, lobes.clearcoat > 0.0),
-        (Variant::SHEEN, lobes.sheen_color.max_element() > 0.0),
-        (Variant::IRIDESCENCE, lobes.iridescence > 0.0),
-        (Variant::ANISOTROPY, lobes.anisotropy > 0.0),
-        (Variant::TRANSMISSION, lobes.transmission > 0.0),
-        (Variant::VOLUME, lobes.thickness > 0.0),
-        (Variant::DISPERSION, lobes.dispersion > 0.0),
-        (Variant::DIFFUSE_TRANSMISSION, lobes.diffuse_transmission > 0.0),
+        (Permutation::SPECULAR, has_specular),
+        (Permutation::GLOSSINESS, lobes.glossiness_in_specular_color),
+        (Permutation::CLEARCOAT, lobes.clearcoat > 0.0),
+        (Permutation::SHEEN, lobes.sheen_color.max_element() > 0.0),
+        (Permutation::IRIDESCENCE, lobes.iridescence > 0.0),
+        (Permutation::ANISOTROPY, lobes.anisotropy > 0.0),
+        (Permutation::TRANSMISSION, lobes.transmission > 0.0),
+        (Permutation::VOLUME, lobes.thickness > 0.0),
+        (Permutation::DISPERSION, lobes.dispersion > 0.0),
+        (Permutation::DIFFUSE_TRANSMISSION, lobes.diffuse_transmission > 0.0),
     ]
     .into_iter()
     .map(|(lobe, is_visible)| if is_visible { lobe } else { 0 })
@@ -41,72 +42,76 @@ fn at_rest(lobes: &Lobes) -> u64 {
 
 fn animated(asset: &Asset, material: usize) -> u64 {
     let targets = asset.clips.iter().flat_map(|clip| clip.properties()).map(|channel| channel.target);
-    let lobes = targets.map(|target| match target {
+    let lobe_of_target = |target| match target {
         PropertyTarget::Material(index, MaterialProperty::Lobe(factor)) if index == material => lobe_of(factor),
         _ => 0,
-    });
-    lobes.fold(0, |all, lobe| all | lobe)
+    };
+    targets.fold(0, |lobes, target| lobes | lobe_of_target(target))
 }
 
+/// Returns the lobe that a factor can make visible, if any.
 fn lobe_of(factor: LobeFactor) -> u64 {
     match factor {
-        LobeFactor::Ior | LobeFactor::Specular | LobeFactor::SpecularColor => Variant::SPECULAR,
-        LobeFactor::Clearcoat => Variant::CLEARCOAT,
-        LobeFactor::SheenColor => Variant::SHEEN,
-        LobeFactor::Iridescence => Variant::IRIDESCENCE,
-        LobeFactor::Anisotropy => Variant::ANISOTROPY,
-        LobeFactor::Transmission => Variant::TRANSMISSION,
-        LobeFactor::Thickness => Variant::VOLUME,
-        LobeFactor::Dispersion => Variant::DISPERSION,
-        LobeFactor::DiffuseTransmission => Variant::DIFFUSE_TRANSMISSION,
+        LobeFactor::Ior | LobeFactor::Specular | LobeFactor::SpecularColor => Permutation::SPECULAR,
+        LobeFactor::Clearcoat => Permutation::CLEARCOAT,
+        LobeFactor::SheenColor => Permutation::SHEEN,
+        LobeFactor::Iridescence => Permutation::IRIDESCENCE,
+        LobeFactor::Anisotropy => Permutation::ANISOTROPY,
+        LobeFactor::Transmission => Permutation::TRANSMISSION,
+        LobeFactor::Thickness => Permutation::VOLUME,
+        LobeFactor::Dispersion => Permutation::DISPERSION,
+        LobeFactor::DiffuseTransmission => Permutation::DIFFUSE_TRANSMISSION,
         _ => 0,
     }
 }
 
-/// Returns the variant for these lobes: with the maps that are there and that they use.
-pub(super) fn variant(mut lobes: u64, has_map: impl Fn(TextureSlot) -> bool) -> Variant {
-    if lobes & (Variant::TRANSMISSION | Variant::DIFFUSE_TRANSMISSION) == 0 {
-        lobes &= !Variant::VOLUME;
+/// Returns the permutation with these lobes, less those without effect, and with the maps that they use.
+pub(super) fn permutation(mut lobes: u64, has_map: impl Fn(TextureSlot) -> bool) -> Permutation {
+    if lobes & (Permutation::TRANSMISSION | Permutation::DIFFUSE_TRANSMISSION) == 0 {
+        lobes &= !Permutation::VOLUME;
     }
-    if lobes & Variant::TRANSMISSION == 0 || lobes & Variant::VOLUME == 0 {
-        lobes &= !Variant::DISPERSION;
+    if lobes & Permutation::TRANSMISSION == 0 || lobes & Permutation::VOLUME == 0 {
+        lobes &= !Permutation::DISPERSION;
     }
     if lobes == 0 {
-        return Variant::PLAIN;
+        return Permutation::PLAIN;
     }
-    let is_used = |slot: TextureSlot| match slot {
-        TextureSlot::Specular | TextureSlot::SpecularColor => lobes & Variant::SPECULAR != 0,
+    let maps = TextureSlot::ALL.into_iter().filter(|&slot| uses_map(lobes, slot) && has_map(slot));
+    Permutation(maps.fold(lobes, |bits, slot| bits | Permutation::map_bit(slot)))
+}
+
+/// Whether a surface with these lobes reads a map.
+fn uses_map(lobes: u64, slot: TextureSlot) -> bool {
+    match slot {
+        TextureSlot::Specular | TextureSlot::SpecularColor => lobes & Permutation::SPECULAR != 0,
         TextureSlot::Clearcoat | TextureSlot::ClearcoatRoughness | TextureSlot::ClearcoatNormal => {
-            lobes & Variant::CLEARCOAT != 0
+            lobes & Permutation::CLEARCOAT != 0
         }
-        TextureSlot::SheenColor | TextureSlot::SheenRoughness => lobes & Variant::SHEEN != 0,
-        TextureSlot::Iridescence | TextureSlot::IridescenceThickness => lobes & Variant::IRIDESCENCE != 0,
-        TextureSlot::Anisotropy => lobes & Variant::ANISOTROPY != 0,
-        TextureSlot::Transmission => lobes & Variant::TRANSMISSION != 0,
-        TextureSlot::Thickness => lobes & Variant::VOLUME != 0,
+        TextureSlot::SheenColor | TextureSlot::SheenRoughness => lobes & Permutation::SHEEN != 0,
+        TextureSlot::Iridescence | TextureSlot::IridescenceThickness => lobes & Permutation::IRIDESCENCE != 0,
+        TextureSlot::Anisotropy => lobes & Permutation::ANISOTROPY != 0,
+        TextureSlot::Transmission => lobes & Permutation::TRANSMISSION != 0,
+        TextureSlot::Thickness => lobes & Permutation::VOLUME != 0,
         TextureSlot::DiffuseTransmission | TextureSlot::DiffuseTransmissionColor => {
-            lobes & Variant::DIFFUSE_TRANSMISSION != 0
+            lobes & Permutation::DIFFUSE_TRANSMISSION != 0
         }
-        TextureSlot::MetallicRoughness | TextureSlot::Occlusion => lobes & Variant::TOON == 0,
+        TextureSlot::MetallicRoughness | TextureSlot::Occlusion => lobes & Permutation::TOON == 0,
         TextureSlot::ShadeMultiply
         | TextureSlot::ShadingShift
         | TextureSlot::Matcap
         | TextureSlot::RimMultiply
-        | TextureSlot::OutlineWidth => lobes & Variant::TOON != 0,
+        | TextureSlot::OutlineWidth => lobes & Permutation::TOON != 0,
         TextureSlot::BaseColor | TextureSlot::Normal | TextureSlot::Emissive => true,
-    };
-    let maps = TextureSlot::ALL.into_iter().filter(|&slot| is_used(slot) && has_map(slot));
-    Variant(maps.fold(lobes, |bits, slot| bits | 1 << slot as u32))
+    }
 }
 
 /// Writes the factors of lobes.
-pub(super) fn write_uniform(lobes: &Lobes, uniform: &mut MaterialUniform) {
+pub(super) fn write_lobes(lobes: &Lobes, uniform: &mut MaterialUniform) {
     let ior = lobes.ior.max(0.0);
     let ratio = (ior - 1.0) / (ior + 1.0);
+    let transmittance = lobes.attenuation_color.clamp(Vec3::splat(1e-6), Vec3::ONE);
     let absorption = match lobes.attenuation_distance > 0.0 {
-        true => {
-            -lobes.attenuation_color.clamp(Vec3::splat(1e-6), Vec3::ONE).ln() / lobes.attenuation_distance.max(1e-6)
-        }
+        true => -transmittance.ln() / lobes.attenuation_distance.max(1e-6),
         false => Vec3::ZERO,
     };
     let (sin, cos) = lobes.anisotropy_rotation.sin_cos();

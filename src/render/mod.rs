@@ -1,10 +1,9 @@
 //! Draws a [`Frame`](crate::frame::Frame) into a texture with wgpu. Independent of the state and the user interface.
 //!
 //! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
-//! `textureLoad`. A picture takes a shadow pass and a single scene pass (two if there is glass), whose fragment stages write
-//! display-ready colours; without multisampling, further scene passes refine it.
+//! `textureLoad`. A picture takes a shadow pass and a single scene pass (two with transmissive surfaces), whose
+//! fragment stages write display-ready colours; without multisampling, further scene passes refine it.
 
-mod behind;
 mod blit;
 mod draw_list;
 mod environment;
@@ -24,6 +23,7 @@ pub mod shaders;
 mod shadow;
 mod targets;
 mod texture;
+mod transmission;
 mod uniform_buffer;
 pub mod uniforms;
 

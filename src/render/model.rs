@@ -7,9 +7,9 @@ use wgpu::util::DeviceExt;
 
 use super::UploadError;
 use super::geometry::{GpuGeometry, InfluenceSource, edges};
-use super::lobes::{self, write_toon, write_uniform};
+use super::lobes::{self, write_lobes, write_toon};
 use super::pipelines::{Features, Shading, primitive_layout};
-use super::shaders::SurfaceVariant;
+use super::shaders::SurfacePermutation;
 use super::texture::{MipMaker, sampler, single_texel};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
@@ -18,10 +18,10 @@ use crate::asset::Asset;
 use crate::library::{Model, ModelId};
 use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
-/// The maps of a material, by slot.
+/// A material's maps by slot.
 type Maps = [Option<(wgpu::TextureView, wgpu::Sampler)>; TextureSlot::ALL.len()];
 
-/// Alpha from which a blended surface counts as opaque; must match surface.wgsl.
+/// Minimum alpha at which a blended surface counts as opaque; must match surface.wgsl.
 const OPAQUE_ALPHA: f32 = 0.9;
 
 pub(super) struct GpuModel {
@@ -40,25 +40,26 @@ pub(super) struct GpuPrimitive {
     pub bind_group: wgpu::BindGroup,
     pub shading: Shading,
     pub features: Features,
-    pub surface: SurfaceVariant,
+    pub permutation: SurfacePermutation,
     pub double_sided: bool,
-    /// Whether an outline is drawn around it.
+    /// Whether it has an outline.
     pub outlined: bool,
     /// Index in the asset; `None` is the default material.
     material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
-    /// The same geometry with the materials of variants, by the variant's index.
+    /// The same geometry with the materials of material variants, by the variant's index.
     variants: Vec<(usize, GpuPrimitive)>,
 }
 
 impl GpuPrimitive {
-    /// Whether copies can share a draw call: blended ones have to be sorted, and influences leave no palette entry per copy.
-    pub fn can_repeat(&self) -> bool {
+    /// Whether copies can share a draw call. Blended ones must be sorted; skinned ones need more than a palette entry
+    /// each.
+    pub fn can_be_instanced(&self) -> bool {
         !self.features.has(Features::BLEND) && self.geometry.influences == InfluenceSource::None
     }
 
-    /// Returns the primitive as a variant shows it.
+    /// Returns the primitive with its material in a variant.
     pub fn in_variant(&self, variant: Option<usize>) -> &Self {
         let found = self.variants.iter().find(|&&(index, _)| Some(index) == variant);
         found.map_or(self, |(_, primitive)| primitive)
@@ -144,16 +145,16 @@ impl GpuModel {
     pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
         let is_faint = primitive.features.has(Features::BLEND) && self.alpha(primitive) <= 0.5;
         let transmission = self.uniform(primitive).map_or(0.0, |uniform| uniform.transmission);
-        let is_clear = primitive.surface.has(SurfaceVariant::TRANSMISSION) && transmission >= 0.5;
+        let is_clear = primitive.permutation.has(SurfacePermutation::TRANSMISSION) && transmission >= 0.5;
         primitive.geometry.topology == Topology::Triangles && !is_faint && !is_clear
     }
 
-    /// Whether a blended surface may have parts that hide what is behind them.
+    /// Whether a blended surface may have parts that hide everything behind them.
     pub fn has_opaque_parts(&self, primitive: &GpuPrimitive) -> bool {
         primitive.geometry.topology == Topology::Triangles && self.alpha(primitive) >= OPAQUE_ALPHA
     }
 
-    /// The alpha of the material without its texture.
+    /// Returns the material's alpha, without its texture.
     fn alpha(&self, primitive: &GpuPrimitive) -> f32 {
         self.uniform(primitive).map_or(1.0, |uniform| uniform.base_color[3])
     }
@@ -225,20 +226,21 @@ impl Materials<'_> {
         // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
         let has_map = |slot: TextureSlot| {
             let reference = material.texture(slot).filter(|_| gpu_material.maps[slot as usize].is_some());
-            // A matcap's coordinates are those of the normal.
-            let is_placed = |uv_set: usize| slot == TextureSlot::Matcap || !geometry.uvs[uv_set & 1].is_empty();
-            reference.is_some_and(|reference| is_placed(reference.uv_set))
+            // A matcap is looked up by the normal instead.
+            let has_uvs = |uv_set: usize| slot == TextureSlot::Matcap || !geometry.uvs[uv_set & 1].is_empty();
+            reference.is_some_and(|reference| has_uvs(reference.uv_set))
         };
-        let lobes = if unlit { 0 } else { lobes::visible(&asset, key, material) };
-        // Without texture coordinates there is no direction to stretch highlights in.
-        let has_tangents = geometry.uvs.iter().any(|uvs| !uvs.is_empty()) || !geometry.tangents.is_empty();
-        let lobes = if has_tangents { lobes } else { lobes & !SurfaceVariant::ANISOTROPY };
-        let surface = lobes::variant(lobes, has_map);
+        let mut lobes = if unlit { 0 } else { lobes::visible(&asset, key, material) };
+        // Anisotropy needs a tangent direction.
+        if geometry.uvs.iter().all(Vec::is_empty) && geometry.tangents.is_empty() {
+            lobes &= !SurfacePermutation::ANISOTROPY;
+        }
+        let permutation = lobes::permutation(lobes, has_map);
         GpuPrimitive {
-            bind_group: primitive_bind_group(self.device, surface, gpu_material, &gpu, plain, self.uploader),
+            bind_group: primitive_bind_group(self.device, permutation, gpu_material, &gpu, plain, self.uploader),
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
             features: features(material, has_map, geometry),
-            surface,
+            permutation,
             double_sided: material.double_sided,
             outlined: material.toon.as_ref().is_some_and(|toon| toon.has_outline()),
             material: key,
@@ -293,7 +295,7 @@ fn material_uniform(material: &Material) -> MaterialUniform {
         uvs: TextureSlot::ALL.map(uvs),
         ..Default::default()
     };
-    write_uniform(material.lobes.as_deref().unwrap_or(&Lobes::default()), &mut uniform);
+    write_lobes(material.lobes.as_deref().unwrap_or(&Lobes::default()), &mut uniform);
     if let Some(toon) = &material.toon {
         write_toon(toon, &mut uniform);
     }
@@ -318,17 +320,17 @@ fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry
 /// `plain` is the sampler of the maps that the material does not have.
 fn primitive_bind_group(
     device: &wgpu::Device,
-    surface: SurfaceVariant,
+    permutation: SurfacePermutation,
     material: &GpuMaterial,
     geometry: &GpuGeometry,
     plain: &wgpu::Sampler,
     placeholders: &ModelUploader,
 ) -> wgpu::BindGroup {
     let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.binding() }];
-    for map in surface.maps() {
+    for map in permutation.maps() {
         let (view, sampler) =
             material.maps[map].as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
-        let binding = SurfaceVariant::binding(map);
+        let binding = SurfacePermutation::binding(map);
         entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
         entries.push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
     }
@@ -339,7 +341,7 @@ fn primitive_bind_group(
     }));
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("primitive"),
-        layout: &primitive_layout(device, surface),
+        layout: &primitive_layout(device, permutation),
         entries: &entries,
     })
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::flush;
 use super::geometry::{InfluenceSource, vertex_buffers};
-use super::shaders::{self, Shader, SurfaceVariant};
+use super::shaders::{self, Shader, SurfacePermutation};
 use super::shadow::SHADOW_FORMAT;
 use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
@@ -16,7 +16,7 @@ use crate::state::{Background, ToneMap};
 pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1 of meshes and ground: environment, shadow map, reflectance table, what is behind glass.
+    /// Group 1 of meshes and ground: environment, shadow map, reflectance table, transmission buffer.
     pub light: wgpu::BindGroupLayout,
     /// Group 1 of the environment as a background: environment, panorama.
     pub sky: wgpu::BindGroupLayout,
@@ -44,21 +44,21 @@ fn entry(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) ->
 }
 
 const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
-const NUMBERS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+const UNFILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
-/// Creates the layout of group 3 of meshes: material, its maps, morph deltas, influences. Layouts of the same maps are
-/// interchangeable.
-pub(super) fn primitive_layout(device: &wgpu::Device, surface: SurfaceVariant) -> wgpu::BindGroupLayout {
+/// Creates the layout of group 3 of meshes: material, its maps, morph deltas, influences. Layouts with the same maps
+/// are interchangeable.
+pub(super) fn primitive_layout(device: &wgpu::Device, permutation: SurfacePermutation) -> wgpu::BindGroupLayout {
     use wgpu::{ShaderStages as Stages, TextureViewDimension as Dimension};
     let mut entries = vec![entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<MaterialUniform>(), false))];
-    for map in surface.maps() {
-        let binding = SurfaceVariant::binding(map);
+    for map in permutation.maps() {
+        let binding = SurfacePermutation::binding(map);
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let stage = if SurfaceVariant::is_of_vertices(map) { Stages::VERTEX } else { Stages::FRAGMENT };
+        let stage = if SurfacePermutation::is_vertex_map(map) { Stages::VERTEX } else { Stages::FRAGMENT };
         entries.push(entry(binding, stage, texture_binding(FILTERED, Dimension::D2)));
         entries.push(entry(binding + 1, stage, sampler));
     }
-    entries.extend([11, 12].map(|binding| entry(binding, Stages::VERTEX, texture_binding(NUMBERS, Dimension::D2))));
+    entries.extend([11, 12].map(|binding| entry(binding, Stages::VERTEX, texture_binding(UNFILTERED, Dimension::D2))));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("primitive"), entries: &entries })
 }
 
@@ -74,7 +74,7 @@ impl Layouts {
                 "frame",
                 &[
                     entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<FrameUniform>(), false)),
-                    entry(1, Stages::VERTEX, texture_binding(NUMBERS, Dimension::D2)),
+                    entry(1, Stages::VERTEX, texture_binding(UNFILTERED, Dimension::D2)),
                 ],
             ),
             draw: layout("draw", &[entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<DrawUniform>(), true))]),
@@ -170,7 +170,7 @@ const OVERRIDES: [&str; 13] = [
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct MeshKey {
     pub shading: Shading,
-    pub surface: SurfaceVariant,
+    pub permutation: SurfacePermutation,
     pub influences: InfluenceSource,
     pub skinning: SkinningMode,
     pub topology: Topology,
@@ -178,7 +178,7 @@ pub(super) struct MeshKey {
     pub cull: Option<wgpu::Face>,
     pub mirrored: bool,
     pub tone_map: ToneMap,
-    /// Alpha to coverage: masks cut out single samples of a pixel.
+    /// Alpha to coverage: masks cut out individual samples of a pixel.
     pub coverage: bool,
 }
 
@@ -189,9 +189,9 @@ pub(super) struct MeshPipeline(usize);
 pub(super) struct Pipelines {
     queue: wgpu::Queue,
     samples: u32,
-    /// Of meshes, by the maps and lobes of their surfaces.
-    modules: HashMap<SurfaceVariant, (wgpu::ShaderModule, wgpu::PipelineLayout)>,
-    /// Groups 0 to 2 of meshes.
+    /// Shader module and layout of meshes.
+    modules: HashMap<SurfacePermutation, (wgpu::ShaderModule, wgpu::PipelineLayout)>,
+    /// Layouts of groups 0 to 2 of meshes.
     mesh_groups: [wgpu::BindGroupLayout; 3],
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
@@ -216,7 +216,7 @@ pub(super) fn pipeline_layout(
 
 const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
 
-/// The alpha of a masked surface is its coverage; that of the picture stays the background's.
+/// Masked surfaces output coverage as alpha, which must not replace the alpha of the background.
 const COVERED: wgpu::BlendState = wgpu::BlendState {
     color: wgpu::BlendComponent::REPLACE,
     alpha: wgpu::BlendComponent {
@@ -341,18 +341,18 @@ impl Pipelines {
             background,
             sky: None,
         };
-        pipelines.prepare_module(device, SurfaceVariant::PLAIN);
+        pipelines.prepare_module(device, SurfacePermutation::PLAIN);
         flush(queue);
         pipelines
     }
 
-    fn prepare_module(&mut self, device: &wgpu::Device, surface: SurfaceVariant) {
+    fn prepare_module(&mut self, device: &wgpu::Device, permutation: SurfacePermutation) {
         let groups = &self.mesh_groups;
-        self.modules.entry(surface).or_insert_with(|| {
-            let primitive = primitive_layout(device, surface);
+        self.modules.entry(permutation).or_insert_with(|| {
+            let primitive = primitive_layout(device, permutation);
             let [frame, light, draw] = groups.each_ref().map(Some);
             let layout = pipeline_layout(device, "mesh", &[frame, light, draw, Some(&primitive)]);
-            (Shader::mesh(surface).module(device), layout)
+            (Shader::mesh(permutation).module(device), layout)
         });
     }
 
@@ -389,7 +389,7 @@ impl Pipelines {
         if let Some(&pipeline) = self.by_key.get(&key) {
             return pipeline;
         }
-        self.prepare_module(device, key.surface);
+        self.prepare_module(device, key.permutation);
         let pipeline = MeshPipeline(self.meshes.len());
         self.meshes.push(self.create_mesh(device, key));
         self.by_key.insert(key, pipeline);
@@ -409,7 +409,7 @@ impl Pipelines {
         let shadow = key.shading == Shading::Shadow;
         let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
         let constants = mesh_constants(key);
-        let (module, layout) = &self.modules[&key.surface];
+        let (module, layout) = &self.modules[&key.permutation];
         let options =
             || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };
         let fragment = fragment_entry_point(key);
@@ -483,7 +483,7 @@ fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
     constants.push(("COVERAGE", f64::from(u8::from(key.coverage))));
     let depth_offset = match key.shading {
         Shading::Wireframe => 3e-5,
-        // An outline without width is behind its surface.
+        // Behind the surface, also where the outline's width is 0.
         _ if key.features.has(Features::OUTLINE) => -1e-6,
         _ => 0.0,
     };

@@ -1,24 +1,25 @@
-//! Refines a picture that was drawn with one sample per pixel: more samples, each a drawing of the whole scene shifted by a
-//! fraction of a pixel, are averaged into it.
+//! Progressive refinement of a picture drawn with one sample per pixel: draws the whole scene again, shifted by a
+//! fraction of a pixel, and accumulates the average.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
 use super::pipelines::pipeline_layout;
 use super::shaders;
 use super::targets::SCENE_FORMAT;
 
-/// Where a pixel is sampled, in pixels from its centre, which is their mean. The first is an unrefined picture's.
-pub(super) const SAMPLES: [[f32; 2]; 4] = [[0.0, 0.0], [0.375, -0.125], [-0.125, 0.375], [-0.25, -0.25]];
+/// Sample positions in pixels relative to the pixel's centre, which is their mean. An unrefined picture has only the
+/// first.
+pub(super) const SAMPLE_OFFSETS: [[f32; 2]; 4] = [[0.0, 0.0], [0.375, -0.125], [-0.125, 0.375], [-0.25, -0.25]];
 
-/// Averages samples into a picture.
-pub(super) struct Average {
+/// Accumulates samples in a picture.
+pub(super) struct Accumulator {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     pipeline: wgpu::RenderPipeline,
 }
 
-impl Average {
+impl Accumulator {
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = sampled_texture_layout(device, "average");
+        let layout = sampled_texture_layout(device, "accumulate");
         let module = shaders::BLIT.module(device);
         let mix = wgpu::BlendComponent {
             src_factor: wgpu::BlendFactor::Constant,
@@ -26,9 +27,9 @@ impl Average {
             operation: wgpu::BlendOperation::Add,
         };
         let pipeline = FullScreenPipeline {
-            label: "average",
+            label: "accumulate",
             module: &module,
-            layout: &pipeline_layout(device, "average", &[Some(&layout)]),
+            layout: &pipeline_layout(device, "accumulate", &[Some(&layout)]),
             vertex: "full_viewport",
             fragment: "blit",
             constants: &[],
@@ -39,17 +40,18 @@ impl Average {
             },
         }
         .create(device);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some("average"), ..Default::default() });
+        let sampler =
+            device.create_sampler(&wgpu::SamplerDescriptor { label: Some("accumulate"), ..Default::default() });
         Self { layout, sampler, pipeline }
     }
 
-    /// Binds the texture that samples are drawn into.
+    /// Binds the texture that a sample is drawn into.
     pub fn bind(&self, device: &wgpu::Device, sample: &wgpu::TextureView) -> wgpu::BindGroup {
-        sampled_texture_group(device, "average", &self.layout, sample, &self.sampler)
+        sampled_texture_group(device, "accumulate", &self.layout, sample, &self.sampler)
     }
 
-    /// Mixes the sample into the picture. `weight` is that of the sample, from 0 to 1.
-    pub fn draw(
+    /// Blends a sample into the picture with a weight from 0 to 1.
+    pub fn add(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         sample: &wgpu::BindGroup,
@@ -57,7 +59,7 @@ impl Average {
         weight: f64,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("average"),
+            label: Some("accumulate"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: picture,
                 depth_slice: None,

@@ -2,7 +2,6 @@
 
 use std::ops::AddAssign;
 
-use super::behind::BehindMaker;
 use super::draw_list::{DrawList, Item};
 use super::environment::Source;
 use super::flush;
@@ -12,8 +11,9 @@ use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
-use super::refine::{Average, SAMPLES};
+use super::refine::{Accumulator, SAMPLE_OFFSETS};
 use super::targets::Targets;
+use super::transmission::TransmissionPass;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
 use crate::frame::Frame;
@@ -89,13 +89,14 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light: LightSources,
-    /// The uniform of the last picture, without the shift of a sample.
+    /// The last picture's uniform, without a sample's offset.
     uniform: FrameUniform,
-    /// How many of [`SAMPLES`] the last picture has; all with multisampling.
-    samples: usize,
-    average: Option<Average>,
+    /// How many of [`SAMPLE_OFFSETS`] the last picture has. Multisampling counts as all of them.
+    samples_drawn: usize,
+    /// Created when a picture is first refined.
+    accumulator: Option<Accumulator>,
     /// Created for the first picture with transmissive surfaces.
-    behind_maker: Option<BehindMaker>,
+    transmission: Option<TransmissionPass>,
     stats: RenderStats,
 }
 
@@ -143,9 +144,9 @@ impl Renderer {
             shadow_buffer,
             layouts,
             uniform: FrameUniform::default(),
-            samples: SAMPLES.len(),
-            average: None,
-            behind_maker: None,
+            samples_drawn: SAMPLE_OFFSETS.len(),
+            accumulator: None,
+            transmission: None,
             stats: RenderStats::default(),
         }
     }
@@ -199,11 +200,11 @@ impl Renderer {
         }
         self.draws.collect(device, frame, &mut self.models, &mut self.pipelines, &mut self.palette, shadow);
         self.draws.upload(device, queue, &self.layouts);
-        if self.draws.shows_behind() {
-            let maker = self.behind_maker.get_or_insert_with(|| BehindMaker::new(device));
+        if self.draws.has_transmission() {
+            let pass = self.transmission.get_or_insert_with(|| TransmissionPass::new(device));
             let output = &self.targets.output_view;
-            let behind = self.targets.behind.get_or_insert_with(|| maker.behind(device, output, size));
-            self.light.show_behind(device, &self.layouts, &behind.view);
+            let buffer = self.targets.transmission.get_or_insert_with(|| pass.create_buffer(device, output, size));
+            self.light.set_transmission(device, &self.layouts, &buffer.view);
         }
         if self.palette.upload(device, queue) {
             self.frame_group = self.frame_buffer.bind_group(device, &self.layouts, &self.palette);
@@ -218,37 +219,37 @@ impl Renderer {
         }
         self.draw_scene(&mut encoder, None, frame.look.background, ground.as_ref(), &panes);
         queue.submit([encoder.finish()]);
-        self.samples = if self.options.samples > 1 { SAMPLES.len() } else { 1 };
+        self.samples_drawn = if self.options.samples > 1 { SAMPLE_OFFSETS.len() } else { 1 };
         &self.targets.output_view
     }
 
-    /// Whether the last picture lacks samples.
+    /// Whether [`Self::refine`] can add a sample to the last picture. Never with multisampling.
     pub fn can_refine(&self) -> bool {
-        self.samples < SAMPLES.len()
+        self.samples_drawn < SAMPLE_OFFSETS.len()
     }
 
-    /// Adds a sample per pixel to the last picture, which must be that of this frame. Returns whether it lacks more; with
-    /// multisampling, it never does.
+    /// Adds a sample per pixel to the last picture, which must show this frame. Returns whether it can be refined
+    /// further.
     pub fn refine(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) -> bool {
-        let Some([right, down]) = SAMPLES.get(self.samples) else { return false };
+        let Some([right, down]) = SAMPLE_OFFSETS.get(self.samples_drawn) else { return false };
         let panes = Panes::new(frame.panes, self.targets.size());
         let mut uniform = self.uniform;
-        let shift = [-2.0 * right / panes.size[0], 2.0 * down / panes.size[1]];
+        let jitter = [-2.0 * right / panes.size[0], 2.0 * down / panes.size[1]];
         for column in &mut uniform.projection_from_world {
-            column[0] += shift[0] * column[3];
-            column[1] += shift[1] * column[3];
+            column[0] += jitter[0] * column[3];
+            column[1] += jitter[1] * column[3];
         }
         self.frame_buffer.write(queue, uniform);
-        let sample = self.targets.prepare_sample(device);
+        let sample = self.targets.sample_target(device);
         let stats = self.stats;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") });
         let ground = GroundPlane::of(frame);
         self.draw_scene(&mut encoder, Some(&sample), frame.look.background, ground.as_ref(), &panes);
         self.stats = stats;
-        let average = self.average.get_or_insert_with(|| Average::new(device));
-        let group = average.bind(device, &sample);
-        self.samples += 1;
-        average.draw(&mut encoder, &group, &self.targets.output_view, 1.0 / self.samples as f64);
+        let accumulator = self.accumulator.get_or_insert_with(|| Accumulator::new(device));
+        let group = accumulator.bind(device, &sample);
+        self.samples_drawn += 1;
+        accumulator.add(&mut encoder, &group, &self.targets.output_view, 1.0 / self.samples_drawn as f64);
         queue.submit([encoder.finish()]);
         self.can_refine()
     }
@@ -262,7 +263,7 @@ impl Renderer {
     /// Makes the next picture use a new texture, so that the caller can keep the last one.
     pub fn give_output_away(&mut self, device: &wgpu::Device) {
         self.targets = Targets::new(device, [1, 1], self.options.samples);
-        self.samples = SAMPLES.len();
+        self.samples_drawn = SAMPLE_OFFSETS.len();
     }
 
     /// The texture of the last picture.
@@ -292,8 +293,8 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
     }
 
-    /// Everything in one pass, unless something shows what is behind it: then what is opaque comes first, to be copied. A further
-    /// `sample` shows the copy that the first one made.
+    /// Draws everything in one pass or, with transmissive surfaces, in two: the first one's opaque surfaces are copied
+    /// for the second. Further samples, drawn into `sample`, need one pass, since they reuse the copy of the first.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -308,34 +309,35 @@ impl Renderer {
                 wgpu::Color { r, g, b, a: 1.0 }
             }
             Background::Transparent => wgpu::Color::TRANSPARENT,
-            // Drawn over; masked surfaces keep its alpha.
+            // The background is drawn over it; masked surfaces keep its alpha.
             _ => wgpu::Color::BLACK,
         };
         let clear = (wgpu::LoadOp::Clear(clear), wgpu::LoadOp::Clear(1.0));
-        let behind = self.behind_maker.as_ref().zip(self.targets.behind.as_ref());
-        let behind = behind.filter(|_| self.draws.shows_behind() && sample.is_none());
+        let transmission = self.transmission.as_ref().zip(self.targets.transmission.as_ref());
+        let transmission = transmission.filter(|_| self.draws.has_transmission() && sample.is_none());
         let mut stats = RenderStats::default();
-        let mut pass = self.scene_pass(encoder, sample, clear, behind.is_some());
+        let mut pass = self.scene_pass(encoder, sample, clear, transmission.is_some());
         for pane in 0..panes.count() {
-            panes.choose(&mut pass, pane);
+            panes.set_viewport(&mut pass, pane);
             stats += self.draw_opaque(&mut pass, background, ground, pane);
-            if behind.is_none() {
+            if transmission.is_none() {
                 stats += self.draw_transparent(&mut pass, pane);
             }
         }
         drop(pass);
-        if let Some((maker, behind)) = behind {
-            maker.record(behind, encoder);
+        if let Some((copy, buffer)) = transmission {
+            copy.record(buffer, encoder);
             let mut pass = self.scene_pass(encoder, None, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
             for pane in 0..panes.count() {
-                panes.choose(&mut pass, pane);
+                panes.set_viewport(&mut pass, pane);
                 stats += self.draw_transparent(&mut pass, pane);
             }
         }
         self.stats += stats;
     }
 
-    /// Begins a pass into the scene's targets, or into that of a further sample. `continues`: another one follows.
+    /// Begins a pass into the scene's targets, or into a further `sample`. `continues` keeps the contents for another
+    /// pass.
     fn scene_pass<'a>(
         &self,
         encoder: &'a mut wgpu::CommandEncoder,
@@ -348,7 +350,7 @@ impl Renderer {
             (None, Some(samples)) => (samples, Some(&self.targets.output_view)),
             (None, None) => (&self.targets.output_view, None),
         };
-        let store = |wanted| if wanted { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
+        let store = |is_needed| if is_needed { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -369,7 +371,7 @@ impl Renderer {
         pass
     }
 
-    /// Opaque surfaces, the background and the ground.
+    /// Draws opaque surfaces, the background and the ground.
     fn draw_opaque(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -407,7 +409,7 @@ impl Renderer {
         stats
     }
 
-    /// Transmissive and blended surfaces, and overlays.
+    /// Draws transmissive and blended surfaces, and overlays.
     fn draw_transparent(&self, pass: &mut wgpu::RenderPass<'_>, pane: u32) -> RenderStats {
         let mut stats = RenderStats::default();
         let overlay_call = RenderStats { draw_calls: 1, triangles: 0 };
@@ -451,7 +453,7 @@ impl Panes {
         self.columns * self.rows
     }
 
-    fn choose(&self, pass: &mut wgpu::RenderPass<'_>, pane: u32) {
+    fn set_viewport(&self, pass: &mut wgpu::RenderPass<'_>, pane: u32) {
         let [x, y, width, height] = self.rect(pane);
         pass.set_viewport(x, y, width, height, 0.0, 1.0);
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::anim::TextureSlot;
 
-/// A file of `shaders/` without comments and indentation (build.rs).
+/// The text of a file in `shaders/`, which build.rs strips of comments and indentation.
 macro_rules! wgsl {
     ($name:literal) => {
         include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl"))
@@ -34,7 +34,7 @@ const SKY_BACKGROUND: &str = wgsl!("sky");
 const MIP: &str = wgsl!("mip");
 const BLIT_PICTURE: &str = wgsl!("blit");
 
-/// The maps of a material in the order of their bindings and texture transforms, as the shaders call them.
+/// The shaders' names for a material's maps, in the order of [`TextureSlot`].
 const MAPS: [&str; TextureSlot::ALL.len()] = [
     "base_color",
     "metallic_roughness",
@@ -62,17 +62,18 @@ const MAPS: [&str; TextureSlot::ALL.len()] = [
     "outline_width",
 ];
 
-/// Which maps and lobes the mesh shader has, as bits: one for each slot of [`TextureSlot`], then the
-/// lobes, then MToon. The shader's text is cut to what is needed, since WebGL2 has few texture units, and most files have no lobes.
+/// A permutation of the mesh shader: a bit for each map, in the order of [`TextureSlot`], then one for each lobe, then
+/// MToon. Everything else is cut from the shader's text, since WebGL2 has few texture units and most materials have no
+/// lobes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct SurfaceVariant(pub u64);
+pub struct SurfacePermutation(pub u64);
 
-impl SurfaceVariant {
-    /// The maps of core glTF, which overrides turn off, and no lobes.
+impl SurfacePermutation {
+    /// All maps of core glTF, which overrides turn off, and no lobes.
     pub const PLAIN: Self = Self(0b11111);
     /// An index of refraction, or a weight or colour of the dielectric reflection.
     pub const SPECULAR: u64 = 1 << 24;
-    /// Roughness is in alpha of the specular colour.
+    /// Glossiness in the alpha of the specular colour map.
     pub const GLOSSINESS: u64 = 1 << 25;
     /// KHR_materials_clearcoat.
     pub const CLEARCOAT: u64 = 1 << 26;
@@ -84,7 +85,7 @@ impl SurfaceVariant {
     pub const ANISOTROPY: u64 = 1 << 29;
     /// KHR_materials_transmission.
     pub const TRANSMISSION: u64 = 1 << 30;
-    /// KHR_materials_volume; only with one of the transmissions.
+    /// KHR_materials_volume; only with transmission or diffuse transmission.
     pub const VOLUME: u64 = 1 << 31;
     /// KHR_materials_dispersion; only with transmission and a volume.
     pub const DISPERSION: u64 = 1 << 32;
@@ -95,52 +96,63 @@ impl SurfaceVariant {
     /// VRMC_materials_mtoon, which has no lobes.
     pub const TOON: u64 = 1 << 34;
 
-    /// What the shaders' `#if` asks for: any of these bits.
+    /// Conditions of the shaders' `#if`: true if the permutation has any of these bits.
     const CONDITIONS: [(&str, u64); 16] = [
         ("SPECULAR", Self::SPECULAR),
         ("GLOSSINESS", Self::GLOSSINESS),
         ("CLEARCOAT", Self::CLEARCOAT),
-        ("CLEARCOAT_NORMAL_MAP", 1 << TextureSlot::ClearcoatNormal as u32),
+        ("CLEARCOAT_NORMAL_MAP", Self::map_bit(TextureSlot::ClearcoatNormal)),
         ("SHEEN", Self::SHEEN),
         ("IRIDESCENCE", Self::IRIDESCENCE),
         ("ANISOTROPY", Self::ANISOTROPY),
-        ("ANISOTROPY_MAP", 1 << TextureSlot::Anisotropy as u32),
+        ("ANISOTROPY_MAP", Self::map_bit(TextureSlot::Anisotropy)),
         ("TRANSMISSION", Self::TRANSMISSION),
         ("VOLUME", Self::VOLUME),
         ("DISPERSION", Self::DISPERSION),
         ("DIFFUSE_TRANSMISSION", Self::DIFFUSE_TRANSMISSION),
         ("TRANSMISSIVE", Self::TRANSMISSION | Self::DIFFUSE_TRANSMISSION),
         ("TOON", Self::TOON),
-        ("SHADING_SHIFT_MAP", 1 << TextureSlot::ShadingShift as u32),
-        ("MATCAP_MAP", 1 << TextureSlot::Matcap as u32),
+        ("SHADING_SHIFT_MAP", Self::map_bit(TextureSlot::ShadingShift)),
+        ("MATCAP_MAP", Self::map_bit(TextureSlot::Matcap)),
     ];
 
-    /// Whether it has any of these lobes.
-    pub fn has(self, lobes: u64) -> bool {
-        self.0 & lobes != 0
+    /// The bit of a map.
+    pub(super) const fn map_bit(slot: TextureSlot) -> u64 {
+        1 << slot as u32
     }
 
-    /// The numbers of the maps it has.
+    /// Whether it has any of these bits.
+    pub fn has(self, bits: u64) -> bool {
+        self.0 & bits != 0
+    }
+
+    /// Whether it meets a condition of `#if`.
+    fn meets(self, condition: &str) -> bool {
+        Self::CONDITIONS.iter().any(|&(name, bits)| name == condition && self.has(bits))
+    }
+
+    /// Returns the indices of its maps.
     pub fn maps(self) -> impl Iterator<Item = usize> {
         (0..MAPS.len()).filter(move |map| self.0 >> map & 1 == 1)
     }
 
-    /// Whether the vertex stage reads a map instead of the fragment stage.
-    pub fn is_of_vertices(map: usize) -> bool {
+    /// Whether a map is read by the vertex stage instead of the fragment stage.
+    pub fn is_vertex_map(map: usize) -> bool {
         map == TextureSlot::OutlineWidth as usize
     }
 
-    /// The binding of a map in group 3; its sampler follows. Bindings 11 and 12 are the vertex stage's.
+    /// Returns the binding of a map in group 3; its sampler has the next one. Bindings 11 and 12 are morph deltas and
+    /// influences.
     pub fn binding(map: usize) -> u32 {
         let binding = 1 + 2 * map as u32;
         if binding < 11 { binding } else { binding + 2 }
     }
 
-    /// A function for each map that returns its texel, or white without the map.
+    /// Declares each map and a function that returns its texel, or white for maps it doesn't have.
     fn write_maps(self, out: &mut String) {
         for (map, name) in MAPS.iter().enumerate() {
-            // A vertex stage has no derivatives to choose a level by.
-            let (call, level) = if Self::is_of_vertices(map) { ("Level", ", 0.0") } else { ("", "") };
+            // The vertex stage has no derivatives to choose a mip level by.
+            let (call, level) = if Self::is_vertex_map(map) { ("Level", ", 0.0") } else { ("", "") };
             // Writing to a string cannot fail.
             let _ = match self.0 >> map & 1 {
                 0 => writeln!(out, "fn {name}_texel(uv: vec4f) -> vec4f {{ return vec4f(1.0); }}"),
@@ -148,7 +160,9 @@ impl SurfaceVariant {
                     out,
                     "@group(3) @binding({}) var {name}_map: texture_2d<f32>;
 @group(3) @binding({}) var {name}_sampler: sampler;
-fn {name}_texel(uv: vec4f) -> vec4f {{ return textureSample{call}({name}_map, {name}_sampler, map_uv({map}u, uv){level}); }}",
+fn {name}_texel(uv: vec4f) -> vec4f {{
+return textureSample{call}({name}_map, {name}_sampler, map_uv({map}u, uv){level});
+}}",
                     Self::binding(map),
                     Self::binding(map) + 1
                 ),
@@ -163,7 +177,7 @@ pub struct Shader {
     /// Name in wgpu's messages and graphics debuggers.
     pub label: &'static str,
     parts: &'static [&'static str],
-    surface: SurfaceVariant,
+    permutation: SurfacePermutation,
 }
 
 const MESH_PARTS: [&str; 14] = [
@@ -184,7 +198,7 @@ const MESH_PARTS: [&str; 14] = [
 ];
 
 /// Meshes without lobes: all vertex and fragment stages of the scene and shadow passes.
-pub const MESH: Shader = Shader::mesh(SurfaceVariant::PLAIN);
+pub const MESH: Shader = Shader::mesh(SurfacePermutation::PLAIN);
 /// The grid and the shadow on the ground.
 pub(super) const GROUND_PLANE: Shader = Shader::new("ground", &[FRAME, LIGHT, GROUND]);
 /// Overlay lines.
@@ -209,30 +223,27 @@ pub const ALL: [Shader; 9] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BAC
 
 impl Shader {
     const fn new(label: &'static str, parts: &'static [&'static str]) -> Self {
-        Self { label, parts, surface: SurfaceVariant::PLAIN }
+        Self { label, parts, permutation: SurfacePermutation::PLAIN }
     }
 
     /// Meshes with these maps and lobes.
-    pub const fn mesh(surface: SurfaceVariant) -> Self {
-        Self { label: "mesh", parts: &MESH_PARTS, surface }
+    pub const fn mesh(permutation: SurfacePermutation) -> Self {
+        Self { label: "mesh", parts: &MESH_PARTS, permutation }
     }
 
-    /// Returns the WGSL of the whole module. Of the files, lines between `#if NAME`, `#else` and `#endif` are left out if the
-    /// variant has no such lobe.
+    /// Returns the WGSL of the whole module. `#if NAME`, `#else` and `#endif` select lines by the permutation; `#maps`
+    /// stands for the declarations of its maps.
     pub fn source(&self) -> String {
         let mut out = String::new();
-        let mut conditions = Vec::new();
+        // Whether each enclosing `#if` selects the current line.
+        let mut selected: Vec<bool> = Vec::new();
         for line in self.parts.iter().flat_map(|part| part.lines()) {
             match line.strip_prefix('#') {
-                Some("maps") => self.surface.write_maps(&mut out),
-                Some("endif") => drop(conditions.pop()),
-                Some("else") => conditions.last_mut().into_iter().for_each(|shown: &mut bool| *shown = !*shown),
-                Some(condition) => {
-                    let name = condition.trim_start_matches("if ");
-                    let found = SurfaceVariant::CONDITIONS.iter().find(|(known, _)| *known == name);
-                    conditions.push(found.is_some_and(|&(_, lobes)| self.surface.has(lobes)));
-                }
-                None if conditions.iter().all(|shown| *shown) => {
+                Some("maps") => self.permutation.write_maps(&mut out),
+                Some("endif") => drop(selected.pop()),
+                Some("else") => selected.last_mut().into_iter().for_each(|is_selected| *is_selected = !*is_selected),
+                Some(condition) => selected.push(self.permutation.meets(condition.trim_start_matches("if "))),
+                None if selected.iter().all(|is_selected| *is_selected) => {
                     out.push_str(line);
                     out.push('\n');
                 }

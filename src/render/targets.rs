@@ -1,6 +1,6 @@
 //! Render targets of a picture.
 
-use super::behind::Behind;
+use super::transmission::TransmissionBuffer;
 
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
 pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -11,10 +11,10 @@ pub(super) struct Targets {
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,
     pub output_view: wgpu::TextureView,
-    /// Where the samples of a refined picture are drawn; created for the first one.
+    /// Target of the further samples of a refined picture; created when first needed.
     pub sample: Option<wgpu::TextureView>,
     /// Created for the first picture with transmissive surfaces.
-    pub behind: Option<Behind>,
+    pub transmission: Option<TransmissionBuffer>,
 }
 
 impl Targets {
@@ -41,12 +41,12 @@ impl Targets {
             output_view: output.create_view(&Default::default()),
             output,
             sample: None,
-            behind: None,
+            transmission: None,
         }
     }
 
-    /// Creates the texture for samples unless it exists.
-    pub fn prepare_sample(&mut self, device: &wgpu::Device) -> wgpu::TextureView {
+    /// Returns the target for further samples, created on first use.
+    pub fn sample_target(&mut self, device: &wgpu::Device) -> wgpu::TextureView {
         let size = self.output.size();
         let create = || {
             let texture = device.create_texture(&wgpu::TextureDescriptor {

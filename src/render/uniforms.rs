@@ -73,7 +73,7 @@ pub struct FrameUniform {
     pub background_center: [f32; 4],
     /// sRGB colour of the studio background at its edge.
     pub background_edge: [f32; 4],
-    /// Direction of the middle of a pane in the environment; w is unused.
+    /// Direction at the center of a pane in the environment; w is unused.
     pub sky_ahead: [f32; 4],
     /// Added to it per unit of x in normalized device coordinates.
     pub sky_right: [f32; 4],
@@ -159,7 +159,7 @@ pub struct MaterialUniform {
     pub clearcoat: f32,
     /// Roughness of the clearcoat.
     pub clearcoat_roughness: f32,
-    /// Scale of the clearcoat normal map's x and y.
+    /// Scale of X and Y of the clearcoat normal map.
     pub clearcoat_normal_scale: f32,
     /// Index of refraction.
     pub ior: f32,
@@ -169,9 +169,9 @@ pub struct MaterialUniform {
     pub iridescence_ior: f32,
     /// Minimum and maximum thickness of the thin film in nanometres.
     pub iridescence_thickness: [f32; 2],
-    /// Cosine and sine of the angle between the tangent and stretched highlights.
+    /// Cosine and sine of the angle from the tangent to the direction of anisotropy.
     pub anisotropy_direction: [f32; 2],
-    /// How much highlights are stretched.
+    /// Strength of the anisotropy.
     pub anisotropy: f32,
     /// Transmitted fraction of light.
     pub transmission: f32,
@@ -181,11 +181,11 @@ pub struct MaterialUniform {
     pub shading_shift: f32,
     /// Factor on the shading shift map.
     pub shading_shift_scale: f32,
-    /// Sharpness of the boundary between MToon's colours.
+    /// Sharpness of the boundary between MToon's lit and shade colour.
     pub shading_toony: f32,
-    /// Linear colour where a light doesn't reach.
+    /// Linear colour where the surface is unlit.
     pub shade_color: [f32; 3],
-    /// How little ambient light depends on the normal.
+    /// How far ambient light is averaged over all normals.
     pub gi_equalization: f32,
     /// Linear factor on the matcap.
     pub matcap_color: [f32; 3],
@@ -197,13 +197,13 @@ pub struct MaterialUniform {
     pub rim_fresnel_power: f32,
     /// Linear colour of the outline.
     pub outline_color: [f32; 3],
-    /// How much the outline takes on the shaded colour.
+    /// How much of the surface's shading the outline takes on.
     pub outline_lighting_mix: f32,
     /// Widens the rim.
     pub rim_lift: f32,
-    /// Metres, or a fraction of the picture's height.
+    /// Metres, or a fraction of the viewport's height.
     pub outline_width: f32,
-    /// Whether the outline's width is a fraction of the height: 0 or 1.
+    /// 1 if the outline's width is a fraction of the viewport's height, otherwise 0.
     pub outline_on_screen: u32,
     /// Unused, zero.
     pub padding: f32,

@@ -1,5 +1,4 @@
-//! What an avatar adds to the pose of a clip: where the eyes look, expressions, constraints and spring bones, in this
-//! order.
+//! What an avatar adds to the pose of a clip: gaze, expressions, node constraints and spring bones, in this order.
 
 use std::collections::BTreeMap;
 
@@ -8,35 +7,38 @@ use serde::{Deserialize, Serialize};
 
 use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
 use super::{UpAxis, ViewerState};
-use crate::anim::{LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, TimeRange, model_from_joint};
-use crate::avatar::{Avatar, SpringCache, SpringMotion, apply_expressions, resolve_weights};
+use crate::anim::{
+    LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, Skeleton, TimeRange, model_from_joint,
+};
+use crate::avatar::{Avatar, LookAt, SpringCache, SpringMotion, apply_expressions, resolve_weights};
 use crate::library::{Model, ModelId};
 
-/// Where an avatar's eyes look.
+/// The target of an avatar's gaze.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LookTarget {
-    /// Wherever the clip turns them.
+    /// As the clip animates it.
     #[default]
     Off,
-    /// Into the camera.
+    /// The camera.
     Camera,
-    /// At a point in world space.
+    /// A point in world space.
     Point(Vec3),
 }
 
 /// Buffers of [`AvatarPose::apply`], reused between frames.
 #[derive(Debug, Default)]
 pub(super) struct AvatarPose {
-    /// The weights that were set, one per expression.
+    /// Requested weights, one per expression: the clip's, or those set manually.
     pub weights: Vec<f32>,
-    shown: Vec<f32>,
+    /// The same after gaze and overrides.
+    resolved_weights: Vec<f32>,
     springs: SpringCache,
-    springs_of: Option<SpringsKey>,
+    springs_key: Option<SpringsKey>,
     cursor: SampleCursor,
 }
 
-/// What a simulation of the springs depends on.
+/// Everything that a simulation of the springs depends on.
 #[derive(Debug, PartialEq)]
 struct SpringsKey {
     model: ModelId,
@@ -59,58 +61,49 @@ impl AvatarPose {
         properties: &mut PropertyValues,
     ) {
         let (skeleton, avatar) = (&model.asset.skeleton, &model.asset.avatar);
-        self.set_weights(avatar, state, properties);
-        self.shown.clone_from(&self.weights);
-        if let Some(look_at) = &avatar.look_at {
-            let model_from_world = world_from_model(state.edits.up).inverse();
-            let towards = |point| look_at.direction(model_from_world.transform_point3(point), skeleton, pose);
-            let direction = match state.display.look_at {
-                LookTarget::Off => properties.get(PropertyTarget::LookAt).map(|angles| [angles.x, angles.y]),
-                LookTarget::Camera => eye.and_then(towards),
-                LookTarget::Point(point) => towards(point),
-            };
-            if let Some(direction) = direction {
-                look_at.apply(direction, skeleton, pose, &mut self.shown);
-            }
+        self.request_weights(avatar, state, properties);
+        self.resolved_weights.clone_from(&self.weights);
+        if let Some(look_at) = &avatar.look_at
+            && let Some(direction) = gaze_direction(look_at, skeleton, state, eye, pose, properties)
+        {
+            look_at.apply(direction, skeleton, pose, &mut self.resolved_weights);
         }
-        resolve_weights(&avatar.expressions, &mut self.shown);
-        apply_expressions(&avatar.expressions, &self.shown, pose, properties);
+        resolve_weights(&avatar.expressions, &mut self.resolved_weights);
+        apply_expressions(&avatar.expressions, &self.resolved_weights, pose, properties);
         for constraint in &avatar.constraints {
             constraint.apply(skeleton, pose);
         }
         if state.display.springs && !avatar.springs.joints().is_empty() {
-            self.swing(model, state, pose);
+            self.apply_springs(model, state, pose);
         }
     }
 
-    /// The clip's weights, replaced by those set manually.
-    fn set_weights(&mut self, avatar: &Avatar, state: &ViewerState, properties: &PropertyValues) {
+    /// Takes the clip's weights, or those set manually.
+    fn request_weights(&mut self, avatar: &Avatar, state: &ViewerState, properties: &PropertyValues) {
         self.weights.clear();
         self.weights.resize(avatar.expressions.len(), 0.0);
         for (target, value) in properties.iter() {
-            if let PropertyTarget::Expression(number) = target
-                && let Some(weight) = self.weights.get_mut(number)
+            if let PropertyTarget::Expression(index) = target
+                && let Some(weight) = self.weights.get_mut(index)
             {
                 *weight = value.x.clamp(0.0, 1.0);
             }
         }
         for (name, &weight) in &state.edits.expressions {
-            if let Some(number) = avatar.expression(name) {
-                self.weights[number] = weight;
+            if let Some(index) = avatar.expression(name) {
+                self.weights[index] = weight;
             }
         }
     }
 
-    fn swing(&mut self, model: &Model, state: &ViewerState, pose: &mut Pose) {
+    fn apply_springs(&mut self, model: &Model, state: &ViewerState, pose: &mut Pose) {
         let (skeleton, springs) = (&model.asset.skeleton, &model.asset.avatar.springs);
         let clip = active_clip(model, state);
         let range = clip.map_or(TimeRange::default(), |clip| play_range(model, clip, state));
         let repeats = state.playback.loop_mode == LoopMode::Loop;
-        if !self.springs_of.as_ref().is_some_and(|key| key.fits(model, state, clip, range, repeats)) {
+        if !self.springs_key.as_ref().is_some_and(|key| key.matches(model, state, clip, range, repeats)) {
             self.springs.restart(springs, range, repeats);
-            let (revision, joints) = (model.borrowed_revision(), state.edits.pose.clone());
-            let up = state.edits.up;
-            self.springs_of = Some(SpringsKey { model: model.id, revision, clip, range, repeats, up, joints });
+            self.springs_key = Some(SpringsKey::new(model, state, clip, range, repeats));
         }
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
         let mut motion = ClipMotion { model, state, clip, cursor: &mut self.cursor };
@@ -118,15 +111,46 @@ impl AvatarPose {
     }
 }
 
+/// Returns the yaw and pitch of the eyes, see [`LookAt::direction`]; `None` leaves them as the clip poses them.
+fn gaze_direction(
+    look_at: &LookAt,
+    skeleton: &Skeleton,
+    state: &ViewerState,
+    eye: Option<Vec3>,
+    pose: &Pose,
+    properties: &PropertyValues,
+) -> Option<[f32; 2]> {
+    let model_from_world = world_from_model(state.edits.up).inverse();
+    let towards = |point| look_at.direction(model_from_world.transform_point3(point), skeleton, pose);
+    match state.display.look_at {
+        LookTarget::Off => properties.get(PropertyTarget::LookAt).map(|angles| [angles.x, angles.y]),
+        LookTarget::Camera => eye.and_then(towards),
+        LookTarget::Point(point) => towards(point),
+    }
+}
+
 impl SpringsKey {
-    fn fits(&self, model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> bool {
+    fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
+        let (revision, up, joints) = (model.borrowed_revision(), state.edits.up, state.edits.pose.clone());
+        Self { model: model.id, revision, clip, range, repeats, up, joints }
+    }
+
+    /// Whether [`Self::new`] would return the same, without allocating.
+    fn matches(
+        &self,
+        model: &Model,
+        state: &ViewerState,
+        clip: Option<usize>,
+        range: TimeRange,
+        repeats: bool,
+    ) -> bool {
         (self.model, self.revision, self.clip) == (model.id, model.borrowed_revision(), clip)
             && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
             && self.joints == state.edits.pose
     }
 }
 
-/// The active clip with joints posed manually and constraints, without a crossfade.
+/// The active clip with manually posed joints and constraints, without a crossfade.
 struct ClipMotion<'a> {
     model: &'a Model,
     state: &'a ViewerState,
@@ -135,7 +159,7 @@ struct ClipMotion<'a> {
 }
 
 impl SpringMotion for ClipMotion<'_> {
-    /// Layers below the clip are sampled as in its first loop.
+    /// Samples the layers below the clip as in its first loop.
     fn pose_at(&mut self, time_secs: f64, pose: &mut Pose, world: &mut Vec<Affine3A>) {
         let skeleton = &self.model.asset.skeleton;
         sample_pose(self.model, self.clip, time_secs, time_secs, self.cursor, pose);

@@ -53,9 +53,9 @@ pub enum Command {
     },
     /// Returns all expressions to the clip.
     ClearExpressions,
-    /// Sets where the eyes of an avatar look.
+    /// Sets the target of an avatar's gaze.
     SetLookAt(LookTarget),
-    /// Sets whether the spring bones of an avatar swing.
+    /// Turns an avatar's spring bones on or off.
     SetSprings(bool),
     /// Poses a joint manually (index in the file; Euler angles in degrees from its rest pose); `None` returns it to the clip.
     SetPose {

@@ -8,7 +8,7 @@ use super::comparison::{comparison, pane_aspect};
 use super::playhead::{PoseSampler, active_clip, world_from_model};
 use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
-use crate::anim::{Pose, model_from_joint, model_from_one};
+use crate::anim::{Pose, model_from_joint, model_from_single_joint};
 use crate::library::{Library, Model};
 use crate::mesh::Bounds;
 
@@ -125,17 +125,17 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
 }
 
-/// Returns the camera's position in world space, in a pose of the active model. `travel` moves an orbit camera that
-/// follows the character.
+/// Returns the camera's position in world space for a pose of the active model. `travel` is added to an orbit camera
+/// that follows the character.
 pub fn camera_eye(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, pose: &Pose) -> Option<Vec3> {
-    let of_file = |camera: usize| {
+    let file_eye = |camera: usize| {
         let model = library.active()?;
         let joint = model.asset.cameras.get(camera)?.joint;
-        let model_from_camera = model_from_one(&model.asset.skeleton, pose, joint);
+        let model_from_camera = model_from_single_joint(&model.asset.skeleton, pose, joint);
         Some(world_from_model(state.edits.up).transform_point3a(model_from_camera.translation).into())
     };
     match state.camera {
-        CameraChoice::File(camera) => of_file(camera),
+        CameraChoice::File(camera) => file_eye(camera),
         _ => Some(resolve_camera(library, state, aspect).eye() + travel),
     }
 }

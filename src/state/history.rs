@@ -2,7 +2,7 @@
 
 use std::mem::Discriminant;
 
-use super::{Command, Overridden, ViewerState, apply};
+use super::{Command, SavedMotion, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 
 /// The undo and redo stacks, newest step last.
@@ -19,7 +19,7 @@ enum Step {
     /// Restores edits alone.
     Edits(ViewerState),
     /// Restores what was loaded, with its whole view.
-    View(ViewerState, Overridden, Loaded),
+    View(ViewerState, SavedMotion, Loaded),
     /// Restores the list of models.
     Listed(Vec<ModelId>),
 }
@@ -53,8 +53,8 @@ impl History {
     }
 
     /// Adds a step with what was loaded before something was opened, retargeted or removed.
-    pub fn opened(&mut self, state: ViewerState, overridden: Overridden, loaded: Loaded) {
-        self.begin(Step::View(state, overridden, loaded));
+    pub fn opened(&mut self, state: ViewerState, saved_motion: SavedMotion, loaded: Loaded) {
+        self.begin(Step::View(state, saved_motion, loaded));
     }
 
     /// Adds a step with the list of models before one was closed.
@@ -113,18 +113,18 @@ impl History {
     }
 
     /// Undoes the last step; returns false if there is none.
-    pub fn undo(&mut self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> bool {
+    pub fn undo(&mut self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.past.pop() else { return false };
-        self.future.push(step.take(state, overridden, library));
+        self.future.push(step.take(state, saved_motion, library));
         true
     }
 
     /// Redoes the last undone step; returns false if there is none.
-    pub fn redo(&mut self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> bool {
+    pub fn redo(&mut self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.future.pop() else { return false };
-        self.past.push(step.take(state, overridden, library));
+        self.past.push(step.take(state, saved_motion, library));
         true
     }
 }
@@ -136,19 +136,19 @@ impl Step {
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.
-    fn take(self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> Self {
+    fn take(self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> Self {
         match self {
             Self::Edits(edits) => {
                 let before = state.clone();
                 state.restore_undoable(&edits);
                 Self::Edits(before)
             }
-            Self::View(view, said, loaded) => {
-                let before = (state.clone(), *overridden, library.loaded());
+            Self::View(view, view_motion, loaded) => {
+                let before = Self::View(state.clone(), *saved_motion, library.loaded());
                 if library.restore(loaded) {
-                    (*state, *overridden) = (view, said);
+                    (*state, *saved_motion) = (view, view_motion);
                 }
-                Self::View(before.0, before.1, before.2)
+                before
             }
             Self::Listed(ids) => {
                 let before = library.listed();

@@ -72,6 +72,6 @@ pub struct KeyLight {
 }
 
 impl KeyLight {
-    /// As strong as the studio's own, from the same direction.
+    /// The studio's own key light.
     pub const STUDIO: Self = Self { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
 }

@@ -104,7 +104,7 @@ macro_rules! key {
     };
 }
 
-/// A key whose value is one of a table's words.
+/// A key whose values are the words of a table.
 macro_rules! word {
     ($name:literal, $group:ident.$field:ident, $words:ident, $expected:literal) => {
         key!($name, $group.$field, |text| from_word(&$words, text), |value| write_word(&$words, value), $expected)

@@ -47,6 +47,6 @@ pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::{active_variant, unknown_variant};
 pub use view::{
-    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, Overridden, PageOptions, Playback, Playhead,
-    RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
+    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
+    RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

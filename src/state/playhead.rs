@@ -78,15 +78,15 @@ pub struct PoseSampler {
 }
 
 impl PoseSampler {
-    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`] without a position of the camera.
+    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`] without a camera position.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         self.sample_motion(model, state);
         self.apply_avatar(model, state, None);
     }
 
-    /// Samples rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints set
-    /// manually. Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the buffers have
-    /// grown.
+    /// Samples the rest pose, layers below the clip, the clip, the crossfade from the previous clip, then manually
+    /// posed joints. A crossfade doesn't blend properties but switches them halfway. Allocates nothing once the buffers
+    /// have grown.
     pub fn sample_motion(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
@@ -113,7 +113,7 @@ impl PoseSampler {
     }
 
     /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
-    /// world space: eyes that look at the camera don't move without it. Allocates only when spring bones start over.
+    /// world space, without which the eyes don't follow the camera. Allocates only when the spring simulation restarts.
     pub fn apply_avatar(&mut self, model: &Model, state: &ViewerState, eye: Option<Vec3>) {
         self.avatar.apply(model, state, eye, &mut self.pose, &mut self.properties);
         for (&index, &weight) in &state.edits.morph {
@@ -123,13 +123,13 @@ impl PoseSampler {
         }
     }
 
-    /// The weights of the avatar's expressions, by the clip or set manually, before they override each other.
+    /// The weights of the avatar's expressions from the clip or set manually, before expressions override each other.
     pub fn expressions(&self) -> &[f32] {
         &self.avatar.weights
     }
 }
 
-/// Applies the joints set manually.
+/// Applies the rotations of manually posed joints.
 pub(super) fn pose_joints(model: &Model, state: &ViewerState, pose: &mut Pose) {
     for (&joint, &degrees) in &state.edits.pose {
         if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
@@ -169,7 +169,7 @@ pub(super) fn sample_pose(
     clip.sample(skeleton, time_secs as f32, cursor, pose);
 }
 
-/// The same with animated properties.
+/// Samples like [`sample_pose`], and the clip's animated properties.
 fn sample_clip(
     model: &Model,
     clip: Option<usize>,

@@ -1,8 +1,8 @@
-//! Names that a view asks for and the model lacks.
+//! Names in a view that the model doesn't have.
 
 use std::fmt;
 
-/// What a name names.
+/// What a name refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NameKind {
     /// A clip, by name or index.
@@ -11,22 +11,22 @@ pub enum NameKind {
     Variant,
 }
 
-/// A clip or a variant that was asked for and doesn't exist.
+/// A requested clip or variant that doesn't exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownName {
-    /// What was asked for.
+    /// What was requested.
     pub kind: NameKind,
-    /// The name or index that was given.
+    /// The requested name or index.
     pub name: String,
-    /// The names in the file.
+    /// The names that exist.
     pub names: Vec<String>,
 }
 
 impl UnknownName {
-    /// A file may have hundreds of clips.
+    /// Names to list: a file may have hundreds of clips.
     const MAX_NAMES: usize = 5;
 
-    /// What should have been given.
+    /// Describes a valid request.
     pub fn expected(&self) -> &'static str {
         match self.kind {
             NameKind::Clip => "the name or index of a clip",
@@ -34,9 +34,8 @@ impl UnknownName {
         }
     }
 
-    /// Returns the names that are most like the given one, all of them if there are few; in the order of the file if an index
-    /// was given.
-    fn nearest(&self) -> Vec<&str> {
+    /// Returns the most similar names, or the first ones if an index was requested. Few names stay in the file's order.
+    fn suggestions(&self) -> Vec<&str> {
         let wanted = beginning(&self.name);
         let similarity = |name: &String| strsim::jaro_winkler(&wanted, &beginning(name));
         let mut names: Vec<(f64, &str)> = self.names.iter().map(|name| (similarity(name), name.as_str())).collect();
@@ -55,7 +54,7 @@ impl fmt::Display for UnknownName {
             NameKind::Variant => "variants",
         };
         write!(f, "expected {}, found “{}”; ", self.expected(), self.name)?;
-        let names = self.nearest().join(", ");
+        let names = self.suggestions().join(", ");
         match self.names.len().saturating_sub(Self::MAX_NAMES) {
             _ if names.is_empty() => write!(f, "there are no {plural}"),
             0 => write!(f, "its {plural} are {names}"),
@@ -64,7 +63,7 @@ impl fmt::Display for UnknownName {
     }
 }
 
-/// The beginning of a name, in lower case, to compare with others. Names in links and files may be of any length.
+/// Returns the beginning of a name in lower case, for comparison: names in links and files may be of any length.
 fn beginning(name: &str) -> String {
     const MAX_CHARS: usize = 64;
     name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect()

@@ -1,9 +1,9 @@
-//! The material variant that is shown.
+//! The active material variant.
 
 use super::{NameKind, UnknownName, ViewerState};
 use crate::library::Model;
 
-/// Returns the index of the active material variant; `None` for the file's own materials and an unknown name.
+/// Returns the index of the active material variant; `None` for the file's own materials or an unknown name.
 pub fn active_variant(model: &Model, state: &ViewerState) -> Option<usize> {
     let name = state.edits.variant.as_ref()?;
     model.asset.variants.iter().position(|known| known == name)

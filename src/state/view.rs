@@ -76,11 +76,11 @@ impl ViewerState {
         self.camera_options.turntable != 0.0 && !matches!(self.camera, CameraChoice::File(_))
     }
 
-    /// Pauses the view and stops its turntable, for users who prefer reduced motion. Returns what it said.
-    pub fn calm(&mut self) -> Overridden {
+    /// Pauses the view and stops its turntable, for users who prefer reduced motion. Returns the replaced settings.
+    pub fn reduce_motion(&mut self) -> SavedMotion {
         let playing = Some(std::mem::take(&mut self.playback.playing));
         let turntable = Some(std::mem::take(&mut self.camera_options.turntable));
-        Overridden { playing, turntable }
+        SavedMotion { playing, turntable }
     }
 
     /// Returns the groups that undo covers.
@@ -99,12 +99,13 @@ impl ViewerState {
     }
 }
 
-/// What a view says about motion while the preference for reduced motion overrides it. `None`: the user has set it.
+/// A view's own settings of motion, for links, while the preference for reduced motion overrides them. `None` if it
+/// doesn't, or once the user has changed the setting.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Overridden {
+pub struct SavedMotion {
     /// Whether clips play.
     pub playing: Option<bool>,
-    /// Degrees per second.
+    /// Speed of the turntable in degrees per second.
     pub turntable: Option<f32>,
 }
 
@@ -150,7 +151,8 @@ pub struct RetargetEdits {
 pub struct Edits {
     /// Morph weights by index in `Pose::morph_weights`; they override the clip.
     pub morph: BTreeMap<usize, f32>,
-    /// Weights of expressions, 0 to 1, by [`Expression::name`](crate::avatar::Expression::name); they override the clip.
+    /// Weights of expressions, 0 to 1, by [`Expression::name`](crate::avatar::Expression::name); they override the
+    /// clip.
     pub expressions: BTreeMap<String, f32>,
     /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::manual_rotation`]. They override
     /// the clip.
@@ -226,9 +228,9 @@ pub struct Display {
     pub skinning: SkinningMode,
     /// What is drawn.
     pub show: Show,
-    /// Where the eyes of an avatar look.
+    /// The target of an avatar's gaze.
     pub look_at: LookTarget,
-    /// Whether the spring bones of an avatar swing.
+    /// Whether an avatar's spring bones are simulated.
     pub springs: bool,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,

@@ -116,8 +116,8 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. No clip means the rest
-/// pose, and `isEmpty` that the stage has no model.
+/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
+/// the rest pose; `isEmpty` is true without a model.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -241,8 +241,8 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
     }
 }
 
-/// Hands opened files to the app; resolves once they are on screen. The shell reports problems of links only, so any other
-/// `state` is a change of the current one.
+/// Hands opened files to the app; resolves once they are on screen. The shell reports the problems of links, and only
+/// of links, so a `state` whose problems it doesn't report is a change of the current one.
 async fn show(
     page: &Rc<Page>,
     mut contents: Contents,

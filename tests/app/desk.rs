@@ -9,7 +9,7 @@ use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::{App, Host, Inbox, Message, ScriptCall, Video, native_options};
-use gaitway::editor::{Contents, ExportedFile};
+use gaitway::editor::ExportedFile;
 use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
 use gaitway::state::{Command, ViewerState};
@@ -72,19 +72,9 @@ pub fn real(name: &str) -> Option<PathBuf> {
 impl Desk {
     /// Opens files or samples as one set.
     pub fn open(&mut self, files: &[PathBuf]) {
-        self.open_as(files, false);
-    }
-
-    /// Opens files or samples as the user does.
-    pub fn open_by_hand(&mut self, files: &[PathBuf]) {
-        self.open_as(files, true);
-    }
-
-    fn open_as(&mut self, files: &[PathBuf], is_by_hand: bool) {
         self.inbox.send(match read_paths(files, Role::Any) {
             Ok(contents) => {
-                let contents = Box::new(Contents { is_by_hand, ..contents });
-                Message::Opened { contents, state: None, is_change: false, reply: None }
+                Message::Opened { contents: Box::new(contents), state: None, is_change: false, reply: None }
             }
             Err(error) => Message::OpenFailed(error.to_string()),
         });
@@ -130,14 +120,14 @@ impl Desk {
         self.run_frames();
     }
 
-    /// Runs for most of a second, after which nothing may ask for another frame.
+    /// Runs for most of a second, after which nothing may request another frame.
     pub fn settle(&mut self) {
         self.harness.run_steps(45);
         let root = &self.harness.output().viewport_output[&egui::ViewportId::ROOT];
         assert!(root.repaint_delay.as_secs() > 1, "{:?}", root.repaint_delay);
     }
 
-    /// Returns what a script's screenshot shows.
+    /// Returns a screenshot taken by a script, as PNG.
     pub fn screenshot(&mut self) -> Vec<u8> {
         let png = Rc::new(RefCell::new(None));
         let taken = png.clone();

@@ -56,17 +56,17 @@ fn following_starts_and_stops_without_a_jump() {
     assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "no travel yet");
 }
 
-/// On adapters without multisampling, the picture gets its samples one frame after the other; on all others at once.
+/// Without multisampling, samples are added frame by frame; with it, the picture has them all at once.
 #[test]
 fn a_paused_picture_is_refined_and_then_left_alone() {
     let Some(mut desk) = desk("sample:walker") else { return };
     desk.settle();
     let settled = desk.screenshot();
-    // A screenshot doesn't wait: it is refined at once.
+    // A screenshot doesn't wait to be refined.
     desk.command(Command::SetExposure(1.0));
     assert!(desk.screenshot() != settled);
     desk.command(Command::SetExposure(0.0));
-    assert!(desk.screenshot() == settled, "the same view is the same picture");
+    assert!(desk.screenshot() == settled, "the same view gives the same picture");
     desk.settle();
-    assert!(desk.screenshot() == settled, "it stays as it is");
+    assert!(desk.screenshot() == settled, "the picture doesn't change any more");
 }

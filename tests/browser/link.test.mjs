@@ -129,11 +129,13 @@ for (const renderer of BACK_ENDS)
       fs.rmSync(path.join(folder, "late.glb"));
     });
 
-    onPage("applies the link to a dropped copy of a model that can't be loaded", () => fragment([["model", `${servers.own.origin}/gone/Fox.glb?v=1`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
+    const goneFox = () =>
+      fragment([["model", `${servers.own.origin}/gone/Fox.glb?v=1`], ["clip", "Run"], ["t", 0.5], ["play", 0]]);
+    onPage("applies the link to a dropped copy of a model that can't be loaded", goneFox, async (page) => {
       await whenMissing(page);
       assert.match((await missing(page)).join(), /Fox\.glb\?v=1: .*404/);
       await page.locator("#missing-continue").click();
-      assert.equal(await page.locator("#bring").isVisible(), false, "nobody is asked for it");
+      assert.equal(await page.locator("#bring").isVisible(), false, "the page doesn't ask for it");
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await until(page, async () => (await window.gaitway.state()).t === 0.5);
       await whenShown(page, FOX_VERTICES);

@@ -1,5 +1,5 @@
-//! The formulas of the lobes in `shaders/`, integrated over the hemisphere: no lobe adds energy, and light may travel either
-//! way. The functions are those of the shaders, line by line.
+//! The lobes' formulas in `shaders/`, integrated over the hemisphere: no lobe adds energy, and every BRDF is
+//! reciprocal. The functions here follow the shaders line by line.
 
 use std::f64::consts::PI;
 
@@ -47,7 +47,7 @@ fn schlick(cosine: f64) -> f64 {
     (1.0 - cosine).powi(5)
 }
 
-/// brdf.wgsl, without its bounds.
+/// As in brdf.wgsl, without its clamping.
 fn ggx(roughness: f64, half: DVec3, light: DVec3, view: DVec3) -> f64 {
     let alpha_squared = roughness.powi(4);
     let f = half.z * half.z * (alpha_squared - 1.0) + 1.0;
@@ -55,7 +55,7 @@ fn ggx(roughness: f64, half: DVec3, light: DVec3, view: DVec3) -> f64 {
     alpha_squared / (PI * f * f) * 0.5 / (masked(light.z, view.z) + masked(view.z, light.z))
 }
 
-/// anisotropy.wgsl, without its bounds.
+/// As in anisotropy.wgsl, without its clamping.
 fn anisotropic_ggx(roughness: f64, anisotropy: f64, half: DVec3, light: DVec3, view: DVec3) -> f64 {
     let alpha = roughness * roughness;
     let along = alpha + (1.0 - alpha) * anisotropy * anisotropy;
@@ -68,7 +68,7 @@ fn anisotropic_ggx(roughness: f64, anisotropy: f64, half: DVec3, light: DVec3, v
 }
 
 #[test]
-fn highlights_reflect_no_more_than_there_is_whichever_way_light_travels() {
+fn highlights_conserve_energy_and_are_reciprocal() {
     for roughness in ROUGHNESSES {
         for anisotropy in [0.0, 0.5, 1.0] {
             let brdf = |view: DVec3, light: DVec3| {
@@ -90,7 +90,7 @@ fn highlights_reflect_no_more_than_there_is_whichever_way_light_travels() {
     }
 }
 
-/// sheen.wgsl.
+/// As in sheen.wgsl.
 fn charlie_fit(x: f64, alpha: f64) -> f64 {
     let t = (1.0 - alpha) * (1.0 - alpha);
     let mix = |a: f64, b: f64| a + (b - a) * t;
@@ -99,13 +99,13 @@ fn charlie_fit(x: f64, alpha: f64) -> f64 {
     a / (1.0 + b * x.powf(c)) + d * x + e
 }
 
-/// sheen.wgsl.
+/// As in sheen.wgsl.
 fn charlie_masking(cosine: f64, alpha: f64) -> f64 {
     let near = charlie_fit(cosine.min(1.0 - cosine), alpha);
     if cosine >= 0.5 { (2.0 * charlie_fit(0.5, alpha) - near).exp() } else { near.exp() }
 }
 
-/// sheen.wgsl.
+/// As in sheen.wgsl.
 fn sheen_albedo(roughness: f64, cosine: f64) -> f64 {
     let powers = [roughness, roughness * roughness, 1.0 / roughness, 1.0 / (roughness * roughness)];
     let dot = |factors: [f64; 4]| factors.iter().zip(powers).map(|(a, b)| a * b).sum::<f64>();
@@ -115,7 +115,7 @@ fn sheen_albedo(roughness: f64, cosine: f64) -> f64 {
     (a + cosine * (b + cosine * c)).exp().min(1.0)
 }
 
-/// The fibres alone: sheen.wgsl's `sheen_light` over black, divided by the cosine.
+/// Only the fibres: `sheen_light` of sheen.wgsl over black, divided by the cosine.
 fn sheen(roughness: f64, view: DVec3, light: DVec3) -> f64 {
     let alpha = roughness * roughness;
     let half = (view + light).normalize().z;
@@ -139,9 +139,9 @@ fn the_albedo_of_sheen_is_the_integral_of_its_lobe() {
     assert!(sum / count < 0.008, "{}", sum / count);
 }
 
-/// White fibres over a white matte surface, as `sheen_light` adds them up.
+/// White fibres over a white matte surface, combined as by `sheen_light`.
 #[test]
-fn sheen_takes_from_what_is_below_what_it_reflects() {
+fn sheen_attenuates_what_is_below_it() {
     for roughness in [0.2, 0.4, 0.7, 1.0] {
         let both = |view: DVec3, light: DVec3| {
             let albedo = sheen_albedo(roughness, view.z).max(sheen_albedo(roughness, light.z.max(0.001)));
@@ -152,16 +152,16 @@ fn sheen_takes_from_what_is_below_what_it_reflects() {
             let view = direction(cosine, 0.0);
             let [alone, reflected] =
                 [integrate(|light| sheen(roughness, view, light)), integrate(|light| both(view, light))];
-            // The extension's lobe itself reflects up to 3 % more than white at the edge.
+            // At grazing angles the extension's lobe itself reflects up to 3 % more than it receives.
             let allowed = alone.max(1.0) + 0.03;
             assert!((0.5..=allowed).contains(&reflected), "{roughness} {cosine}: {reflected}");
         }
     }
 }
 
-/// brdf.wgsl's `reflect_light` with a white coat over white: the coat takes a fraction of what is below.
+/// A clear coat over white, combined as by `reflect_light` of brdf.wgsl.
 #[test]
-fn a_coat_replaces_what_it_reflects() {
+fn a_coat_attenuates_what_is_below_it() {
     for roughness in [0.3, 0.6, 1.0] {
         let coat = |view: DVec3| 0.04 + 0.96 * schlick(view.z);
         for cosine in COSINES {
@@ -175,10 +175,10 @@ fn a_coat_replaces_what_it_reflects() {
     }
 }
 
-/// What is not reflected is shared between the front, diffuse transmission and refraction. glTF's own sum of diffuse and
-/// specular reflection exceeds 1 at grazing angles, which lobes must not add to.
+/// Light that isn't reflected is shared between diffuse reflection, diffuse transmission and refraction. In glTF's core
+/// model, diffuse and specular reflection together already exceed 1 at grazing angles; the lobes must not add to that.
 #[test]
-fn surfaces_that_let_light_through_return_no_more_than_opaque_ones() {
+fn transmissive_surfaces_return_no_more_light_than_opaque_ones() {
     let returned = |view: DVec3, diffuse_transmission: f64, transmission: f64| {
         let half = |light: DVec3| (view + light).normalize();
         let fresnel = |light: DVec3| 0.04 + 0.96 * schlick(view.dot(half(light)));
@@ -202,7 +202,7 @@ fn surfaces_that_let_light_through_return_no_more_than_opaque_ones() {
     }
 }
 
-/// iridescence.wgsl.
+/// As in iridescence.wgsl.
 fn interference(path_nanometres: f64, shift: DVec3) -> DVec3 {
     let phase = 2.0 * PI * path_nanometres * 1e-9;
     let squared = phase * phase;
@@ -217,7 +217,7 @@ fn interference(path_nanometres: f64, shift: DVec3) -> DVec3 {
     )
 }
 
-/// iridescence.wgsl, for a grey base; without its last bounds.
+/// As in iridescence.wgsl for a grey base, without the final clamping.
 fn film_reflectance(film_ior: f64, cosine: f64, nanometres: f64, base: f64) -> DVec3 {
     let between = |a: f64, b: f64| ((a - b) / (a + b)).powi(2);
     let t = (nanometres / 0.03).clamp(0.0, 1.0);
@@ -244,21 +244,21 @@ fn a_thin_film_colours_reflections_without_adding_light() {
     let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
     for base in [0.04, 0.3, 0.9] {
         for cosine in COSINES {
-            // Without a film, the base is left. At grazing angles both surfaces are taken to reflect.
+            // A film of no thickness leaves only the base. At grazing angles the model counts both surfaces.
             let plain = base + (1.0 - base) * schlick(cosine);
             let found = film_reflectance(1.3, cosine, 0.0, base);
             let is_close = (luminance(found) - plain).abs() < 0.03;
             assert!(is_close || cosine < 0.8, "{base} {cosine}: {found} instead of {plain}");
             for nanometres in [100.0, 250.0, 400.0, 700.0, 1200.0] {
                 let found = film_reflectance(1.3, cosine, nanometres, base);
-                // Saturated colours lie outside Rec. 709, so the shader bounds each channel.
+                // Saturated colours lie outside Rec. 709, so the shader clamps each channel.
                 assert!((-0.05..=1.02).contains(&luminance(found)), "{base} {cosine} {nanometres}: {found}");
             }
         }
     }
     let colors = [250.0, 400.0].map(|nanometres| film_reflectance(1.8, 0.9, nanometres, 0.04));
     assert!(colors.iter().all(|color| color.max_element() > 1.3 * color.min_element()), "{colors:?}");
-    // A matching index of refraction leaves nothing to interfere: without contrast the film disappears.
+    // The film's index of refraction matches the base's, so nothing interferes and the film disappears.
     let [thin, thick] = [0.0, 5000.0].map(|nanometres| luminance(film_reflectance(1.5, 0.8, nanometres, 0.04)));
     assert!((thin - thick).abs() < 0.02, "{thin} {thick}");
 }

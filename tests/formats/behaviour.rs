@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::build_gltf::{Build, F32, I8, I16, U8, U16, U32, floats, shorts};
 
 fn read(build: Build) -> Asset {
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
+    build.loaded()
 }
 
 fn geometry(asset: &Asset) -> &Geometry {

@@ -13,7 +13,7 @@ fn with_extension(name: &str, extension: Value) -> Asset {
     build.json["nodes"] = json!([{ "name": "a", "children": [1] }, { "name": "b", "children": [2] }, { "name": "c" }]);
     build.json["extensionsUsed"] = json!([name]);
     build.json["extensions"] = json!({ name: extension });
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
+    build.loaded()
 }
 
 fn joint_name(asset: &Asset, slot: Slot) -> &str {

@@ -1,17 +1,16 @@
-//! EXT_mesh_gpu_instancing: where the copies are, and data that makes no sense.
+//! EXT_mesh_gpu_instancing: the transforms of the copies, limits, and invalid data.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-use gaitway::asset::Asset;
 use gaitway::formats::limits::Limit;
 use gaitway::formats::{convert, load};
 use gaitway::library::Model;
 use glam::Vec3;
 use serde_json::json;
 
-use crate::build_gltf::{Build, F32, I8, floats, one};
+use crate::build_gltf::{Build, F32, I8, floats, one, warnings};
 
-/// Adds a copy of the triangle at each of these points.
+/// The triangle, copied to each of these points.
 fn copied(points: &[f32]) -> Build {
     let mut build = Build::triangle();
     let translation = build.accessor(F32, "VEC3", points.len() / 3, &floats(points));
@@ -23,12 +22,8 @@ fn with_attribute(build: &mut Build, name: &str, accessor: usize) {
     build.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"][name] = json!(accessor);
 }
 
-fn read(build: Build) -> Asset {
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
-}
-
 #[test]
-fn each_copy_has_a_place_of_its_own() {
+fn each_copy_has_its_own_transform() {
     let mut build = copied(&[0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
     build.json["nodes"][0]["translation"] = json!([0.0, 0.0, 100.0]);
     let turns = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
@@ -36,7 +31,7 @@ fn each_copy_has_a_place_of_its_own() {
     with_attribute(&mut build, "ROTATION", rotation);
     let scale = build.accessor(F32, "VEC3", 2, &floats(&[1.0, 1.0, 1.0, 1.0, 3.0, 1.0]));
     with_attribute(&mut build, "SCALE", scale);
-    let asset = read(build);
+    let asset = build.loaded();
     assert!(asset.warnings.is_empty());
     let [first, second] = &asset.instances[..] else { panic!("{:?}", asset.instances) };
     assert_eq!((first.joint, first.mesh), (second.joint, second.mesh));
@@ -55,27 +50,27 @@ fn rotations_may_be_normalized_integers() {
     let rotation = build.accessor(I8, "VEC4", 1, &[0, 0, 90, 90]);
     build.json["accessors"][rotation]["normalized"] = json!(true);
     with_attribute(&mut build, "ROTATION", rotation);
-    let turned = read(build).instances[0].joint_from_mesh.transform_point3(Vec3::X);
+    let turned = build.loaded().instances[0].joint_from_mesh.transform_point3(Vec3::X);
     assert!(turned.distance(Vec3::Y) < 1e-3, "{turned}");
 }
 
 #[test]
-fn no_copies_draw_nothing() {
+fn a_mesh_with_no_copies_is_not_drawn() {
     let mut build = Build::triangle();
     build.accessor(F32, "VEC3", 0, &[]);
     with_attribute(&mut build, "TRANSLATION", 1);
-    assert!(read(build).instances.is_empty());
+    assert!(build.loaded().instances.is_empty());
 }
 
 #[test]
-fn what_makes_no_sense_is_drawn_once() {
+fn a_mesh_with_invalid_instancing_is_drawn_once() {
     let place = "nodes[0].extensions.EXT_mesh_gpu_instancing";
-    let check = |build: Build, says: &str| {
-        let asset = read(build);
-        let warnings: Vec<String> = asset.warnings.iter().map(ToString::to_string).collect();
-        let is_said = |warning: &String| warning.contains(place) && warning.contains(says);
-        assert!(matches!(&warnings[..], [warning] if is_said(warning)), "{says}: {warnings:?}");
-        assert_eq!(asset.instances.len(), 1, "{says}");
+    let check = |build: Build, expected: &str| {
+        let asset = build.loaded();
+        let warnings = warnings(&asset);
+        let is_expected = |warning: &String| warning.contains(place) && warning.contains(expected);
+        assert!(matches!(&warnings[..], [warning] if is_expected(warning)), "{expected}: {warnings:?}");
+        assert_eq!(asset.instances.len(), 1, "{expected}");
     };
     let mut none = Build::triangle();
     with_attribute(&mut none, "_ID", 0);
@@ -98,7 +93,7 @@ fn what_makes_no_sense_is_drawn_once() {
 }
 
 #[test]
-fn copies_count_as_nodes_and_as_drawn_vertices() {
+fn copies_count_towards_the_limits_of_nodes_and_drawn_vertices() {
     let zeros = |count: usize| json!({ "componentType": F32, "type": "VEC3", "count": count });
     let with = |vertices: usize, copies: usize| {
         let mut build = Build::triangle();

@@ -1,4 +1,4 @@
-//! The extensions that add lobes to materials: what is read, and what becomes of bad values.
+//! Material extensions that add lobes: what is read, and how invalid values are handled.
 
 use gaitway::anim::TextureSlot;
 use gaitway::asset::Asset;
@@ -6,15 +6,19 @@ use gaitway::mesh::{Lobes, Material};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
-use crate::build_gltf::Build;
+use crate::build_gltf::{Build, warnings};
 
-/// Loads the triangle with a material that has these members, and 20 textures.
-fn read(material: Value) -> Asset {
+/// The triangle with this material, in a file with 20 textures.
+pub fn triangle_of(material: Value) -> Build {
     let mut build = Build::triangle();
     build.json["meshes"][0]["primitives"][0]["material"] = json!(0);
     build.json["materials"] = json!([material]);
     build.json["textures"] = Value::Array(vec![json!({}); 20]);
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
+    build
+}
+
+fn read(material: Value) -> Asset {
+    triangle_of(material).loaded()
 }
 
 fn extended(extensions: Value) -> Asset {
@@ -23,10 +27,6 @@ fn extended(extensions: Value) -> Asset {
 
 fn lobes(asset: &Asset) -> &Lobes {
     asset.materials[0].lobes.as_deref().expect("lobes")
-}
-
-fn warnings(asset: &Asset) -> Vec<String> {
-    asset.warnings.iter().map(ToString::to_string).collect()
 }
 
 #[test]
@@ -78,27 +78,35 @@ fn every_factor_is_read() {
 
 #[test]
 fn every_texture_is_read_with_its_transform() {
-    let places = [
-        (TextureSlot::Specular, "KHR_materials_specular", "specularTexture"),
-        (TextureSlot::SpecularColor, "KHR_materials_specular", "specularColorTexture"),
-        (TextureSlot::Clearcoat, "KHR_materials_clearcoat", "clearcoatTexture"),
-        (TextureSlot::ClearcoatRoughness, "KHR_materials_clearcoat", "clearcoatRoughnessTexture"),
-        (TextureSlot::ClearcoatNormal, "KHR_materials_clearcoat", "clearcoatNormalTexture"),
-        (TextureSlot::SheenColor, "KHR_materials_sheen", "sheenColorTexture"),
-        (TextureSlot::SheenRoughness, "KHR_materials_sheen", "sheenRoughnessTexture"),
-        (TextureSlot::Iridescence, "KHR_materials_iridescence", "iridescenceTexture"),
-        (TextureSlot::IridescenceThickness, "KHR_materials_iridescence", "iridescenceThicknessTexture"),
-        (TextureSlot::Anisotropy, "KHR_materials_anisotropy", "anisotropyTexture"),
-        (TextureSlot::Transmission, "KHR_materials_transmission", "transmissionTexture"),
-        (TextureSlot::Thickness, "KHR_materials_volume", "thicknessTexture"),
-        (TextureSlot::DiffuseTransmission, "KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"),
+    use TextureSlot as Slot;
+    let extensions = [
+        ("specular", vec![(Slot::Specular, "specular"), (Slot::SpecularColor, "specularColor")]),
         (
-            TextureSlot::DiffuseTransmissionColor,
-            "KHR_materials_diffuse_transmission",
-            "diffuseTransmissionColorTexture",
+            "clearcoat",
+            vec![
+                (Slot::Clearcoat, "clearcoat"),
+                (Slot::ClearcoatRoughness, "clearcoatRoughness"),
+                (Slot::ClearcoatNormal, "clearcoatNormal"),
+            ],
+        ),
+        ("sheen", vec![(Slot::SheenColor, "sheenColor"), (Slot::SheenRoughness, "sheenRoughness")]),
+        ("iridescence", vec![(Slot::Iridescence, "iridescence"), (Slot::IridescenceThickness, "iridescenceThickness")]),
+        ("anisotropy", vec![(Slot::Anisotropy, "anisotropy")]),
+        ("transmission", vec![(Slot::Transmission, "transmission")]),
+        ("volume", vec![(Slot::Thickness, "thickness")]),
+        (
+            "diffuse_transmission",
+            vec![
+                (Slot::DiffuseTransmission, "diffuseTransmission"),
+                (Slot::DiffuseTransmissionColor, "diffuseTransmissionColor"),
+            ],
         ),
     ];
-    for (index, (slot, extension, member)) in places.into_iter().enumerate() {
+    let textures = extensions
+        .into_iter()
+        .flat_map(|(extension, textures)| textures.into_iter().map(move |(slot, name)| (extension, slot, name)));
+    for (index, (extension, slot, name)) in textures.enumerate() {
+        let (extension, member) = (format!("KHR_materials_{extension}"), &*format!("{name}Texture"));
         let transform = json!({ "KHR_texture_transform": { "offset": [0.5, 0.25] } });
         let texture = json!({ "index": index, "texCoord": 1, "scale": 0.7, "extensions": transform });
         let asset = extended(json!({ extension: { member: texture } }));
@@ -114,32 +122,25 @@ fn every_texture_is_read_with_its_transform() {
 }
 
 #[test]
-fn bad_values_are_reported_and_become_the_default() {
-    for (extensions, place) in [
-        (json!({ "KHR_materials_ior": { "ior": "glass" } }), "materials[0].extensions.KHR_materials_ior.ior"),
-        (json!({ "KHR_materials_ior": { "ior": 1e300 } }), "materials[0].extensions.KHR_materials_ior.ior"),
-        (json!({ "KHR_materials_ior": [1.4] }), "materials[0].extensions.KHR_materials_ior"),
-        (
-            json!({ "KHR_materials_sheen": { "sheenColorFactor": [1, 1] } }),
-            "materials[0].extensions.KHR_materials_sheen.sheenColorFactor",
-        ),
-        (
-            json!({ "KHR_materials_clearcoat": { "clearcoatTexture": { "index": 99 } } }),
-            "materials[0].extensions.KHR_materials_clearcoat.clearcoatTexture.index",
-        ),
-        (
-            json!({ "KHR_materials_clearcoat": { "clearcoatTexture": 3 } }),
-            "materials[0].extensions.KHR_materials_clearcoat.clearcoatTexture",
-        ),
+fn invalid_values_are_reported_and_replaced_by_the_default() {
+    for (extension, value, place) in [
+        ("ior", json!({ "ior": "glass" }), ".ior"),
+        ("ior", json!({ "ior": 1e300 }), ".ior"),
+        ("ior", json!([1.4]), ""),
+        ("sheen", json!({ "sheenColorFactor": [1, 1] }), ".sheenColorFactor"),
+        ("clearcoat", json!({ "clearcoatTexture": { "index": 99 } }), ".clearcoatTexture.index"),
+        ("clearcoat", json!({ "clearcoatTexture": 3 }), ".clearcoatTexture"),
     ] {
-        let asset = extended(extensions);
+        let extension = format!("KHR_materials_{extension}");
+        let place = format!("materials[0].extensions.{extension}{place}");
+        let asset = extended(json!({ extension: value }));
         let warnings = warnings(&asset);
-        assert!(matches!(&warnings[..], [warning] if warning.starts_with(place)), "{warnings:?}");
+        assert!(matches!(&warnings[..], [warning] if warning.starts_with(&place)), "{warnings:?}");
         assert_eq!(asset.materials[0].lobes.clone().unwrap_or_default(), Box::default());
     }
 }
 
-/// Reflectance at normal incidence and diffuse colour are the file's, and glossiness stays in its texture.
+/// Keeps the diffuse colour and the reflectance at normal incidence; glossiness stays in the specular texture.
 #[test]
 fn specular_glossiness_becomes_a_dielectric() {
     let asset = read(json!({
@@ -170,14 +171,17 @@ fn specular_glossiness_becomes_a_dielectric() {
 }
 
 #[test]
-fn of_too_many_textures_the_least_visible_are_dropped() {
+fn the_least_visible_of_too_many_textures_are_dropped() {
     let texture = |index: usize| json!({ "index": index });
     let mut material = json!({
         "pbrMetallicRoughness": { "baseColorTexture": texture(0), "metallicRoughnessTexture": texture(1) },
         "normalTexture": texture(2), "occlusionTexture": texture(3), "emissiveTexture": texture(4),
         "extensions": {
             "KHR_materials_clearcoat": {
-                "clearcoatTexture": texture(5), "clearcoatRoughnessTexture": texture(6), "clearcoatNormalTexture": texture(7) },
+                "clearcoatTexture": texture(5),
+                "clearcoatRoughnessTexture": texture(6),
+                "clearcoatNormalTexture": texture(7),
+            },
         },
     });
     assert_eq!(warnings(&read(material.clone())), [""; 0]);

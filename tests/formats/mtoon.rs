@@ -1,4 +1,4 @@
-//! MToon of VRM 1.0 and 0.x: what is read, and what becomes of bad values.
+//! MToon of VRM 1.0 and 0.x: what is read, and how invalid values are handled.
 
 use gaitway::anim::{MaterialProperty, PropertyTarget, TextureSlot, ToonColor};
 use gaitway::asset::Asset;
@@ -7,22 +7,13 @@ use gaitway::mesh::{AlphaMode, Lobes, Material, OutlineMode, Toon};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
-use crate::build_gltf::Build;
+use crate::build_gltf::{Build, warnings};
 use crate::data_folder::data_folder;
+use crate::lobes::triangle_of;
 use crate::sweep::file_set;
 
-/// Loads the triangle with this material, these extensions of the file, and 20 textures.
-fn read(material: Value, extensions: Value) -> Asset {
-    let mut build = Build::triangle();
-    build.json["meshes"][0]["primitives"][0]["material"] = json!(0);
-    build.json["materials"] = json!([material]);
-    build.json["textures"] = Value::Array(vec![json!({}); 20]);
-    build.json["extensions"] = extensions;
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
-}
-
 fn mtoon(value: Value) -> Asset {
-    read(json!({ "extensions": { "VRMC_materials_mtoon": value } }), json!({}))
+    triangle_of(json!({ "extensions": { "VRMC_materials_mtoon": value } })).loaded()
 }
 
 fn toon(asset: &Asset) -> &Toon {
@@ -31,10 +22,6 @@ fn toon(asset: &Asset) -> &Toon {
 
 fn texture(material: &Material, slot: TextureSlot) -> Option<usize> {
     material.texture(slot).map(|texture| texture.texture)
-}
-
-fn warnings(asset: &Asset) -> Vec<String> {
-    asset.warnings.iter().map(ToString::to_string).collect()
 }
 
 #[test]
@@ -79,17 +66,18 @@ fn every_value_of_vrm_1_is_read() {
 }
 
 #[test]
-fn mtoon_replaces_what_it_falls_back_to() {
-    let asset = read(
-        json!({
-            "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 1 }, "baseColorTexture": { "index": 2 } },
-            "occlusionTexture": { "index": 3 },
-            "emissiveFactor": [0.5, 0.5, 0.5],
-            "extensions": {
-                "KHR_materials_unlit": {}, "KHR_materials_clearcoat": { "clearcoatFactor": 1 }, "VRMC_materials_mtoon": {} },
-        }),
-        json!({}),
-    );
+fn mtoon_replaces_its_fallback_extensions_and_textures() {
+    let with_fallbacks = triangle_of(json!({
+        "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 1 }, "baseColorTexture": { "index": 2 } },
+        "occlusionTexture": { "index": 3 },
+        "emissiveFactor": [0.5, 0.5, 0.5],
+        "extensions": {
+            "KHR_materials_unlit": {},
+            "KHR_materials_clearcoat": { "clearcoatFactor": 1 },
+            "VRMC_materials_mtoon": {},
+        },
+    }));
+    let asset = with_fallbacks.loaded();
     let material = &asset.materials[0];
     assert_eq!((material.unlit, &material.lobes), (false, &None::<Box<Lobes>>));
     let slots = [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Occlusion];
@@ -98,7 +86,7 @@ fn mtoon_replaces_what_it_falls_back_to() {
 }
 
 #[test]
-fn bad_values_are_reported_and_become_the_default() {
+fn invalid_values_are_reported_and_replaced_by_the_default() {
     for (value, place) in [
         (json!([]), ""),
         (json!({ "shadeColorFactor": [1, 1] }), ".shadeColorFactor"),
@@ -117,10 +105,12 @@ fn bad_values_are_reported_and_become_the_default() {
     assert!(matches!(&moving[..], [warning] if warning.contains("move")), "{moving:?}");
 }
 
-/// A file of VRM 0.x whose only material has these properties.
+/// A VRM 0.x file with a single material that has these properties, and these blend shape groups.
 fn vrm_0(properties: Value, groups: Value) -> Asset {
     let vrm = json!({ "materialProperties": [properties], "blendShapeMaster": { "blendShapeGroups": groups } });
-    read(json!({ "name": "skin", "extensions": { "KHR_materials_unlit": {} } }), json!({ "VRM": vrm }))
+    let mut build = triangle_of(json!({ "name": "skin", "extensions": { "KHR_materials_unlit": {} } }));
+    build.json["extensions"] = json!({ "VRM": vrm });
+    build.loaded()
 }
 
 #[track_caller]
@@ -167,14 +157,14 @@ fn vrm_0_is_converted() {
     for (number, slot) in slots.into_iter().enumerate() {
         assert_eq!(texture(material, slot), Some(number + 1), "{slot:?}");
         let transform = material.texture(slot).expect("a texture").uv_transform;
-        // Unity's coordinates start at the bottom.
+        // Unity's texture coordinates start at the bottom.
         let (offset, scale) = match slot {
             TextureSlot::Matcap => (Vec2::ZERO, Vec2::ONE),
             _ => (Vec2::new(0.125, 0.5), Vec2::new(0.5, 0.25)),
         };
         assert_eq!((transform.offset, transform.scale), (offset, scale), "{slot:?}");
     }
-    // Unity's boundary reaches from the shift to where it is lit, here 0.2 to 0.6.
+    // Unity's shade boundary reaches from the shift to where the surface is fully lit, here 0.2 to 0.6.
     close(toon.shading_toony, 0.8);
     close(toon.shading_shift, -0.4);
     close(toon.gi_equalization, 0.75);
@@ -188,7 +178,7 @@ fn vrm_0_is_converted() {
     assert_eq!((bind.rest, bind.rest + bind.delta), (Vec4::Y * half, Vec4::new(1.0, half, 0.0, 0.0)));
 }
 
-/// UniVRM's file for this: what MToon emits at 0.5 looks like unlit 0.5, in linear space.
+/// In UniVRM's own test file, MToon's emission of 0.5 looks like an unlit 0.5 in linear space.
 #[test]
 fn emission_of_vrm_0_is_linear() {
     let Some(data) = data_folder() else { return };
@@ -207,9 +197,9 @@ fn other_shaders_of_vrm_0_keep_the_gltf_material() {
         vrm_0(json!({ "shader": "VRM_USE_GLTFSHADER", "vectorProperties": { "_Color": [0, 0, 0, 1] } }), json!([]));
     let material = &asset.materials[0];
     assert_eq!((material.base_color, material.unlit, material.toon.is_none()), (Vec4::ONE, true, true));
-    // Missing and wrong values are Unity's defaults.
-    let odd = json!({ "shader": "VRM/MToon", "floatProperties": [], "vectorProperties": { "_Color": "red" } });
-    let asset = vrm_0(odd, json!([]));
+    // Missing and invalid values are replaced by Unity's defaults.
+    let invalid = json!({ "shader": "VRM/MToon", "floatProperties": [], "vectorProperties": { "_Color": "red" } });
+    let asset = vrm_0(invalid, json!([]));
     close(toon(&asset).shading_toony, 0.95);
     close(toon(&asset).shade_color.x, 0.97_f32.powf(2.2));
     assert_eq!((asset.materials[0].base_color, toon(&asset).outline_mode), (Vec4::ONE, OutlineMode::None));
@@ -232,6 +222,6 @@ fn colours_and_texture_transforms_can_be_animated() {
     let asset = build.load().expect("a valid file");
     let found: Vec<String> =
         asset.clips[0].properties().iter().map(|channel| pointer_to(channel.target, &asset)).collect();
-    // Ordered by property. The other material has no such colour.
+    // Ordered by property. The second material is not MToon, so its pointer is ignored.
     assert_eq!(found, [pointers[1], pointers[0]]);
 }

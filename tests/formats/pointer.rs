@@ -38,7 +38,7 @@ pub fn pointers() -> Build {
 }
 
 fn read(build: Build) -> Asset {
-    build.load().unwrap_or_else(|problem| panic!("{problem}"))
+    build.loaded()
 }
 
 fn warnings(asset: &Asset, code: &str) -> Vec<String> {

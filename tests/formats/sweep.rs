@@ -216,13 +216,13 @@ fn the_validators_valid_files_load() {
     }
 }
 
-/// The FBX files that must be refused, each with a part of the message.
+/// The FBX files that can't be converted, each with part of its error message.
 const REFUSED_FBX: &[(&str, &str)] = &[
     ("fbx/assimp/transparentTest.fbx", "zero bytes were changed"),
     ("fbx/ufbx/motionbuilder_actor_7700_binary.fbx", "has no objects"),
 ];
 
-/// Whether the conversion is right is tested in parts/fbx; here, that its result is loaded and called FBX.
+/// parts/fbx tests the conversion itself; here, its result must load, and its format must be FBX.
 #[test]
 fn fbx_files_load_or_are_refused_as_listed() {
     sweep(&["threejs", "cosc422/original", "fbx"], &["fbx"], |name, result| {

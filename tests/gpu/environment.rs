@@ -10,10 +10,10 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, Scene};
 
-/// What Khronos Neutral makes of white: 0.96 is compressed to 0.869, which sRGB encodes as 240.
+/// White, tone-mapped by Khronos Neutral: 0.96 is compressed to 0.869, which sRGB encodes as 240.
 pub const WHITE: u8 = 240;
 
-/// A sphere at a place in the picture.
+/// A sphere at a point of the picture.
 pub fn sphere(center: Vec2, radius: f32, material: usize) -> Geometry {
     const RINGS: u32 = 16;
     const AROUND: u32 = 32;
@@ -55,14 +55,19 @@ pub fn drawn_pixels(picture: &Picture) -> Vec<[u8; 4]> {
     picture.0.as_chunks::<4>().0.iter().copied().filter(|pixel| pixel[3] > 0).collect()
 }
 
+/// Checks that all that is drawn has this shade of grey.
+pub fn check_shade(picture: &Picture, shade: u8, what: &str) {
+    let drawn = drawn_pixels(picture);
+    assert!(drawn.len() > 300, "{}, {what}", drawn.len());
+    for pixel in drawn {
+        assert!(pixel[..3].iter().all(|channel| channel.abs_diff(shade) <= 2), "{pixel:?}, {what}");
+    }
+}
+
 fn check_furnace(gpu: &Gpu) {
     let mut scene = spheres(Vec3::ONE);
     scene.frame.look.light = LightSetup::White;
-    let drawn = drawn_pixels(&scene.draw(gpu));
-    assert!(drawn.len() > 300, "{}", drawn.len());
-    for pixel in drawn {
-        assert!(pixel[..3].iter().all(|channel| channel.abs_diff(WHITE) <= 2), "{pixel:?}");
-    }
+    check_shade(&scene.draw(gpu), WHITE, "white light");
 }
 
 /// The white furnace: nothing that is white absorbs light or adds to it, whatever its roughness, metal or not.
@@ -91,9 +96,7 @@ fn check_panorama(gpu: &Gpu) {
     // A panorama that is white all around is the white furnace.
     let mut scene = spheres(Vec3::ONE);
     scene.frame.panorama = Some(Arc::new(Panorama::new(2, 1, vec![Vec3::ONE; 2]).unwrap()));
-    for pixel in drawn_pixels(&scene.draw(gpu)) {
-        assert!(pixel[..3].iter().all(|channel| channel.abs_diff(WHITE) <= 2), "{pixel:?}");
-    }
+    check_shade(&scene.draw(gpu), WHITE, "white panorama");
     // The camera looks along −Z; mirrors and matte surfaces see what is behind it.
     scene.frame.panorama = Some(Arc::new(four_sides()));
     let red_green_blue = |pixel: [u8; 4]| [0, 1, 2].map(|channel| pixel[channel] > 160);

@@ -1,4 +1,4 @@
-//! MToon: two colours, a rim, a matcap and an outline, each by itself in plain light.
+//! MToon: lit and shade colour, rim, matcap and outline, each on its own in simple light.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ fn toon(toon: Toon) -> Material {
     material
 }
 
-/// The half-wide sphere in the middle with texture coordinates, and an image.
+/// A sphere half as wide as the picture, with the same texture coordinates everywhere, and an image for its material.
 fn scene(material: Material, width: u32, pixels: &[[u8; 4]]) -> Scene {
     let mut ball: Geometry = sphere(Vec2::ZERO, 0.5, 0);
     ball.uvs[0] = vec![Vec2::splat(0.25); ball.positions.len()];
@@ -37,7 +37,7 @@ fn scene(material: Material, width: u32, pixels: &[[u8; 4]]) -> Scene {
     scene
 }
 
-/// In a light from the right that shows colours as they are, without an environment.
+/// Replaces the light by one from the right, so bright that lit surfaces have exactly their base colour.
 fn from_right(mut scene: Scene) -> Scene {
     scene.frame.lights = vec![FrameLight {
         kind: LightKind::Directional,
@@ -54,8 +54,8 @@ fn shown(gpu: &Gpu, material: Material) -> Picture {
     from_right(scene(material, 1, &[[255; 4]])).draw(gpu)
 }
 
-/// In sRGB.
-fn display(linear: Vec3) -> [u8; 4] {
+/// Encodes a linear colour as sRGB.
+fn srgb(linear: Vec3) -> [u8; 4] {
     let encode = |x: f32| if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
     let [r, g, b] = linear.to_array().map(|x| (255.0 * encode(x.min(1.0))).round() as u8);
     [r, g, b, 255]
@@ -63,24 +63,24 @@ fn display(linear: Vec3) -> [u8; 4] {
 
 fn check_two_colors(gpu: &Gpu) {
     let picture = shown(gpu, toon(Toon::default()));
-    near(picture.at(0.35, 0.1), display(BASE), 1);
-    near(picture.at(0.1, 0.1), display(BASE), 1);
-    near(picture.at(-0.1, 0.1), display(SHADE), 1);
-    near(picture.at(-0.35, 0.1), display(SHADE), 1);
+    near(picture.at(0.35, 0.1), srgb(BASE), 1);
+    near(picture.at(0.1, 0.1), srgb(BASE), 1);
+    near(picture.at(-0.1, 0.1), srgb(SHADE), 1);
+    near(picture.at(-0.35, 0.1), srgb(SHADE), 1);
 }
 
 #[test]
-fn a_light_has_a_lit_and_a_shaded_side() {
+fn surfaces_have_a_lit_and_a_shaded_side() {
     let Some(gpu) = gpu() else { return };
     check_two_colors(&gpu);
-    // Shifted, the light reaches further round: at x = -0.1 the cosine is about -0.2.
+    // A shading shift extends the lit side: at x = -0.1 the cosine is about -0.2.
     let shifted = shown(&gpu, toon(Toon { shading_shift: 0.4, ..Toon::default() }));
-    near(shifted.at(-0.1, 0.1), display(BASE), 1);
-    near(shifted.at(-0.35, 0.1), display(SHADE), 1);
+    near(shifted.at(-0.1, 0.1), srgb(BASE), 1);
+    near(shifted.at(-0.35, 0.1), srgb(SHADE), 1);
 }
 
 #[test]
-fn a_light_has_a_lit_and_a_shaded_side_with_opengl() {
+fn surfaces_have_a_lit_and_a_shaded_side_with_opengl() {
     let Some(gpu) = gl() else { return };
     check_two_colors(&gpu);
     check_outline(&gpu);
@@ -95,21 +95,21 @@ fn textures_change_the_shade_and_its_boundary() {
         from_right(scene(material, 1, &[pixel])).draw(&gpu)
     };
     let red_shade = with(TextureSlot::ShadeMultiply, [255, 0, 0, 255], Toon::default());
-    near(red_shade.at(-0.35, 0.1), display(SHADE * Vec3::X), 1);
-    near(red_shade.at(0.35, 0.1), display(BASE), 1);
+    near(red_shade.at(-0.35, 0.1), srgb(SHADE * Vec3::X), 1);
+    near(red_shade.at(0.35, 0.1), srgb(BASE), 1);
     let scaled = Toon { shading_shift_scale: -3.0, ..Toon::default() };
     let all_shade = with(TextureSlot::ShadingShift, [255, 0, 0, 255], scaled);
-    near(all_shade.at(0.35, 0.1), display(SHADE), 1);
+    near(all_shade.at(0.35, 0.1), srgb(SHADE), 1);
 }
 
 #[test]
-fn ambient_light_shows_the_base_colour_alone() {
+fn ambient_light_shows_only_the_base_colour() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene(toon(Toon::default()), 1, &[[255; 4]]);
     scene.frame.look.light = LightSetup::White;
     let picture = scene.draw(&gpu);
-    near(picture.at(0.3, 0.1), display(BASE), 2);
-    near(picture.at(-0.3, -0.1), display(BASE), 2);
+    near(picture.at(0.3, 0.1), srgb(BASE), 2);
+    near(picture.at(-0.3, -0.1), srgb(BASE), 2);
 }
 
 #[test]
@@ -118,9 +118,9 @@ fn rim_and_matcap_are_added() {
     let glow = Vec3::new(0.0, 0.2, 0.3);
     // Lifted by 1, the rim is everywhere.
     let rim = Toon { rim_color: glow, rim_lift: 1.0, rim_lighting_mix: 0.0, ..Toon::default() };
-    near(shown(&gpu, toon(rim)).at(-0.35, 0.1), display(SHADE + glow), 1);
+    near(shown(&gpu, toon(rim)).at(-0.35, 0.1), srgb(SHADE + glow), 1);
     let narrow = shown(&gpu, toon(Toon { rim_lift: 0.0, rim_fresnel_power: 8.0, ..rim }));
-    near(narrow.at(-0.1, 0.1), display(SHADE), 1);
+    near(narrow.at(-0.1, 0.1), srgb(SHADE), 1);
     let mut matcap = toon(Toon { rim_lighting_mix: 0.0, ..Toon::default() });
     *matcap.texture_mut(TextureSlot::Matcap).unwrap() = MAP;
     matcap.base_color = Vec4::W;
@@ -144,16 +144,16 @@ fn check_outline(gpu: &Gpu) {
     // The picture is two metres high.
     for material in [outlined(OutlineMode::World, 0.2), outlined(OutlineMode::Screen, 0.1)] {
         let picture = shown(gpu, material);
-        near(picture.at(0.35, 0.0), display(BASE), 1);
+        near(picture.at(0.35, 0.0), srgb(BASE), 1);
         for (x, y) in [(0.6, 0.0), (-0.6, 0.0), (0.0, 0.6), (0.0, -0.6)] {
-            near(picture.at(x, y), display(LINE), 1);
+            near(picture.at(x, y), srgb(LINE), 1);
         }
         assert_eq!(picture.at(0.8, 0.0), [0; 4]);
     }
 }
 
 #[test]
-fn an_outline_goes_round_the_surface() {
+fn an_outline_surrounds_the_surface() {
     let Some(gpu) = gpu() else { return };
     check_outline(&gpu);
     let without = shown(&gpu, toon(Toon::default())).covered();
@@ -165,7 +165,7 @@ fn an_outline_goes_round_the_surface() {
         let picture = from_right(scene(masked.clone(), 1, &[[0, green, 0, 255]])).draw(&gpu);
         assert_eq!(picture.covered() > without, has_outline);
     }
-    // Not in the heat map, nor below a wireframe.
+    // The heat map and the wireframe have none.
     let mut heat = from_right(scene(outlined(OutlineMode::World, 0.2), 1, &[[255; 4]]));
     heat.frame.characters[0].draws[0].heat_joint = Some(0);
     assert_eq!(heat.draw(&gpu).covered(), without);

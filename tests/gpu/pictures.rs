@@ -390,7 +390,7 @@ fn a_variant_has_its_own_material() {
     let Some(gpu) = gpu() else { return };
     let glass = Material { alpha_mode: AlphaMode::Blend, ..unlit(Vec4::new(0.0, 1.0, 0.0, 0.5)) };
     let geometry = Geometry { variants: vec![(1, 1), (2, 2)], ..square(0) };
-    let mut scene = Scene::new_with(vec![geometry], vec![unlit(Vec4::ONE), unlit(linear([255, 0, 0])), glass], 3);
+    let mut scene = Scene::with_variants(vec![geometry], vec![unlit(Vec4::ONE), unlit(linear([255, 0, 0])), glass], 3);
     for (variant, shown) in [
         (None, [255, 255, 255, 255]),
         (Some(0), [255, 255, 255, 255]),
@@ -400,7 +400,7 @@ fn a_variant_has_its_own_material() {
         scene.frame.characters[0].variant = variant;
         near(scene.draw(&gpu).at(0.0, 0.0), shown, 2);
     }
-    // Edges belong to all variants.
+    // The wireframe is the same in all variants.
     scene.frame.look.wireframe = true;
     scene.frame.look.mesh = false;
     assert!((40..120).contains(&scene.draw(&gpu).covered()));
@@ -416,7 +416,7 @@ fn copies_are_drawn_in_one_call_unless_they_have_to_be_sorted() {
         let mut scene = Scene::new(vec![square(0)], vec![material]);
         scene.frame.characters[0].palette = vec![palette_entry(&half, SkinningMode::Linear)];
         scene.add_copy(Affine3A::from_translation(Vec3::new(0.5, 0.5, 0.0)) * half);
-        // Its front faces are the mesh's back faces, which takes a call of its own.
+        // Mirroring flips the winding, which takes a draw call of its own.
         let mirrored = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * half;
         scene.add_copy(Affine3A::from_translation(Vec3::new(-0.5, -0.5, 0.0)) * mirrored);
         let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });

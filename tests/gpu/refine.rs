@@ -1,6 +1,6 @@
-//! Pictures drawn with one sample per pixel are refined to several; lines have no gaps.
+//! Pictures drawn with one sample per pixel are refined to four; lines have no gaps.
 
-use gaitway::mesh::{Geometry, Topology};
+use gaitway::mesh::{Geometry, Topology, palette_entry};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
 use gaitway::state::Background;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
@@ -12,7 +12,7 @@ use crate::scene::{Picture, SIZE, Scene, square, unlit};
 fn turned() -> Scene {
     let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
     let turn = Affine3A::from_rotation_z(0.3);
-    scene.frame.characters[0].palette = vec![gaitway::mesh::palette_entry(&turn, Default::default())];
+    scene.frame.characters[0].palette = vec![palette_entry(&turn, Default::default())];
     scene
 }
 
@@ -25,6 +25,9 @@ fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
     a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.len() as f64
 }
 
+/// Pixels of the reference per pixel of the picture, along each axis.
+const FINE: usize = 8;
+
 /// Averages squares of `FINE` by `FINE` pixels.
 fn averaged(fine: &[u8]) -> Vec<u8> {
     let size = SIZE as usize;
@@ -36,8 +39,6 @@ fn averaged(fine: &[u8]) -> Vec<u8> {
     };
     (0..4 * size * size).map(mean).collect()
 }
-
-const FINE: usize = 8;
 
 #[test]
 fn a_refined_picture_has_four_samples_per_pixel() {
@@ -75,19 +76,19 @@ fn refining_ends_and_starts_again_with_the_next_picture() {
     assert_eq!(left, [true, true, false, false, false]);
     let refined = pixels(&gpu, &renderer);
     assert_ne!(refined, coarse);
-    assert_eq!(renderer.stats(), stats, "samples are no pictures of their own");
+    assert_eq!(renderer.stats(), stats, "samples don't count as pictures");
     renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
     assert_eq!(pixels(&gpu, &renderer), coarse);
-    // A new size is a new picture.
+    // Resizing starts a new picture.
     renderer.draw_refined(device, queue, &scene.frame, [SIZE / 2, SIZE]);
     renderer.draw_refined(device, queue, &scene.frame, [SIZE, SIZE]);
     assert_eq!(pixels(&gpu, &renderer), refined);
     renderer.give_output_away(device);
-    assert!(!renderer.refine(device, queue, &scene.frame), "the last picture is no longer ours");
+    assert!(!renderer.refine(device, queue, &scene.frame), "the output belongs to someone else");
 }
 
-/// A star of line primitives from the centre, one pixel wide on every device: whatever their slope, every step along them is
-/// covered, with one sample, with several and refined.
+/// Lines from the centre in 17 directions, one pixel wide on every device: whatever their slope, every step along them
+/// is covered, with one sample per pixel, with several, and refined.
 #[test]
 fn lines_have_no_gaps() {
     let (Some(vulkan), gl) = (gpu(), gl()) else { return };
@@ -110,7 +111,7 @@ fn lines_have_no_gaps() {
                 renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
                 while is_refined && renderer.refine(device, queue, &scene.frame) {}
                 let picture = Picture(pixels(&gpu, &renderer));
-                // An end pixel is drawn only if the line leaves it.
+                // The last steps are left out: the pixel where a line ends is drawn only if the line leaves it.
                 for step in 1..36 {
                     let at = end(index) * (step as f32 / 41.0);
                     let pixel = 2.0 / SIZE as f32;

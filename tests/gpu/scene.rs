@@ -45,8 +45,8 @@ impl Scene {
         Self::textured(geometries, materials, Vec::new(), Vec::new())
     }
 
-    /// With material variants, whose names don't matter.
-    pub fn new_with(geometries: Vec<Geometry>, materials: Vec<Material>, variants: usize) -> Self {
+    /// A scene with this many material variants, whose names don't matter.
+    pub fn with_variants(geometries: Vec<Geometry>, materials: Vec<Material>, variants: usize) -> Self {
         let variants = (0..variants).map(|index| index.to_string()).collect();
         let parts = AssetParts { materials, variants, ..AssetParts::default() };
         Self::of_parts(geometries, parts, Vec::new())
@@ -58,7 +58,7 @@ impl Scene {
         textures: Vec<Texture>,
         images: Vec<Option<ImageData>>,
     ) -> Self {
-        // The pixels are given; of the files only their number counts.
+        // The pixels are passed separately; only the number of image files matters.
         let file = Image { name: String::new(), mime: "image/png", bytes: Arc::from([]), width: 1, height: 1 };
         let files = vec![file; images.len()];
         let parts = AssetParts { materials, textures, images: files, ..AssetParts::default() };
@@ -101,18 +101,18 @@ impl Scene {
         Self { model: Model::new(String::new(), asset, images), frame }
     }
 
-    /// Draws the only mesh once more, moved.
-    pub fn add_copy(&mut self, by: Affine3A) {
+    /// Adds a transformed copy of the only mesh.
+    pub fn add_copy(&mut self, world_from_copy: Affine3A) {
         let character = &mut self.frame.characters[0];
         let next = character.palette.len() as u32;
-        character.palette.push(palette_entry(&by, SkinningMode::Linear));
+        character.palette.push(palette_entry(&world_from_copy, SkinningMode::Linear));
         let first = &character.draws[0];
-        let center = by.translation.into();
+        let center = world_from_copy.translation.into();
         let copy = Draw {
             is_copy: true,
             palette: next..next + 1,
             center,
-            mirrored: by.matrix3.determinant() < 0.0,
+            mirrored: world_from_copy.matrix3.determinant() < 0.0,
             ..first.clone()
         };
         character.draws.push(copy);

@@ -1,7 +1,7 @@
 //! Every shader is valid and translates to GLSL ES 3.00, the language of WebGL2.
 
 use gaitway::anim::TextureSlot;
-use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfaceVariant};
+use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfacePermutation};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -53,17 +53,25 @@ fn every_shader_is_valid_and_translates_to_webgl2() {
     }
 }
 
-/// The shader and the slots of the material have the same names and numbers.
+fn snake_case(camel_case: &str) -> String {
+    let mut name = String::new();
+    for letter in camel_case.chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_lowercase());
+    }
+    name
+}
+
+/// The texture maps of the shader and the texture slots of materials have the same names and numbers.
 #[test]
 fn every_texture_slot_is_a_map_of_the_shader() {
     let every_map = (1 << TextureSlot::ALL.len()) - 1;
-    let source = Shader::mesh(SurfaceVariant(every_map)).source();
+    let source = Shader::mesh(SurfacePermutation(every_map)).source();
     for (number, slot) in TextureSlot::ALL.into_iter().enumerate() {
         assert_eq!(slot as usize, number);
-        let spelled = format!("{slot:?}").replace(|letter: char| letter.is_uppercase(), "_?");
-        let initials: Vec<String> = format!("{slot:?}").matches(char::is_uppercase).map(str::to_lowercase).collect();
-        let name = initials.iter().fold(spelled, |name, initial| name.replacen('?', initial, 1));
-        let name = name.trim_start_matches('_');
+        let name = snake_case(&format!("{slot:?}"));
         let texel = match slot {
             // Read by the vertex stage.
             TextureSlot::OutlineWidth => {
@@ -75,26 +83,26 @@ fn every_texture_slot_is_a_map_of_the_shader() {
     }
 }
 
-/// Maps of a lobe, as bits.
+/// The maps of a lobe, as bits of a [`SurfaceVariant`].
 fn maps_of(lobe: u64) -> u64 {
     let maps: &[u32] = match lobe {
-        SurfaceVariant::SPECULAR => &[5, 6],
-        SurfaceVariant::CLEARCOAT => &[7, 8, 9],
-        SurfaceVariant::SHEEN => &[10, 11],
-        SurfaceVariant::IRIDESCENCE => &[12, 13],
-        SurfaceVariant::ANISOTROPY => &[14],
-        SurfaceVariant::TRANSMISSION => &[15],
-        SurfaceVariant::VOLUME => &[16],
-        SurfaceVariant::DIFFUSE_TRANSMISSION => &[17, 18],
+        SurfacePermutation::SPECULAR => &[5, 6],
+        SurfacePermutation::CLEARCOAT => &[7, 8, 9],
+        SurfacePermutation::SHEEN => &[10, 11],
+        SurfacePermutation::IRIDESCENCE => &[12, 13],
+        SurfacePermutation::ANISOTROPY => &[14],
+        SurfacePermutation::TRANSMISSION => &[15],
+        SurfacePermutation::VOLUME => &[16],
+        SurfacePermutation::DIFFUSE_TRANSMISSION => &[17, 18],
         _ => &[],
     };
     maps.iter().map(|map| 1 << map).sum()
 }
 
-/// Each lobe by itself and with each other one, with and without its maps, and all at once with as many maps as fit.
+/// Every lobe alone and with every other one, with and without maps, and all lobes at once with as many maps as fit.
 #[test]
 fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
-    use SurfaceVariant as Variant;
+    use SurfacePermutation as Variant;
     let lobes: Vec<u64> = (24..34).map(|bit| 1 << bit).collect();
     assert_eq!(lobes.iter().sum::<u64>(), Variant::LOBES);
     let with_needed = |lobes: u64| {
@@ -110,7 +118,7 @@ fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
         for &b in &lobes {
             let pair = with_needed(a | b);
             let maps: u64 = lobes.iter().filter(|&lobe| pair & lobe != 0).map(|&lobe| maps_of(lobe)).sum();
-            // The normal map only: with the others of the core there would be too many.
+            // Of the core's maps, only the normal map: all of them would be too many.
             checked.extend([pair, pair | maps | 1 << 2]);
         }
     }
@@ -122,7 +130,7 @@ fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
     }
 }
 
-/// With all maps that it uses and with each of them alone.
+/// Without maps, with each of its maps alone and with all of them.
 #[test]
 fn mtoon_is_valid_and_translates_to_webgl2() {
     let slots = TextureSlot::ALL.into_iter().filter(|&slot| {
@@ -133,7 +141,7 @@ fn mtoon_is_valid_and_translates_to_webgl2() {
     assert_eq!(maps.len(), 8);
     for maps in maps.iter().copied().chain([0, maps.iter().sum()]) {
         for overrides in 0..2 {
-            check(&Shader::mesh(SurfaceVariant(SurfaceVariant::TOON | maps)), overrides);
+            check(&Shader::mesh(SurfacePermutation(SurfacePermutation::TOON | maps)), overrides);
         }
     }
 }

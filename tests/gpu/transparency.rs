@@ -1,10 +1,10 @@
-//! Masks with smooth edges, blended surfaces in layers, and the shadow where something stands on the ground.
+//! Smooth edges of masks, layers of blended surfaces, and the shadow on the ground.
 
 use gaitway::library::ImageData;
 use gaitway::mesh::{
     AlphaMode, Bounds, Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap,
 };
-use gaitway::render::RendererOptions;
+use gaitway::render::{Renderer, RendererOptions};
 use gaitway::state::{Background, KeyLight};
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
@@ -13,7 +13,7 @@ use glam::{Vec3, Vec4};
 use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, SIZE, Scene, near, square, unlit};
 
-/// A square whose alpha falls from left to right, with a slope that no pixel edge follows.
+/// A square whose alpha falls from left to right; lines of equal alpha aren't aligned with pixels.
 fn fading(alpha_mode: AlphaMode) -> Scene {
     const WIDTH: u32 = 16;
     let alpha = |x: u32, y: u32| (255.0 * (1.15 - (x as f32 + 0.3 * y as f32) / 16.0).clamp(0.0, 1.0)) as u8;
@@ -31,8 +31,8 @@ fn fading(alpha_mode: AlphaMode) -> Scene {
     Scene::textured(vec![square(0)], vec![material], vec![Texture { image: Some(0), sampler }], vec![Some(image)])
 }
 
-/// How many pixels are neither black nor white.
-fn between(picture: &Picture) -> usize {
+/// Counts the pixels that are neither black nor white.
+fn count_gray(picture: &Picture) -> usize {
     picture.0.as_chunks::<4>().0.iter().filter(|pixel| (20..235).contains(&pixel[0])).count()
 }
 
@@ -55,16 +55,16 @@ fn check_edges(gpu: &Gpu, background: Background) {
     let opaque = |picture: &Picture| picture.0.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 255);
     match background {
         Background::Color(_) => {
-            assert_eq!(between(&hard), 0);
-            assert!(between(&smooth) >= 6, "{}", between(&smooth));
+            assert_eq!(count_gray(&hard), 0);
+            assert!(count_gray(&smooth) >= 6, "{}", count_gray(&smooth));
             assert!(opaque(&smooth));
         }
         Background::Studio => assert!(opaque(&smooth) && opaque(&hard)),
-        _ => assert_eq!(between(&smooth), 0, "colours stay as they are"),
+        _ => assert_eq!(count_gray(&smooth), 0, "colours stay as they are"),
     }
 }
 
-/// Two squares in one primitive, the nearer one first: the order of the file is the wrong one.
+/// Two squares in one primitive, the nearer one first, so that the file's order is wrong for blending.
 fn layers(alpha: f32) -> Scene {
     let mut geometry = square(0);
     geometry
@@ -87,7 +87,7 @@ fn the_nearest_opaque_layer_of_a_blended_surface_is_on_top() {
         let shown = |alpha| layers(alpha).draw_with(&gpu, RendererOptions { samples }).at(0.0, 0.0);
         near(shown(1.0), [255, 0, 0, 255], 1);
         near(shown(0.95), [242, 0, 0, 255], 2);
-        // What is clearly transparent hides nothing; without sorting, the far layer is drawn over it.
+        // A clearly transparent layer hides nothing; without sorting, the far layer is drawn over it.
         near(shown(0.5), [0, 0, 255, 255], 1);
     }
 }
@@ -96,14 +96,14 @@ fn the_nearest_opaque_layer_of_a_blended_surface_is_on_top() {
 fn a_blended_surface_counts_its_triangles_once() {
     let Some(gpu) = gpu() else { return };
     let scene = layers(1.0);
-    let mut renderer = gaitway::render::Renderer::new(&gpu.device, &gpu.queue, RendererOptions { samples: 1 });
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, RendererOptions { samples: 1 });
     renderer.upload(&gpu.device, &gpu.queue, &scene.model).unwrap();
     renderer.draw(&gpu.device, &gpu.queue, &scene.frame, [SIZE, SIZE]);
     assert_eq!(renderer.stats().triangles, 4);
 }
 
-/// A thin plate above the ground, seen from above and lit from +X at 45°: its shadow falls to −X. Only the shadow is drawn
-/// over a transparent background. The picture spans twice `half` metres.
+/// A thin plate above the ground, seen from above and lit from +X at 45°, so that its shadow falls towards −X. The
+/// background is transparent, and the picture is twice `half` metres wide.
 fn plate(height: f32, half: f32) -> Scene {
     let corner = |x: f32, z: f32| Vec3::new(x, height, z);
     let geometry = Geometry {
@@ -123,41 +123,41 @@ fn plate(height: f32, half: f32) -> Scene {
 }
 
 /// The opacity of the shadow along X, at z = 0.
-fn along(scene: &Scene, samples: u32) -> Vec<u8> {
+fn shadow_along_x(scene: &Scene) -> Vec<u8> {
     let gpu = gpu().expect("checked");
-    let picture = scene.draw_with(&gpu, RendererOptions { samples });
+    let picture = scene.draw_with(&gpu, RendererOptions { samples: 4 });
     let pixel = |at: u32| (at as f32 + 0.5) * 2.0 / SIZE as f32 - 1.0;
     (0..SIZE).map(|at| picture.at(pixel(at), 0.0)[3]).collect()
 }
 
 #[test]
-fn things_stand_on_the_ground() {
+fn the_ground_is_darker_around_what_stands_on_it() {
     let Some(_) = gpu() else { return };
-    // Just above the ground: the plate hides its own shadow, and the ground around it is darker, also where the light comes from.
-    let lying = along(&plate(0.01, 0.2), 4);
+    // Just above the ground, the plate hides its own shadow, and the ground is darker on all sides of it.
+    let lying = shadow_along_x(&plate(0.01, 0.2));
     let at = |x: f32| lying[((0.5 + 0.5 * x / 0.2) * SIZE as f32) as usize];
     assert!(at(0.112) > 15 && at(-0.124) > 15, "{lying:?}");
     assert_eq!((at(0.18), at(-0.18)), (0, 0), "{lying:?}");
-    // Far above the ground, there is a shadow and nothing else.
-    let high = along(&plate(0.6, 1.0), 4);
+    // Far above the ground, it only casts a shadow.
+    let high = shadow_along_x(&plate(0.6, 1.0));
     let at = |x: f32| high[((0.5 + 0.5 * x) * SIZE as f32) as usize];
     assert!(at(-0.6) > 70 && at(0.16) == 0, "{high:?}");
 }
 
 #[test]
-fn a_shadow_is_softer_the_further_it_falls() {
+fn shadows_soften_with_distance() {
     let Some(_) = gpu() else { return };
-    // Seen from so near that only an edge of the shadow is in the picture.
+    // Close up, so that only one edge of the shadow is in the picture.
     let partial = |height: f32| {
         let mut scene = plate(height, 0.08);
         let eye = Vec3::new(-height - 0.1, 5.0, 0.0);
         scene.frame.view.view_from_world = look_at_mat4(eye, eye.with_y(0.0), Vec3::NEG_Z);
         scene.frame.view.eye = eye;
-        let opacities = along(&scene, 4);
+        let opacities = shadow_along_x(&scene);
         let full = opacities.iter().copied().max().expect("pixels");
         assert!(full > 70, "{opacities:?}");
         opacities.iter().filter(|&&opacity| opacity > 3 && opacity + 3 < full).count()
     };
     let (low, high) = (partial(0.25), partial(0.9));
-    assert!(high > low + 2, "{low} pixels of penumbra below, {high} further away");
+    assert!(high > low + 2, "penumbra of {low} pixels near the ground, {high} far above it");
 }

@@ -1,4 +1,4 @@
-//! How many body parts of real skeletons are recognized, and what recognition doesn't depend on.
+//! How many body parts of real skeletons are recognized, and what must not affect recognition.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ const NOT_BODIES: [&str; 9] = [
     "bvh/cosc422_Test.bvh",
 ];
 
-/// Counts the correct parts, those that exist or were found, and describes the wrong ones.
+/// Counts the correct parts and all that exist or were found, and describes the wrong ones.
 fn score(asset: &Asset, found: &Recognized, truth: &BTreeMap<Slot, String>) -> (usize, usize, Vec<String>) {
     let (mut right, mut all, mut wrong) = (0, 0, Vec::new());
     for &slot in Slot::ALL {
@@ -43,7 +43,7 @@ fn score(asset: &Asset, found: &Recognized, truth: &BTreeMap<Slot, String>) -> (
 }
 
 #[test]
-fn parts_of_real_files_are_recognised() {
+fn parts_of_real_files_are_recognized() {
     let (mut right, mut all) = (0, 0);
     each_file(|path, asset, truth| {
         let found = recognize(asset);
@@ -64,16 +64,16 @@ fn parts_of_real_files_are_recognised() {
 }
 
 #[test]
-fn what_is_no_body_gets_no_parts() {
+fn skeletons_that_are_not_bodies_have_no_parts() {
     for path in NOT_BODIES {
         let Some(asset) = open(path) else { return };
         assert_eq!(recognize(&asset), Recognized::default(), "{path}");
     }
 }
 
-/// One file's own map lacks `leftThumbMetacarpal`, although the joint exists.
+/// One of the files has a joint for `leftThumbMetacarpal`, but its map lacks it.
 #[test]
-fn files_that_say_what_is_what_are_believed() {
+fn a_files_own_map_is_used_as_it_is() {
     for path in ["vrm/vrm0_cryptovoxels.vrm", "vrm/chatvrm_idle_loop.vrma"] {
         let Some(asset) = open(path) else { return };
         let found = recognize(&asset);
@@ -134,7 +134,7 @@ fn with_nodes_reversed(asset: &Asset) -> Asset {
 }
 
 #[test]
-fn the_order_of_nodes_does_not_change_what_is_recognised() {
+fn the_order_of_nodes_does_not_affect_recognition() {
     each_file(|path, asset, _| {
         let reversed = with_nodes_reversed(asset);
         let last = asset.skeleton.len() - 1;
@@ -152,9 +152,9 @@ fn the_order_of_nodes_does_not_change_what_is_recognised() {
     });
 }
 
-/// The same skeleton in another file of a series: what it wears and holds, and who it is, change nothing.
+/// The same skeleton in another file of a series, whose character wears and holds other things.
 #[test]
-fn what_hangs_on_a_rig_does_not_change_what_its_joints_are() {
+fn accessories_do_not_affect_recognition() {
     let Some(knight) = open("kaykit/Knight.glb") else { return };
     let skinned: Vec<JointIndex> = knight.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
     let carriers: Vec<JointIndex> = knight.instances.iter().map(|instance| instance.joint).collect();
@@ -168,7 +168,7 @@ fn what_hangs_on_a_rig_does_not_change_what_its_joints_are() {
     assert_eq!(recognize(&other), found);
 }
 
-/// Every rig with every other one: no left joint follows a right one, and few parts are lost.
+/// Every rig with every other one: no left joint follows a right one, and most parts are mapped.
 #[test]
 fn no_proposal_crosses_sides() {
     let mut files: Vec<(String, Asset, BTreeMap<JointIndex, Slot>)> = Vec::new();

@@ -1,4 +1,4 @@
-//! The body parts of real skeletons, labelled by a person from the joints' names, or from the skeleton's shape if it has no
+//! The body parts of real skeletons, labelled manually by the joints' names, or by the skeleton's shape if it has no
 //! names.
 
 use std::collections::BTreeMap;
@@ -452,7 +452,8 @@ pub const RIGS: &[Rig] = &[
     },
 ];
 
-/// A converter mirrored these and kept the names, so that what lies left is named right; where feet point shows it.
+/// A converter mirrored these and kept the names, so joints on the left are named “right”. The direction of the feet
+/// shows it.
 const MIRRORED: [&str; 3] = ["cosc422/dwarf.glb", "cosc422/ArmyPilot.glb", "misc/godot_robot_player.glb"];
 
 impl Rig {

@@ -32,7 +32,7 @@ pub fn without_names(asset: &Asset) -> Asset {
         materials: asset.materials.clone(),
         textures: asset.textures.clone(),
         images: asset.images.clone(),
-        // Clips animate its expressions.
+        // Clips refer to its expressions.
         avatar: asset.avatar.clone(),
         ..AssetParts::default()
     };

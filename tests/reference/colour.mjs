@@ -1,10 +1,10 @@
-// CIEDE2000, the perceived difference of two colours: about 1 is just noticeable side by side. Formula and names: Sharma, Wu,
-// Dalal, "The CIEDE2000 color-difference formula", Color Research and Application 30, 2005.
+// CIEDE2000, the perceived difference of two colours: about 1 is just noticeable side by side. Formula and names:
+// Sharma, Wu, Dalal, "The CIEDE2000 color-difference formula", Color Research and Application 30, 2005.
 
 /** @typedef {[number, number, number]} Triple */
 /** @typedef {import("./draw.mjs").Picture} Picture */
 
-/** Every component of the background. */
+/** The value of all three components of the background. */
 export const BACKGROUND = 128;
 
 const RADIANS = Math.PI / 180;
@@ -36,6 +36,7 @@ export function labFromSrgb(rgb, at = 0) {
 const hueDegrees = (b, a) => (a === 0 && b === 0 ? 0 : (Math.atan2(b, a) / RADIANS + 360) % 360);
 
 /**
+ * Returns the difference of two L*a*b* colours.
  * @param {Triple} lab1
  * @param {Triple} lab2
  */
@@ -49,18 +50,21 @@ export function deltaE2000([l1, a1, b1], [l2, a2, b2]) {
   const hue = 2 * Math.sqrt(c1 * c2) * Math.sin((turn / 2) * RADIANS);
   const [l, c] = [(l1 + l2) / 2, (c1 + c2) / 2];
   const h = isGrey ? h1 + h2 : (h1 + turn / 2 + 360) % 360;
-  const t = 1 - 0.17 * Math.cos((h - 30) * RADIANS) + 0.24 * Math.cos(2 * h * RADIANS) + 0.32 * Math.cos((3 * h + 6) * RADIANS) - 0.2 * Math.cos((4 * h - 63) * RADIANS);
+  /** @param {number} degrees */
+  const cos = (degrees) => Math.cos(degrees * RADIANS);
+  const t = 1 - 0.17 * cos(h - 30) + 0.24 * cos(2 * h) + 0.32 * cos(3 * h + 6) - 0.2 * cos(4 * h - 63);
   const sl = 1 + (0.015 * (l - 50) ** 2) / Math.sqrt(20 + (l - 50) ** 2);
   const sc = 1 + 0.045 * c;
   const sh = 1 + 0.015 * c * t;
-  const rotation = -2 * Math.sqrt(c ** 7 / (c ** 7 + 25 ** 7)) * Math.sin(60 * Math.exp(-(((h - 275) / 25) ** 2)) * RADIANS);
+  const theta = 60 * Math.exp(-(((h - 275) / 25) ** 2));
+  const rotation = -2 * Math.sqrt(c ** 7 / (c ** 7 + 25 ** 7)) * Math.sin(theta * RADIANS);
   const [dl, dc, dh] = [(l2 - l1) / sl, (c2 - c1) / sc, hue / sh];
   return Math.sqrt(dl * dl + dc * dc + dh * dh + rotation * dc * dh);
 }
 
 /**
- * Returns the mean difference over the object, and its share of the picture. Its outline is left out: there, how far a pixel is
- * covered depends on where a graphics driver puts its samples.
+ * Returns the mean difference over the object, and the object's share of the picture. Its outline is left out: how far
+ * pixels are covered there depends on where a graphics driver puts its samples.
  * @param {Picture} one
  * @param {Picture} other
  */
@@ -72,13 +76,15 @@ export function meanDifference(one, other) {
 }
 
 /**
- * Returns the pixels that are at least one pixel inside the object, in both pictures.
+ * Returns the indices of the pixels that, with all their neighbours, show the object in both pictures.
  * @param {Picture} one
  * @param {Picture} other
  */
 function insideOf(one, other) {
   const { width, height } = one;
-  const isObject = Array.from({ length: width * height }, (_, at) => [one, other].every(({ rgb }) => [0, 1, 2].some((channel) => Math.abs(rgb[3 * at + channel] - BACKGROUND) > 1)));
+  /** @type {(picture: Picture, at: number) => boolean} */
+  const isDrawn = ({ rgb }, at) => [0, 1, 2].some((channel) => Math.abs(rgb[3 * at + channel] - BACKGROUND) > 1);
+  const isObject = Array.from({ length: width * height }, (_, at) => isDrawn(one, at) && isDrawn(other, at));
   return [...isObject.keys()].filter((at) => {
     const [x, y] = [at % width, Math.floor(at / width)];
     if (x === 0 || y === 0 || x === width - 1 || y === height - 1) return false;

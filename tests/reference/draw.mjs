@@ -1,5 +1,5 @@
-// Draws a model with the Khronos glTF Sample Renderer and three.js in Chromium, and with the command line, under the same camera
-// and the same light from an image.
+// Draws a model with the Khronos glTF Sample Renderer and three.js in Chromium, and with `gaitway render`, under the
+// same camera and the same light from an image.
 import { execFile } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
@@ -7,27 +7,29 @@ import path from "node:path";
 import { promisify } from "node:util";
 import { build } from "esbuild";
 import sharp from "sharp";
-import { launch } from "../browser/browser.mjs";
 import { serve } from "../../xtask/site/server.mjs";
+import { launch } from "../browser/browser.mjs";
 import { dataFile, repository } from "../three/data.mjs";
 import { program } from "../three/gaitway.mjs";
 import { BACKGROUND } from "./colour.mjs";
 import { roomImage } from "./room.mjs";
 
 /**
+ * What the page draws.
  * @typedef {object} View
  * @property {string} model A URL.
  * @property {string} environment The URL of an .hdr image.
- * @property {boolean} hasLights
- * @property {[number, number]} size
- * @property {number} yaw
- * @property {number} pitch
- * @property {number} distance
- * @property {number[]} target
- * @property {number} fov
+ * @property {boolean} hasLights Whether the model has lights of its own.
+ * @property {[number, number]} size In pixels.
+ * @property {Triple} eye The camera's position.
+ * @property {Triple} target The point that the camera looks at.
+ * @property {number} distance From the eye to the target.
+ * @property {number} fov The vertical field of view in degrees.
  */
 
-/** 3 bytes a pixel, top row first. @typedef {{ width: number, height: number, rgb: Buffer }} Picture */
+/** @typedef {import("./colour.mjs").Triple} Triple */
+
+/** Three bytes per pixel, top row first. @typedef {{ width: number, height: number, rgb: Buffer }} Picture */
 
 /** @type {[number, number]} */
 const SIZE = [320, 320];
@@ -36,12 +38,18 @@ const FOV = 35;
 const run = promisify(execFile);
 
 /**
- * Starts the browser; the stages in it keep their filtered environment from picture to picture.
+ * Starts the browser. Its renderers filter the environment once, for all pictures.
  * @param {Buffer} [environment] An .hdr image.
  */
 export async function startReference(environment = roomImage()) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-reference-"));
-  await build({ entryPoints: [path.join(repository, "tests/reference/page.mjs")], bundle: true, format: "iife", outfile: path.join(folder, "page.js"), logLevel: "error" });
+  await build({
+    entryPoints: [path.join(repository, "tests/reference/page.mjs")],
+    outfile: path.join(folder, "page.js"),
+    bundle: true,
+    format: "iife",
+    logLevel: "error",
+  });
   fs.writeFileSync(path.join(folder, "index.html"), '<!doctype html><script src="page.js"></script>');
   const libraries = path.join(repository, "node_modules/@khronosgroup/gltf-viewer/dist/libs");
   const server = await serve({ "/data/": dataFile(""), "/made/": folder, "/libs/": libraries, "/": folder });
@@ -61,9 +69,26 @@ export async function startReference(environment = roomImage()) {
     const camera = cameraFor(bounds);
     const relative = path.relative(dataFile(""), file);
     const model = relative.startsWith("..") ? `/made/${path.basename(file)}` : `/data/${relative}`;
-    const view = { ...camera, model: server.origin + model, environment: `${server.origin}/made/environment.hdr`, hasLights: lights > 0, size: SIZE, fov: FOV };
-    const [khronos, three] = await page.evaluate(async (view) => [await window.reference.khronos(view), await window.reference.three(view)], view);
-    return { gaitway: await drawGaitway(file, hdr, camera, folder), khronos: withSrgbCurve(await decoded(khronos)), three: await decoded(three) };
+    const { eye, target, distance } = camera;
+    const view = {
+      model: server.origin + model,
+      environment: `${server.origin}/made/environment.hdr`,
+      hasLights: lights > 0,
+      size: SIZE,
+      eye,
+      target,
+      distance,
+      fov: FOV,
+    };
+    const [khronos, three] = await page.evaluate(
+      async (view) => [await window.reference.khronos(view), await window.reference.three(view)],
+      view,
+    );
+    return {
+      gaitway: await drawGaitway(file, hdr, camera, folder),
+      khronos: withSrgbCurve(await decoded(khronos)),
+      three: await decoded(three),
+    };
   };
   const close = async () => {
     await browser.close();
@@ -80,8 +105,9 @@ async function inspect(file) {
 }
 
 /**
- * Looks from the front, a little from the right and above, as near as shows the whole bounding box.
- * @param {{ min: number[], max: number[] }} bounds
+ * Returns a camera in front of the model, a little to the right and above, as near as possible with the whole bounding
+ * box in the picture. Yaw and pitch are in degrees.
+ * @param {{ min: Triple, max: Triple }} bounds
  */
 function cameraFor({ min, max }) {
   const [yaw, pitch] = [25, 15];
@@ -89,7 +115,9 @@ function cameraFor({ min, max }) {
   const away = [Math.sin(y) * Math.cos(p), Math.sin(p), Math.cos(y) * Math.cos(p)];
   const right = [Math.cos(y), 0, -Math.sin(y)];
   const up = [-Math.sin(y) * Math.sin(p), Math.cos(p), -Math.cos(y) * Math.sin(p)];
-  const target = min.map((value, axis) => (value + max[axis]) / 2);
+  /** @type {(component: (axis: number) => number) => Triple} */
+  const vector = (component) => [component(0), component(1), component(2)];
+  const target = vector((axis) => (min[axis] + max[axis]) / 2);
   const slope = 0.95 * Math.tan((FOV * Math.PI) / 360);
   let distance = 0;
   for (let corner = 0; corner < 8; corner++) {
@@ -98,7 +126,7 @@ function cameraFor({ min, max }) {
     const along = (axis) => axis.reduce((sum, value, index) => sum + value * offset[index], 0);
     distance = Math.max(distance, along(away) + Math.max(Math.abs(along(right)), Math.abs(along(up))) / slope);
   }
-  return { yaw, pitch, distance, target };
+  return { yaw, pitch, distance, target, eye: vector((axis) => target[axis] + distance * away[axis]) };
 }
 
 /**
@@ -109,7 +137,8 @@ function cameraFor({ min, max }) {
  */
 async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder) {
   const out = path.join(folder, "gaitway.png");
-  const link = `clip=&show=no-shadow&background=808080&fov=${FOV}&camera=${[yaw, pitch, distance, ...target].join(",")}`;
+  const camera = [yaw, pitch, distance, ...target].join(",");
+  const link = `clip=&show=no-shadow&background=808080&fov=${FOV}&camera=${camera}`;
   await run(program, ["render", file, "--out", out, "--size", SIZE.join("x"), "--environment", hdr, "--view", link]);
   return await decoded(fs.readFileSync(out));
 }
@@ -122,17 +151,17 @@ async function decoded(image) {
 }
 
 /**
- * The sample renderer encodes colours with a power of 1/2.2, which is not sRGB's curve and makes dark ones brighter.
+ * Replaces the sample renderer's encoding, a power of 1/2.2, by sRGB's, which is darker for dark colours.
  * @param {Picture} picture
  */
 function withSrgbCurve({ rgb, ...size }) {
   /** @param {number} linear */
   const encode = (linear) => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
   const curve = Array.from({ length: 256 }, (_, value) => Math.round(255 * encode((value / 255) ** 2.2)));
-  // The background is not drawn by a shader.
+  // The background is cleared to its colour, not encoded by a shader.
   curve[BACKGROUND] = BACKGROUND;
   return { ...size, rgb: Buffer.from(rgb.map((value) => curve[value])) };
 }
 
-/** @param {Picture} picture */
+/** Encodes a picture as PNG. @param {Picture} picture */
 export const encoded = ({ width, height, rgb }) => sharp(rgb, { raw: { width, height, channels: 3 } }).png().toBuffer();

@@ -1,4 +1,5 @@
-// Runs in the browser: draws a glTF with the Khronos glTF Sample Renderer and with three.js, under the same camera and image.
+// Runs in the browser: draws a glTF with the Khronos glTF Sample Renderer and with three.js, under the same camera and
+// the same light from an image.
 import { GltfState, GltfView, ResourceLoader } from "@khronosgroup/gltf-viewer/dist/gltf-viewer.module.js";
 import * as THREE from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -9,8 +10,8 @@ import { BACKGROUND } from "./colour.mjs";
 /** @typedef {Record<"khronos" | "three", (view: View) => Promise<string>>} Reference */
 
 /**
- * Builds the table of the Charlie sheen lobe's directional albedo by N·V and roughness, an image that the sample renderer's package
- * lacks (KHR_materials_sheen, "albedo-scaling technique").
+ * Builds the directional albedo of the Charlie sheen lobe by N·V and roughness, a lookup table that the sample
+ * renderer's package lacks (KHR_materials_sheen, "albedo-scaling technique").
  */
 async function sheenAlbedoImage() {
   const size = 64;
@@ -54,6 +55,7 @@ function sheenAlbedo(normalView, roughness) {
 }
 
 /**
+ * Returns the masking of Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017.
  * @param {number} cos
  * @param {number} alpha
  */
@@ -61,21 +63,15 @@ function charlieLambda(cos, alpha) {
   const t = (1 - alpha) ** 2;
   /** @type {(from: number, to: number) => number} */
   const mix = (from, to) => from + (to - from) * (1 - t);
-  const [a, b, c, d, e] = [mix(25.3245, 21.5473), mix(3.32435, 3.82987), mix(0.16801, 0.19823), mix(-1.27393, -1.9776), mix(-4.85967, -4.32054)];
+  const [a, b, c] = [mix(25.3245, 21.5473), mix(3.32435, 3.82987), mix(0.16801, 0.19823)];
+  const [d, e] = [mix(-1.27393, -1.9776), mix(-4.85967, -4.32054)];
   /** @param {number} x */
   const level = (x) => a / (1 + b * x ** c) + d * x + e;
   return Math.exp(cos < 0.5 ? level(cos) : 2 * level(0.5) - level(1 - cos));
 }
 
-/** @param {View} view */
-function eyeOf({ yaw, pitch, distance, target }) {
-  const [y, p] = [yaw, pitch].map((degrees) => (degrees * Math.PI) / 180);
-  const away = new THREE.Vector3(Math.sin(y) * Math.cos(p), Math.sin(p), Math.cos(y) * Math.cos(p));
-  return away.multiplyScalar(distance).add(new THREE.Vector3().fromArray(target));
-}
-
 /**
- * Reads the drawn canvas, top row first.
+ * Reads the canvas as a PNG in a data URL.
  * @param {WebGL2RenderingContext} gl
  * @param {View} view
  */
@@ -84,7 +80,11 @@ function pixels(gl, { size: [width, height] }) {
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
   const image = new ImageData(width, height);
-  for (let y = 0; y < height; y++) image.data.set(rows.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
+  // WebGL's first row is at the bottom.
+  const stride = 4 * width;
+  for (let y = 0; y < height; y++) {
+    image.data.set(rows.subarray(stride * y, stride * (y + 1)), stride * (height - 1 - y));
+  }
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [width, height];
   for (let at = 3; at < image.data.length; at += 4) image.data[at] = 255;
@@ -107,7 +107,7 @@ let khronosStage;
 async function startKhronos(view) {
   const gl = canvasContext(view);
   const gltfView = new GltfView(gl);
-  // Not `createResourceLoader`, which wants libraries for Draco and KTX2.
+  // Not `createResourceLoader`, which needs libraries for Draco and KTX2.
   const loader = new ResourceLoader(gltfView, "/libs/");
   const environment = await loader.loadEnvironment(view.environment, { lut_sheen_E_file: await sheenAlbedoImage() });
   return { gl, view: gltfView, loader, environment };
@@ -122,20 +122,23 @@ async function drawKhronos(view) {
   state.sceneIndex = state.gltf.scene ?? 0;
   state.animationIndices = [];
   const settings = state.renderingParameters;
-  Object.assign(settings, { clearColor: [BACKGROUND, BACKGROUND, BACKGROUND, 255].map((value) => value / 255), renderEnvironmentMap: false, usePunctual: view.hasLights, useIBL: true });
+  settings.clearColor = [BACKGROUND, BACKGROUND, BACKGROUND, 255].map((value) => value / 255);
+  settings.renderEnvironmentMap = false;
+  settings.usePunctual = view.hasLights;
+  settings.useIBL = true;
   settings.toneMap = GltfState.ToneMaps.KHR_PBR_NEUTRAL;
-  // The middle of the image lies towards +X, as in three.js.
+  // The centre of the image is at +X, as in three.js.
   settings.environmentRotation = 0;
   const camera = state.userCamera;
   camera.perspective.aspectRatio = view.size[0] / view.size[1];
   camera.setVerticalFoV((view.fov * Math.PI) / 180);
   camera.perspective.znear = view.distance / 100;
   camera.perspective.zfar = view.distance * 100;
-  const eye = eyeOf(view);
-  const matrix = new THREE.Matrix4().lookAt(eye, new THREE.Vector3().fromArray(view.target), new THREE.Vector3(0, 1, 0));
+  const eye = new THREE.Vector3(...view.eye);
+  const matrix = new THREE.Matrix4().lookAt(eye, new THREE.Vector3(...view.target), new THREE.Vector3(0, 1, 0));
   matrix.setPosition(eye);
   camera.transform = new Float32Array(matrix.elements);
-  // The first frame compiles; textures may arrive in it.
+  // The first frame compiles shaders and uploads textures; the second one is complete.
   stage.view.renderFrame(state, ...view.size);
   stage.view.renderFrame(state, ...view.size);
   return pixels(stage.gl, view);
@@ -161,12 +164,14 @@ async function drawThree(view) {
   const { scene: model } = await new GLTFLoader().loadAsync(view.model);
   const scene = new THREE.Scene();
   // Not a scene background: tone mapping would change it.
-  renderer.setClearColor(new THREE.Color().setRGB(BACKGROUND / 255, BACKGROUND / 255, BACKGROUND / 255, THREE.SRGBColorSpace));
+  const gray = BACKGROUND / 255;
+  renderer.setClearColor(new THREE.Color().setRGB(gray, gray, gray, THREE.SRGBColorSpace));
   scene.environment = environment;
   scene.add(model);
-  const camera = new THREE.PerspectiveCamera(view.fov, view.size[0] / view.size[1], view.distance / 100, view.distance * 100);
-  camera.position.copy(eyeOf(view));
-  camera.lookAt(new THREE.Vector3().fromArray(view.target));
+  const [near, far] = [view.distance / 100, view.distance * 100];
+  const camera = new THREE.PerspectiveCamera(view.fov, view.size[0] / view.size[1], near, far);
+  camera.position.set(...view.eye);
+  camera.lookAt(...view.target);
   renderer.render(scene, camera);
   return pixels(/** @type {WebGL2RenderingContext} */ (renderer.getContext()), view);
 }

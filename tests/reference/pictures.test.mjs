@@ -1,5 +1,5 @@
-// Pictures against the Khronos glTF Sample Renderer's, drawn in the same run: same camera, same light from an image, Khronos PBR
-// Neutral. The difference is CIEDE2000 over the object; three.js's is printed beside it.
+// Compares pictures with the Khronos glTF Sample Renderer's, drawn in the same run: same camera, same light from an
+// image, Khronos PBR Neutral. The difference is CIEDE2000 over the object; three.js's is printed beside it.
 import assert from "node:assert";
 import fs from "node:fs";
 import path from "node:path";
@@ -35,8 +35,8 @@ const CORE = [
 ];
 
 /**
- * Files with material extensions. Not materials/babylon/emoji_heart.glb: the sample renderer takes its specular colours
- * for linear, while KHR_materials_pbrSpecularGlossiness says that they are sRGB.
+ * Files with material extensions. Without materials/babylon/emoji_heart.glb: the sample renderer reads its specular
+ * colours as linear, but KHR_materials_pbrSpecularGlossiness says that they are sRGB.
  */
 const EXTENSIONS = [
   "blender-io/24_animation_pointer/24_animation_pointer.gltf",
@@ -56,7 +56,7 @@ let reference;
 async function compare(file) {
   const { gaitway, khronos, three } = await reference.draw(file);
   const { mean, share } = meanDifference(gaitway, khronos);
-  assert.ok(share > 0.005, `${file}: hardly anything is drawn`);
+  assert.ok(share > 0.005, `${file}: almost nothing is drawn`);
   const ofThree = meanDifference(three, khronos).mean;
   console.log(`${path.basename(file)}: ${mean.toFixed(2)} (three.js ${ofThree.toFixed(2)})`);
   return { mean, ofThree };
@@ -74,7 +74,7 @@ async function compareAll(names, limits) {
   const ofThree = average(differences.map(({ ofThree }) => ofThree));
   console.log(`on average ${mean.toFixed(2)} (three.js ${ofThree.toFixed(2)})`);
   assert.ok(mean <= limits.onAverage, `${mean}`);
-  assert.ok(mean < ofThree, `three.js is nearer: ${ofThree} instead of ${mean}`);
+  assert.ok(mean < ofThree, `three.js is closer: ${ofThree} instead of ${mean}`);
 }
 
 /** @param {number[]} values */
@@ -91,7 +91,7 @@ describe("pictures against the Khronos glTF Sample Renderer", { skip: skipWithou
     fs.writeFileSync(file, sphereGrid());
     const { mean, ofThree } = await compare(file);
     assert.ok(mean <= 1, `${mean}`);
-    assert.ok(mean < ofThree, `three.js is nearer: ${ofThree} instead of ${mean}`);
+    assert.ok(mean < ofThree, `three.js is closer: ${ofThree} instead of ${mean}`);
   });
 
   test("files without material extensions", () => compareAll(CORE, { onAverage: 1.5, each: 4 }));

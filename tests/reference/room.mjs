@@ -1,12 +1,15 @@
-// A room with soft lamps as an .hdr image made in code. No lamp is as small or as bright as the sun, of which the sample renderer's
-// own filtering is a poor approximation.
+// A room with soft lamps as an .hdr image made in code. No lamp is as small and bright as the sun, since the sample
+// renderer filters such lights poorly.
 
 const WIDTH = 1024;
 const HEIGHT = 512;
 
-/** @typedef {[number, number, number]} Triple */
+/** @typedef {import("./colour.mjs").Triple} Triple */
 
-/** Lamps: direction, cosines of where the soft edge begins and ends, radiance. @type {{ towards: Triple, inner: number, outer: number, light: Triple }[]} */
+/**
+ * Lamps: direction, cosines of the angles between which the edge fades out, radiance.
+ * @type {{ towards: Triple, inner: number, outer: number, light: Triple }[]}
+ */
 const LAMPS = [
   { towards: [-0.48, 0.72, 0.5], inner: 0.92, outer: 0.85, light: [5, 4.8, 4.5] },
   { towards: [0.9, 0.25, 0.36], inner: 0.8, outer: 0.65, light: [0.9, 1, 1.1] },
@@ -24,9 +27,10 @@ function smoothstep(edge, end, value) {
   return t * t * (3 - 2 * t);
 }
 
-/** @param {Triple} direction */
+/** Returns what a direction emits. @param {Triple} direction */
 function radiance([x, y, z]) {
-  const walls = y > 0 ? [0.25 + 0.1 * y, 0.26 + 0.11 * y, 0.28 + 0.14 * y] : [0.25 + 0.1 * y, 0.26 + 0.12 * y, 0.28 + 0.16 * y];
+  const slope = y > 0 ? [0.1, 0.11, 0.14] : [0.1, 0.12, 0.16];
+  const walls = [0.25, 0.26, 0.28].map((level, channel) => level + slope[channel] * y);
   return walls.map((wall, channel) =>
     LAMPS.reduce((sum, { towards, inner, outer, light }) => {
       const facing = (x * towards[0] + y * towards[1] + z * towards[2]) / Math.hypot(...towards);
@@ -44,7 +48,7 @@ function rgbe([r, g, b]) {
   return [r, g, b].map((value) => Math.min(Math.round((value * 256) / 2 ** exponent), 255)).concat(exponent + 128);
 }
 
-/** Returns the bytes of the image, whose middle lies towards +X. */
+/** Returns the bytes of the image, whose centre is at +X. */
 export function roomImage() {
   const header = Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${HEIGHT} +X ${WIDTH}\n`);
   const rows = [header];
@@ -57,7 +61,10 @@ export function roomImage() {
     rows.push(Buffer.from([2, 2, WIDTH >> 8, WIDTH & 255]));
     // Component by component, in runs of at most 128 literal bytes.
     for (let component = 0; component < 4; component++)
-      for (let from = 0; from < WIDTH; from += 128) rows.push(Buffer.from([128, ...texels.slice(from, from + 128).map((texel) => texel[component])]));
+      for (let from = 0; from < WIDTH; from += 128) {
+        const run = texels.slice(from, from + 128);
+        rows.push(Buffer.from([128, ...run.map((texel) => texel[component])]));
+      }
   }
   return Buffer.concat(rows);
 }

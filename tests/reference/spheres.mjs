@@ -1,4 +1,4 @@
-// A grid of spheres in a GLB made in code: roughness to the right, and a row for each material.
+// A grid of spheres in a GLB made in code: roughness grows to the right, and each row has a material.
 
 const RINGS = 32;
 const SEGMENTS = 64;
@@ -6,7 +6,7 @@ const SEGMENTS = 64;
 const ROWS = [[1, 1], [0.5, 1], [0.8, 0], [0.2, 0], [0, 0]];
 const COLUMNS = 5;
 
-/** Returns the positions, which are the normals of a unit sphere as well, and triangles. */
+/** Returns positions, which are the normals as well, and triangles. */
 function unitSphere() {
   const positions = [];
   const indices = [];
@@ -27,19 +27,25 @@ function unitSphere() {
 /** Returns the GLB's bytes. */
 export function sphereGrid() {
   const { positions, indices } = unitSphere();
-  const cells = ROWS.flatMap(([color, metallicFactor], row) => Array.from({ length: COLUMNS }, (_, column) => ({ color, metallicFactor, row, column })));
-  const materials = cells.map(({ color, metallicFactor, column }) => ({
-    pbrMetallicRoughness: { baseColorFactor: [color, color, color, 1], metallicFactor, roughnessFactor: column / (COLUMNS - 1) },
-  }));
+  const cells = ROWS.flatMap(([color, metallicFactor], row) =>
+    Array.from({ length: COLUMNS }, (_, column) => ({ color, metallicFactor, row, column })),
+  );
+  const materials = cells.map(({ color, metallicFactor, column }) => {
+    const [baseColorFactor, roughnessFactor] = [[color, color, color, 1], column / (COLUMNS - 1)];
+    return { pbrMetallicRoughness: { baseColorFactor, metallicFactor, roughnessFactor } };
+  });
+  const [min, max] = [[-1, -1, -1], [1, 1, 1]];
   const json = {
     asset: { version: "2.0" },
     scene: 0,
     scenes: [{ nodes: cells.map((_, index) => index) }],
     nodes: cells.map(({ row, column }, mesh) => ({ mesh, translation: [2.1 * column, -2.1 * row, 0] })),
-    meshes: materials.map((_, material) => ({ primitives: [{ attributes: { POSITION: 0, NORMAL: 0 }, indices: 1, material }] })),
+    meshes: materials.map((_, material) => ({
+      primitives: [{ attributes: { POSITION: 0, NORMAL: 0 }, indices: 1, material }],
+    })),
     materials,
     accessors: [
-      { bufferView: 0, componentType: 5126, count: positions.length / 3, type: "VEC3", min: [-1, -1, -1], max: [1, 1, 1] },
+      { bufferView: 0, componentType: 5126, count: positions.length / 3, type: "VEC3", min, max },
       { bufferView: 1, componentType: 5125, count: indices.length, type: "SCALAR" },
     ],
     bufferViews: [
@@ -53,7 +59,7 @@ export function sphereGrid() {
 
 /**
  * @param {object} json
- * @param {Buffer} binary A multiple of 4 bytes.
+ * @param {Buffer} binary Its length is a multiple of 4.
  */
 function glb(json, binary) {
   const text = Buffer.from(JSON.stringify(json));

@@ -1,4 +1,5 @@
-//! Every pair of real characters and motions, retargeted by the proposed map. `UPDATE_PAIRS=1` writes the published table.
+//! Every pair of real characters and motions, retargeted by the proposed map. `UPDATE_PAIRS=1` rewrites
+//! the published table, docs/retargeting-pairs.tsv.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -110,7 +111,7 @@ fn hips_height(model: &Loaded) -> f64 {
     f64::from((hips - foot).length())
 }
 
-/// Writes the table that [`recorded`] reads, in release builds within minutes.
+/// Writes the table that [`recorded`] reads, which takes minutes in a release build.
 fn update(people: &[Loaded]) {
     let mut table = format!("model\tmotion\t{}\n", COLUMNS.map(|(name, _)| name).join("\t"));
     for (model, motion) in each_pair(people) {

@@ -194,8 +194,8 @@ pub fn measured(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<(F
     Ok((pair.figures(&made), made))
 }
 
-/// By how many degrees a joint of a leg at most turns further than its source from one sixtieth of a second to the next. Both
-/// arrays are of the model and its motion.
+/// The largest angle in degrees by which a leg joint turns more than its source within 1/60 s. Both arrays hold the
+/// model's item first, then the motion's.
 pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &ResolvedMap, slots: &Humanoid) -> f64 {
     const LEGS: [Slot; 6] = [
         Slot::LeftUpperLeg,
@@ -213,7 +213,8 @@ pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &Resolve
         .filter(|pair| is_leg(&pair.target))
         .map(|pair| [pair.target.get(), pair.source.get()])
         .collect();
-    let at = |frame: usize| [0, 1].map(|side| rotations(&assets[side].skeleton, clips[side], frame as f32 / 60.0));
+    let at =
+        |frame: usize| [0, 1].map(|side| model_rotations(&assets[side].skeleton, clips[side], frame as f32 / 60.0));
     let mut largest: f64 = 0.0;
     let mut before = at(0);
     for frame in 1..=(clips[1].duration_secs() * 60.0) as usize {
@@ -230,8 +231,8 @@ pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &Resolve
     largest
 }
 
-/// Model-space rotations of all joints.
-fn rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQuat> {
+/// Model-space rotations of all joints, in double precision.
+pub fn model_rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQuat> {
     let mut pose: Pose = skeleton.rest().clone();
     clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     let mut rotations: Vec<DQuat> = Vec::new();

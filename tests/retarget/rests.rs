@@ -1,7 +1,7 @@
 //! The rest that a motion is measured from: the model's on the same rig, whatever the motion's nodes rest in, and else a pose
 //! that looks like a rest, or a warning.
 
-use gaitway::anim::{Clip, Interpolation, Joint, JointIndex, Keys, Pose, SampleCursor, Skeleton};
+use gaitway::anim::{Clip, Interpolation, Joint, JointIndex, Keys, SampleCursor, Skeleton};
 use gaitway::asset::{Asset, AssetParts, Slot};
 use gaitway::retarget::{Body, ResolvedMap, RestOrigin, Retargeting, propose, recognize};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 use crate::data_folder::data_folder;
 use crate::figure::{BODY, Figure, Rig, build};
 use crate::laws::{body, degrees, map};
-use crate::people::load_people;
+use crate::people::{load_people, model_rotations};
 use crate::random::Random;
 
 /// Binding by name is exact in theory; the clips are stored in single precision.
@@ -33,22 +33,11 @@ fn alone(skeleton: Skeleton, clip: Clip) -> Asset {
     Asset::new(AssetParts { clips: vec![clip], ..Asset::from(skeleton).into_parts() }).unwrap()
 }
 
-fn world_rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQuat> {
-    let mut pose: Pose = skeleton.rest().clone();
-    clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
-    let mut world: Vec<DQuat> = Vec::new();
-    for (local, parent) in pose.locals().zip(skeleton.parents()) {
-        let above = parent.map_or(DQuat::IDENTITY, |parent| world[parent.get()]);
-        world.push((above * local.rotation.as_dquat()).normalize());
-    }
-    world
-}
-
 /// Largest angle between two clips of one skeleton, over some moments, and the joint that has it.
 fn largest_degrees<'a>(skeleton: &'a Skeleton, a: &Clip, b: &Clip) -> (f64, &'a str) {
     let moments = (0..=20).map(|step| a.duration_secs() * step as f32 / 20.0);
     let angles = moments.flat_map(|time| {
-        let (a, b) = (world_rotations(skeleton, a, time), world_rotations(skeleton, b, time));
+        let (a, b) = (model_rotations(skeleton, a, time), model_rotations(skeleton, b, time));
         let angles = skeleton.joints().map(|joint| (degrees(a[joint.get()], b[joint.get()]), skeleton.name(joint)));
         angles.collect::<Vec<_>>()
     });

@@ -1,10 +1,23 @@
 //! Playback stops allocating once the frame's buffers have grown.
 
 use gaitway::frame::{Frame, evaluate};
+use gaitway::library::Library;
 use gaitway::state::{CameraOptions, Command, Selection, ViewerState, apply};
 
 use crate::allocations::allocations_after;
 use crate::data::walker;
+
+/// Counts the allocations of `frames` frames of playback, after `warm_up` frames that grow the buffers.
+pub fn allocations_while_playing(library: &Library, mut state: ViewerState, warm_up: usize, frames: usize) -> usize {
+    let mut frame = Frame::default();
+    let mut play = |frames: usize| {
+        for _ in 0..frames {
+            apply(&mut state, library, Command::Advance(1.0 / 60.0));
+            evaluate(library, &state, 1.5, &mut frame);
+        }
+    };
+    allocations_after(&mut play, |play| play(warm_up), |play| play(frames))
+}
 
 #[test]
 fn a_second_loop_of_the_clip_does_not_allocate() {
@@ -19,12 +32,5 @@ fn a_second_loop_of_the_clip_does_not_allocate() {
     state.inspect.weights = true;
     state.inspect.split = true;
     state.edits.pose.insert(15, [20.0, 0.0, 0.0]);
-    let mut frame = Frame::default();
-    let mut play = |frames: usize| {
-        for _ in 0..frames {
-            apply(&mut state, &library, Command::Advance(1.0 / 60.0));
-            evaluate(&library, &state, 1.5, &mut frame);
-        }
-    };
-    assert_eq!(allocations_after(&mut play, |play| play(70), |play| play(200)), 0);
+    assert_eq!(allocations_while_playing(&library, state, 70, 200), 0);
 }

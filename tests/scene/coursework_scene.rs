@@ -10,8 +10,8 @@ use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex
 use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
-    ClipChoice, Command, Display, Edits, History, Overridden, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply,
-    from_link, title, to_link, written_skeleton,
+    ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply, from_link,
+    title, to_link, written_skeleton,
 };
 use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
@@ -19,6 +19,7 @@ use serde_json::Value;
 use crate::coursework::Exercise;
 use crate::data::{library_of, open, walker};
 use crate::data_folder::data_folder;
+use crate::history::undo;
 
 const BENT: &str = "v=1&clip=&pose=0:10:-20:5,2:0:0:15,5:-60:0:10,6:70:0:0,12:0:30:-20,13:0:0:45,16:-30:20:0";
 
@@ -236,9 +237,9 @@ fn joints_can_be_renamed() {
     assert_eq!(rename(&mut state, ""), before);
     assert_eq!(rename(&mut state, &before.clone()), before, "the file's own name is not a custom name");
     assert!(state.edits.names.is_empty());
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.edits.names[&5].len(), 80);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.edits.names[&5], "Crown,of: the head");
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });

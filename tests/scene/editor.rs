@@ -518,9 +518,9 @@ fn the_preference_for_reduced_motion_leaves_no_trace_in_links() {
     assert!(to_link(&editor.shared_state()).contains("turntable=20"));
 }
 
-/// Undo restores a view as it was: calmed, or as the user had set it in motion.
+/// With reduced motion, undo restores a view as it was: stopped, or playing because the user had started it.
 #[test]
-fn undo_returns_to_a_calmed_view_and_its_link() {
+fn undo_returns_to_a_stopped_view_and_its_link() {
     let view = |model: &str, turntable: f32| {
         let mut view = ViewerState::of_model(model.to_owned());
         view.camera_options.turntable = turntable;
@@ -552,7 +552,7 @@ fn undo_returns_to_a_calmed_view_and_its_link() {
     assert_eq!(to_link(&editor.shared_state()), to_link(&view("sample:pilot", 30.0)));
 }
 
-/// An embedding page that changes something else doesn't stop what the user has started.
+/// An embedding page that changes something else doesn't stop a clip that the user has started.
 #[test]
 fn a_change_that_needs_files_leaves_a_started_clip_playing() {
     let mut editor = Editor::default();
@@ -567,14 +567,15 @@ fn a_change_that_needs_files_leaves_a_started_clip_playing() {
         editor.open_change(contents, view, &mut any).expect("fits");
         editor.state().playback.playing
     };
-    assert!(!change(&mut editor, "a.bvh", None), "nobody has started it");
+    assert!(!change(&mut editor, "a.bvh", None), "the user hasn't started it");
     assert!(!to_link(&editor.shared_state()).contains("play="));
     editor.apply(Command::TogglePlaying);
     assert!(change(&mut editor, "b.bvh", None));
     assert!(!change(&mut editor, "c.bvh", Some(false)), "the change says so");
 }
 
-/// An empty stage stands for a model that can't be had yet. It keeps the whole view, and goes once something is opened.
+/// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
+/// is opened.
 #[test]
 fn an_empty_stage_awaits_a_model() {
     let (mut view, _) =

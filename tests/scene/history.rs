@@ -1,9 +1,19 @@
 //! Undo and redo.
 
 use gaitway::library::{Library, Model, ModelId, Motion};
-use gaitway::state::{Command, Edits, History, Overridden, Playhead, Sources, UpAxis, ViewerState};
+use gaitway::state::{Command, Edits, History, Playhead, SavedMotion, Sources, UpAxis, ViewerState};
 
 use crate::data::walker;
+
+/// Undoes one step without a preference for reduced motion.
+pub fn undo(history: &mut History, state: &mut ViewerState, library: &mut Library) -> bool {
+    history.undo(state, &mut SavedMotion::default(), library)
+}
+
+/// Redoes one step without a preference for reduced motion.
+pub fn redo(history: &mut History, state: &mut ViewerState, library: &mut Library) -> bool {
+    history.redo(state, &mut SavedMotion::default(), library)
+}
 
 #[test]
 fn a_gesture_is_one_step() {
@@ -16,15 +26,15 @@ fn a_gesture_is_one_step() {
     }
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.display.exposure, 0.3);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.display.exposure, 0.0);
-    assert!(!history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(!undo(&mut history, &mut state, &mut library));
     assert!(
-        history.redo(&mut state, &mut Overridden::default(), &mut library)
-            && history.redo(&mut state, &mut Overridden::default(), &mut library)
-            && !history.redo(&mut state, &mut Overridden::default(), &mut library)
+        redo(&mut history, &mut state, &mut library)
+            && redo(&mut history, &mut state, &mut library)
+            && !redo(&mut history, &mut state, &mut library)
     );
     assert_eq!(state.display.exposure, 1.0);
 }
@@ -37,7 +47,7 @@ fn undo_keeps_time_and_camera() {
     history.apply(&mut state, &library, Command::Seek(0.5));
     history.apply(&mut state, &library, Command::Orbit { yaw_radians: 1.0, pitch_radians: 0.0 });
     let before = state.clone();
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state, ViewerState { edits: Edits { up: UpAxis::Y, ..before.edits }, ..before });
     assert!(!history.can_undo());
 }
@@ -47,7 +57,7 @@ fn a_new_edit_discards_undone_steps() {
     let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    history.undo(&mut state, &mut Overridden::default(), &mut library);
+    undo(&mut history, &mut state, &mut library);
     history.apply(&mut state, &library, Command::SetUp(UpAxis::X));
     assert!(!history.can_redo());
 }
@@ -77,7 +87,7 @@ fn opening_is_a_step_between_edits() {
     let mut state =
         ViewerState { playhead: Playhead { time_secs: 0.7, ..Playhead::default() }, ..ViewerState::default() };
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    history.opened(state.clone(), Overridden::default(), library.loaded());
+    history.opened(state.clone(), SavedMotion::default(), library.loaded());
     library.show(second);
     let asset = library.active().unwrap().asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
@@ -89,14 +99,14 @@ fn opening_is_a_step_between_edits() {
     history.apply(&mut state, &library, Command::SetExposure(2.0));
 
     let active = |library: &Library| library.active().map(|model| model.id);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!((active(&library), state.display.exposure, state.sources.motion.len()), (Some(second), 0.0, 1));
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!((active(&library), state.display.exposure, state.playhead.time_secs), (Some(first), 1.0, 0.7));
     assert!(library.motions().is_empty() && state.sources.motion.is_empty());
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.display.exposure, 0.0);
-    while history.redo(&mut state, &mut Overridden::default(), &mut library) {}
+    while redo(&mut history, &mut state, &mut library) {}
     assert_eq!((active(&library), state.display.exposure, library.motions().len()), (Some(second), 2.0, 1));
 }
 
@@ -106,12 +116,12 @@ fn steps_to_an_evicted_model_are_dropped() {
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
     library.show(first);
-    history.opened(state.clone(), Overridden::default(), library.loaded());
+    history.opened(state.clone(), SavedMotion::default(), library.loaded());
     library.show(second);
     history.apply(&mut state, &library, Command::SetExposure(2.0));
     library.remove(first);
     history.forget_gone(&library);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert!(!history.can_undo());
     assert_eq!(library.active().map(|model| model.id), Some(second));
 }
@@ -126,9 +136,9 @@ fn undo_relists_a_closed_model_and_keeps_the_view() {
     library.close(first);
     assert_eq!(library.listed(), [second]);
     state.playhead.time_secs = 0.7;
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!((library.listed(), state.playhead.time_secs), (vec![first, second], 0.7));
-    assert!(history.redo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(redo(&mut history, &mut state, &mut library));
     assert_eq!(library.listed(), [second]);
     assert_eq!(library.active().map(|model| model.id), Some(second));
     assert!(library.show(first), "a step may activate a closed model");
@@ -148,10 +158,7 @@ fn closed_models_are_evicted_first() {
     assert!(library.trim().is_empty(), "evicting closed models is not reported");
     assert!(library.get(first).is_none() && library.get(second).is_some());
     history.forget_gone(&library);
-    assert!(
-        !history.undo(&mut state, &mut Overridden::default(), &mut library),
-        "the steps to lists with it are dropped"
-    );
+    assert!(!undo(&mut history, &mut state, &mut library), "the steps to lists with it are dropped");
 }
 
 #[test]

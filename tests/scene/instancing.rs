@@ -11,7 +11,7 @@ use crate::allocations::allocations_after;
 use crate::build_gltf::{Build, F32, floats};
 use crate::data::library_of;
 
-/// Three copies of the triangle, along X; the last one is mirrored.
+/// Three copies of the triangle along X; the last one is mirrored.
 fn copies() -> Library {
     let mut build = Build::triangle();
     let places = build.accessor(F32, "VEC3", 3, &floats(&[0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 9.0, 0.0, 0.0]));
@@ -38,7 +38,7 @@ fn a_frame_draws_each_copy_at_its_place() {
     let found: Vec<_> = draws.iter().map(|draw| (draw.instance, draw.is_copy, draw.mirrored)).collect();
     assert_eq!(found, [(0, false, false), (1, true, false), (2, true, true)]);
     let palettes: Vec<_> = draws.iter().map(|draw| draw.palette.clone()).collect();
-    assert_eq!(palettes, [0..1, 1..2, 2..3], "one after the other, as instanced drawing expects");
+    assert_eq!(palettes, [0..1, 1..2, 2..3], "consecutive, as instanced drawing expects");
     assert!(draws[1].center.distance(Vec3::new(4.5, 2.5, 0.0)) < 1e-4, "{}", draws[1].center);
     assert!(frame.bounds.max.distance(Vec3::new(9.0, 3.0, 0.0)) < 1e-4, "{:?}", frame.bounds);
 }

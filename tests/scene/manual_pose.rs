@@ -4,12 +4,13 @@ use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, History, Overridden, Playback, Playhead, PoseSampler,
-    ViewerState, apply, manual_degrees, manual_rotation,
+    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
+    manual_degrees, manual_rotation,
 };
 use glam::{EulerRot, Quat, Vec3};
 
 use crate::data::walker;
+use crate::history::undo;
 
 /// Joints of the walker, by index in the file.
 const HEAD: usize = 5;
@@ -95,9 +96,9 @@ fn manual_poses_are_undone_one_gesture_at_a_time() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::ClearPose);
     assert!(state.edits.pose.is_empty());
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.edits.pose[&HEAD], [15.0, 0.0, 0.0]);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert!(state.edits.pose.is_empty());
 }
 

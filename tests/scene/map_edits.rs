@@ -12,12 +12,13 @@ use gaitway::retarget::{
     RootPart, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Overridden, Playback, Playhead, RetargetEdits,
-    ViewerState, active_map, active_maps, apply, from_link, muted_properties, reconciled_maps, to_link,
+    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
+    active_map, active_maps, apply, from_link, muted_properties, reconciled_maps, to_link,
 };
 use glam::{Quat, Vec3};
 
 use crate::data::walker;
+use crate::history::{redo, undo};
 use crate::skeletons;
 
 /// The walker with its own clips retargeted to itself, shortly after the start of the first of them.
@@ -255,14 +256,14 @@ fn fifty_edits_are_undone_and_redone() {
     }
     let last = pose_document(&library, &state);
     for expected in seen.iter().rev().skip(1) {
-        assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+        assert!(undo(&mut history, &mut state, &mut library));
         reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert_eq!(state, first);
     assert!(!history.can_undo());
     for expected in &seen[1..] {
-        assert!(history.redo(&mut state, &mut Overridden::default(), &mut library));
+        assert!(redo(&mut history, &mut state, &mut library));
         reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
@@ -283,7 +284,7 @@ fn a_drag_is_one_step() {
         history.apply(&mut state, &library, Command::Advance(0.01));
     }
     history.end_gesture();
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state, before);
     assert!(!history.can_undo());
 }

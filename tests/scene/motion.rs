@@ -12,12 +12,13 @@ use gaitway::retarget::{
     ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, Overridden, Playback, Playhead, RetargetEdits, ViewerState,
-    active_map, active_maps, apply, from_link, reconciled_maps, to_link,
+    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map,
+    active_maps, apply, from_link, reconciled_maps, to_link,
 };
 use glam::Vec3;
 
 use crate::data::walker;
+use crate::history::{redo, undo};
 use crate::skeletons;
 
 /// The walker with its own clips as a motion.
@@ -191,12 +192,12 @@ fn a_source_can_be_changed_and_restored() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
     assert!(
-        history.undo(&mut state, &mut Overridden::default(), &mut library)
-            && history.undo(&mut state, &mut Overridden::default(), &mut library)
+        undo(&mut history, &mut state, &mut library)
+            && undo(&mut history, &mut state, &mut library)
             && !history.can_undo()
     );
     assert_eq!(state, before);
-    assert!(history.redo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(redo(&mut history, &mut state, &mut library));
     assert_eq!(source(&library, &state), Some(head));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();

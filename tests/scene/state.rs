@@ -195,9 +195,9 @@ fn panning_by_a_viewport_height_moves_by_the_visible_height() {
     assert!(panned.target.distance(Vec3::new(height, 0.5 * height, 0.0)) < 1e-5, "{}", panned.target);
 }
 
-/// Of many clips, those whose names are most like the one that doesn't exist; by index, the first ones.
+/// Of many clips, the message lists those with the most similar names; for an index, the first ones.
 #[test]
-fn an_unknown_clip_is_told_with_the_nearest_names() {
+fn the_message_about_an_unknown_clip_lists_similar_names() {
     let names = ["Idle", "Jump", "Run_Backwards", "Sit", "Walk", "walk_b", "Wave", "Walking", "Run"];
     let check = |name: &str, clips: &[&str], expected: &str| {
         let clips = clips.iter().map(|clip| (*clip).to_owned()).collect();

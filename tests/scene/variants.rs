@@ -1,20 +1,23 @@
-//! The choice of a material variant: command, undo, other models, links, and unknown names.
+//! Choosing a material variant: commands, undo, other models, links and unknown names.
+
+use std::sync::Arc;
 
 use gaitway::asset::Asset;
 use gaitway::editor::{Contents, Editor, Event};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model};
 use gaitway::state::{Command, History, ViewerState, apply, from_link, to_link};
+use glam::Vec3;
 
 use crate::cli::{check_fails, document};
 use crate::data::{library_of, moving_box};
 
-/// The moving box in two variants.
+/// A box with two variants.
 fn model(source: &str) -> Model {
-    let library = moving_box(0.5, &[0.0, 1.0], &[glam::Vec3::ZERO; 2]);
+    let library = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO; 2]);
     let asset = library.active().expect("a model").asset.clone();
     drop(library);
-    let mut parts = std::sync::Arc::try_unwrap(asset).expect("the only owner").into_parts();
+    let mut parts = Arc::try_unwrap(asset).expect("the only owner").into_parts();
     parts.variants = vec!["Day".to_owned(), "Night".to_owned()];
     Model::new(source.to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
 }
@@ -37,7 +40,7 @@ fn the_frame_says_which_variant_is_drawn() {
         evaluate(&library, &state, 1.0, &mut frame);
         assert_eq!(frame.characters[0].variant, variant, "{:?}", state.edits.variant);
     }
-    // A view may name one that the model lacks.
+    // A view may name a variant that the model lacks.
     state.edits.variant = Some("Dusk".to_owned());
     evaluate(&library, &state, 1.0, &mut frame);
     assert_eq!(frame.characters[0].variant, None);
@@ -60,16 +63,16 @@ fn a_variant_is_undone_and_stays_with_its_model() {
 }
 
 #[test]
-fn an_unknown_variant_of_a_view_is_told() {
-    let told = "variant: expected the name of a material variant, found “Dusk”; its variants are Day, Night; the file's own \
-                materials are used.";
+fn an_unknown_variant_of_a_view_is_reported() {
+    let notice = "variant: expected the name of a material variant, found “Dusk”; its variants are Day, Night; the \
+                  file's own materials are used.";
     let mut view = ViewerState::of_model("box.glb".to_owned());
     view.edits.variant = Some("Dusk".to_owned());
     let mut editor = Editor::default();
     let contents = Contents { models: vec![model("box.glb").into()], ..Contents::default() };
     editor.open(contents, Some(view), &mut |_| Ok(())).expect("fits");
     let events = editor.take_events();
-    assert!(events.iter().any(|event| matches!(event, Event::Notice { text, .. } if text == told)), "{events:?}");
+    assert!(events.iter().any(|event| matches!(event, Event::Notice { text, .. } if text == notice)), "{events:?}");
 }
 
 #[test]
@@ -77,8 +80,8 @@ fn the_command_line_knows_variants() {
     assert_eq!(document(&["inspect", "sample:walker", "--json"])["variants"], serde_json::json!([]));
     // Without a renderer there is no `render`.
     if cfg!(feature = "render") {
-        let says = "expected the name of a material variant, found “Red”; there are no variants";
-        check_fails(&["render", "sample:walker", "--out", "-", "--variant", "Red"], 1, says);
+        let expected = "expected the name of a material variant, found “Red”; there are no variants";
+        check_fails(&["render", "sample:walker", "--out", "-", "--variant", "Red"], 1, expected);
     }
 }
 

@@ -25,6 +25,11 @@ pub fn shorts(values: &[u16]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
+/// The texts of all warnings.
+pub fn warnings(asset: &Asset) -> Vec<String> {
+    asset.warnings.iter().map(ToString::to_string).collect()
+}
+
 impl Build {
     pub fn new() -> Self {
         let json = json!({ "asset": { "version": "2.0" }, "accessors": [], "bufferViews": [] });
@@ -103,6 +108,11 @@ impl Build {
     /// Sets an attribute of the first primitive.
     pub fn attribute(&mut self, semantic: &str, accessor: usize) {
         self.json["meshes"][0]["primitives"][0]["attributes"][semantic] = json!(accessor);
+    }
+
+    /// Loads a file that is expected to be readable.
+    pub fn loaded(self) -> Asset {
+        self.load().unwrap_or_else(|problem| panic!("{problem}"))
     }
 
     /// Replaces the value at a JSON pointer; the parent must exist.

@@ -5,6 +5,7 @@ mod random;
 
 use random::Random;
 
+/// Damages files at random places.
 pub struct Damage(Random);
 
 impl Damage {
@@ -12,7 +13,7 @@ impl Damage {
         Self(Random(1))
     }
 
-    /// Returns a copy with up to three flipped bits, overwritten bytes or a lost end.
+    /// Returns a copy with up to three flipped bits, overwritten bytes or truncations.
     pub fn of(&mut self, file: &[u8]) -> Vec<u8> {
         let mut damaged = file.to_vec();
         for _ in 0..=self.0.below(3) {

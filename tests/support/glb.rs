@@ -318,7 +318,7 @@ fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| weights[0] * a + sign * weights[1] * b).collect()
 }
 
-/// Reads a GLB completely: every index in range, every number finite, weights of sum 1.
+/// Reads a GLB completely, and checks that every index is in range, every number finite, and weights sum to 1.
 pub fn check(glb: &[u8]) {
     let glb = Glb::new(glb);
     for (index, _) in glb.list("accessors").iter().enumerate() {

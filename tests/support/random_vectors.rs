@@ -1,4 +1,4 @@
-//! Random vectors and rotations; apart from the numbers, because parts test without glam.
+//! Random vectors and rotations; not in `random`, because the tests of parts/* don't depend on glam.
 
 // Each test program uses a part of it.
 #![allow(dead_code)]

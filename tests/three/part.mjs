@@ -1,5 +1,5 @@
-// Runs the page's parts in Node as web/shell/parts.js does in a worker, and their native programs; parts/part/src/lib.rs says
-// how they are called.
+// Runs the page's parts in Node, as web/shell/parts.js does in a worker, and their native programs. parts/part/src/lib.rs
+// describes the calls.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
@@ -33,7 +33,7 @@ export async function startPart(part) {
 }
 
 /**
- * Runs a part as the native programs have it, like a function of {@link startPart}.
+ * Runs a part's native program. Takes and returns the same as a function from {@link startPart}.
  * @param {string} part
  * @param {Uint8Array} input
  */

@@ -1,6 +1,5 @@
-// The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the same
-// bytes, and the decoders those that other viewers' give: meshoptimizer's and Draco's, and Basis Universal's transcoder, as
-// three.js ships them.
+// The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the
+// same bytes. The decoders also give the same bytes as those that three.js ships: meshoptimizer, Draco and Basis Universal.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -95,7 +94,7 @@ describe("the FBX reader gives the same bytes as a module", { skip: skipWithoutD
     });
 });
 
-// The command line embeds the textures that lie beside these, so the reader has to run by itself.
+// `gaitway convert` also embeds the textures beside these files, so the reader runs on its own here.
 describe("the .x reader gives the same bytes as a module", { skip: skipWithoutData }, () => {
   if (skipWithoutData) return;
   const starting = startPart("x");
@@ -211,7 +210,7 @@ const KTX2_FORMATS = [
   { device: "ASTC", formats: 4, answers: { 0: RGBA32, 4: 10 } },
 ];
 
-// The command line writes KTX2 images as they are, so the transcoder has to run by itself.
+// `gaitway convert` writes KTX2 images as they are, so the transcoder runs on its own here.
 describe("KTX2 images are transcoded as by Basis Universal", () => {
   const starting = Promise.all([startPart("ktx2"), startTranscoder()]);
   const own = path.join(repository, "tests/support/ktx2");

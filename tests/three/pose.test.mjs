@@ -20,10 +20,12 @@ console.warn = () => {};
 
 const totals = { files: 0, clips: 0, poses: 0, vertices: 0, worst: 0, worstWhere: "" };
 
+const INSTANCES = "skipped: three.js has no nodes for instances; tests/formats/instancing.rs checks their transforms";
+
 describe("positions agree with three.js", { skip: skipWithoutData, concurrency: 2 }, () => {
   if (skipWithoutData) return;
   for (const file of gltfFiles()) {
-    if (hasInstances(file.file)) test(file.name, { skip: "skipped: three.js draws instances without nodes of their own; tests/formats/instancing.rs has their places" });
+    if (hasInstances(file.file)) test(file.name, { skip: INSTANCES });
     else if (file.rejected === null) test(file.name, () => compareFile(file));
     else test(`${file.name} is rejected`, () => checkRejected(file, file.rejected ?? ""));
   }

@@ -137,7 +137,7 @@ fn modes_are_compared_by_a_switch() {
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::Camera.label());
-    let rate = text::option_of(text::FRAME_RATE, &text::frames_per_sec(60));
+    let rate = text::labelled(text::FRAME_RATE, &text::frames_per_sec(60));
     for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
@@ -175,11 +175,11 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     press(&mut harness, text::FIT);
     press(&mut harness, "Walk (2)");
     assert_eq!(
-        harness.query_all_by_label_contains(&text::figure(text::MEAN, "0.0")).count(),
+        harness.query_all_by_label_contains(&text::labelled(text::MEAN, "0.0")).count(),
         3,
         "a copy fits: limbs, facing, rotations"
     );
-    assert!(harness.query_by_label(&text::figure(text::COVERAGE, "100 %")).is_some());
+    assert!(harness.query_by_label(&text::labelled(text::COVERAGE, "100 %")).is_some());
     press(&mut harness, text::FILES);
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
     harness.run();

@@ -56,7 +56,7 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
         state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
     });
     harness.run();
-    let unscaled = text::fact(text::SCALE, "1.000 1.000 1.000");
+    let unscaled = text::labelled(text::SCALE, "1.000 1.000 1.000");
     assert_eq!(harness.query_all_by_label(&unscaled).count(), 2, "local and in the world");
     reach(&mut harness, text::MATRICES);
     let zero = "0.0000";

@@ -91,7 +91,7 @@ fn the_menu_leads_to_everything_else() {
         (host.has_gallery, host.has_fullscreen) = (true, true);
         harness.run();
         choose(&mut harness, text::MENU, text::FULL_SCREEN);
-        choose(&mut harness, text::MENU, &text::option_of(text::THEME, "Dark"));
+        choose(&mut harness, text::MENU, &text::labelled(text::THEME, "Dark"));
         let expected = [UiAction::ToggleFullscreen, UiAction::SetTheme(ThemePreference::Dark)];
         assert_eq!(harness.state().actions, expected, "{size:?}");
         harness.key_press(egui::Key::Escape);

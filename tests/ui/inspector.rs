@@ -118,10 +118,10 @@ fn view_sets_the_light() {
     // Tall enough for the whole tab.
     let mut harness = bench_of([1280.0, 1600.0], library);
     press(&mut harness, Tab::Camera.label());
-    let agx = text::option_of(text::TONE_MAP, text::TONE_AGX);
+    let agx = text::labelled(text::TONE_MAP, text::TONE_AGX);
     assert_eq!(press(&mut harness, &agx), [Command::SetToneMap(ToneMap::Agx)]);
     let outdoor = EnvironmentChoice::Setup(LightSetup::Outdoor);
-    let label = text::option_of(text::LIGHT, text::OUTDOOR_LIGHT);
+    let label = text::labelled(text::LIGHT, text::OUTDOOR_LIGHT);
     assert_eq!(press(&mut harness, &label), [Command::SetLight(outdoor)]);
     let beach = EnvironmentChoice::File("beach.hdr".to_owned());
     assert_eq!(press(&mut harness, "beach.hdr"), [Command::SetLight(beach)]);
@@ -141,7 +141,7 @@ fn the_file_report_counts_and_groups() {
     let mut harness = bench(WIDE, model_with_clips(3));
     press(&mut harness, Tab::Info.label());
     for (name, value) in [(text::FORMAT, "GLB"), (text::CLIPS, "3"), (text::NODES, "1")] {
-        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
+        assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());
     assert!(harness.query_by_label(&text::counted("matrix-not-decomposable", 2)).is_some());
@@ -162,7 +162,7 @@ fn glowing() -> Model {
     Model::new("glow.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
 }
 
-/// A head without eyes of its own, on a spring, with an expression that has an effect and one that has none.
+/// A head without eye bones, on a spring, with an expression that has an effect and one that has none.
 fn avatar() -> Model {
     let joint = Joint { name: "Head".to_owned(), ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");
@@ -215,7 +215,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     assert!(harness.query_by_label("Z").is_some());
     press(&mut harness, Tab::Info.label());
     for (name, value) in [("Commercial usage name", "Allow"), (&*text::first_person("Head"), "Third person only")] {
-        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
+        assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
 }
 
@@ -227,11 +227,11 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     press(&mut harness, Tab::Info.label());
     assert!(harness.query_by_label(&text::counted("Glow", 2)).is_some());
     assert!(harness.query_by_label_contains("Nothing (").is_none());
-    let color = text::option_of("Paint", text::BASE_COLOR);
-    let visibility = text::option_of("Only", text::VISIBILITY);
+    let color = text::labelled("Paint", text::BASE_COLOR);
+    let visibility = text::labelled("Only", text::VISIBILITY);
     let values = [(&color, "1.000  0.500  0.000  1.000"), (&visibility, text::HIDDEN)];
     for (name, value) in values {
-        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
+        assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
     let mut plain = sample_bench(WIDE);
     press(&mut plain, "Head");

@@ -1,5 +1,5 @@
-// Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a model that
-// couldn't be loaded, without asking for it.
+// Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a model
+// that couldn't be loaded, without asking for it.
 import { button, dialog, showList } from "./dom.js";
 import { companionWords } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
@@ -9,9 +9,13 @@ import { panel } from "./panels.js";
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
 
 /**
- * `link` is as given; `marked` has its files marked as local; `wanted` are the files that it waits for, `missing` those to ask for;
- * `sets` have arrived meanwhile.
- * @typedef {{ link: string, marked: string, wanted: LinkedFile[], missing: LinkedFile[], sets: Item[][] }} Awaited
+ * A link that waits for files.
+ * @typedef {object} Awaited
+ * @property {string} link As given.
+ * @property {string} marked The link with all of `wanted` marked as local files.
+ * @property {LinkedFile[]} wanted The files that it waits for.
+ * @property {LinkedFile[]} missing Those that the page asks for.
+ * @property {Item[][]} sets The sets of files that have arrived meanwhile.
  */
 
 /** @type {Awaited | null} */
@@ -35,7 +39,7 @@ export function awaitFiles(link) {
 }
 
 /**
- * Waits for copies of a link's files that couldn't be loaded as well.
+ * Also waits for copies of a link's files that couldn't be loaded.
  * @param {string} link
  * @param {string[]} names
  */

@@ -75,14 +75,14 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
 /**
- * Whether the stage is empty, or has a motion's skeleton, where the link's model should be.
- * @param {string[]} models
+ * Whether the stage is empty, or shows a motion's skeleton, instead of one of the link's models.
+ * @param {import("./types.d.ts").LinkedFile[]} models
  * @param {boolean} isUnchanged
  */
 function lacksModel(models, isUnchanged) {
   if (session.app === null) return false;
   const isEmpty = JSON.parse(session.app.summary()).isEmpty;
-  const isShown = (/** @type {string} */ source) => models.some((name) => source.startsWith(name));
+  const isShown = (/** @type {string} */ source) => models.some(({ name }) => source.startsWith(name));
   return isEmpty || !(isUnchanged || JSON.parse(session.app.state()).model.some(isShown));
 }
 
@@ -98,9 +98,9 @@ export function showMissing(problems, link, isUnchanged = false) {
   showList("missing-parts", problems);
   // A problem may name the absolute URL of a relative one, or only the file.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
-  const models = linkedFiles(link).flatMap(({ role, name }) => (role === "model" && failed.includes(fileName(name)) ? [name] : []));
+  const models = linkedFiles(link).filter(({ role, name }) => role === "model" && failed.includes(fileName(name)));
   const isModel = models.length > 0;
-  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models);
+  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models.map(({ name }) => name));
   byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
   byId("missing-rest").textContent = isUnchanged
     ? "The current view stays as it was."

@@ -17,7 +17,7 @@ const held = [];
 export const nameOf = (item) => (typeof item === "string" ? item : item.name);
 
 /**
- * Returns the last part of a path or URL, without its query and decoded.
+ * Returns the decoded last part of a path or URL, without its query.
  * @param {string} address
  */
 export function fileName(address) {
@@ -98,7 +98,7 @@ export function heldMotionsAndLight(link) {
   const models = setsOf(link, "model");
   const motions = setsOf(link, "motion").filter((set) => !models.includes(set));
   const sets = [...models, ...motions];
-  // Not the whole set of the light, which may have a model that is no longer shown.
+  // Not the whole set with the light: it may contain a model that is no longer shown.
   const lights = linkedFiles(link).flatMap(({ role, name, isToBring }) => {
     const item = role === "light" && !isToBring ? itemNamed(name) : undefined;
     return item === undefined || sets.some((set) => set.includes(item)) ? [] : [item];

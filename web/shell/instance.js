@@ -81,7 +81,8 @@ async function start(renderer) {
     session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);
     session.askedLink = null;
-    const files = await Promise.all([heldItems(session.link), heldMotionsAndLight(session.link)].map((items) => readOrReport(items, sayProblem)));
+    const sets = [heldItems(session.link), heldMotionsAndLight(session.link)];
+    const files = await Promise.all(sets.map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
     if (problem === null) {
       keepOffline(programFiles(attempt));

@@ -32,7 +32,7 @@ async function work({ data: { module, input } }) {
   postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
 }
 
-/** The name of the error for a module that the page wasn't built with: such a failure says nothing about the file. */
+/** The error's name if a module isn't the one that the page was built with; then nothing is wrong with the file. */
 const CHANGED = "ChangedPart";
 
 /**
@@ -47,7 +47,8 @@ async function check(file, module) {
   const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", module));
   const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, expected.length);
   if (found === expected) return;
-  const error = new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; reload the page, and if that doesn't help, clear this site's data in the browser first`);
+  const hint = "reload the page, and if that doesn't help, clear this site's data in the browser first";
+  const error = new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; ${hint}`);
   error.name = CHANGED;
   throw error;
 }

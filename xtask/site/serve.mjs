@@ -1,4 +1,4 @@
-// Serves one folder until the process is stopped: `node xtask/site/serve.mjs FOLDER PORT`. Port 0 is a free one.
+// Serves a folder until the process is stopped: `node xtask/site/serve.mjs FOLDER PORT`. Port 0 chooses a free port.
 import { serve } from "./server.mjs";
 
 const [folder, port] = process.argv.slice(2);

@@ -1,5 +1,5 @@
-// A static file server: for `cargo xtask serve`, and for tests and benchmarks, which serve the page from a folder that is not
-// the root, as any host would, and the data folder from a second origin that allows cross-origin reads.
+// A static file server for `cargo xtask serve`, tests and benchmarks. These serve the page from a folder below the root,
+// as many hosts do, and the data folder from a second origin that allows cross-origin reads.
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -38,7 +38,8 @@ const COPIES = [
 export async function serve(mounts, headers = {}, port = 0) {
   const server = http.createServer((request, response) => {
     if (request.method !== "GET" && request.method !== "HEAD") {
-      response.writeHead(405, { "content-type": "text/plain", allow: "GET, HEAD", ...headers }).end("only GET and HEAD");
+      const allowed = { "content-type": "text/plain", allow: "GET, HEAD", ...headers };
+      response.writeHead(405, allowed).end("only GET and HEAD");
       return;
     }
     const file = fileFor(request.url ?? "/", mounts);
@@ -47,16 +48,19 @@ export async function serve(mounts, headers = {}, port = 0) {
       return;
     }
     const type = TYPES[path.extname(file)] ?? "application/octet-stream";
-    const copy = COPIES.find(({ encoding, extension }) => String(request.headers["accept-encoding"]).includes(encoding) && fs.existsSync(file + extension));
-    const [sent, compressed] = copy === undefined ? [file, {}] : [file + copy.extension, { "content-encoding": copy.encoding }];
-    response.writeHead(200, { "content-type": type, "content-length": fs.statSync(sent).size, ...compressed, ...headers });
+    const accepted = String(request.headers["accept-encoding"]);
+    const copy = COPIES.find(({ encoding, extension }) => accepted.includes(encoding) && fs.existsSync(file + extension));
+    const sent = file + (copy?.extension ?? "");
+    const size = { "content-length": fs.statSync(sent).size };
+    const compressed = copy === undefined ? {} : { "content-encoding": copy.encoding };
+    response.writeHead(200, { "content-type": type, ...size, ...compressed, ...headers });
     fs.createReadStream(sent).pipe(response);
   });
   return await listening(server, port);
 }
 
 /**
- * Returns the file that a request names, or null. A path never leads out of its folder.
+ * Returns the file that a request names, or null. A path can't lead out of its folder.
  * @param {string} target
  * @param {Record<string, string>} mounts
  */

@@ -147,7 +147,7 @@ mod tests {
         std::iter::once("file\trepository\tpath\tsha256\n".to_owned()).chain(rows).collect()
     }
 
-    /// A local stand-in for GitHub with one repository, `owner/name`. It ends when it is dropped.
+    /// A local stand-in for GitHub with one repository, `owner/name`. Dropping it stops the server.
     struct Host {
         server: Child,
         origin: String,

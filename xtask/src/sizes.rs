@@ -7,8 +7,8 @@ use crate::process::run;
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
 const MAX_BYTES: [(&str, u32); 9] = [
-    ("webgpu", 1_321_000),
-    ("webgl2", 1_767_000),
+    ("webgpu", 1_250_000),
+    ("webgl2", 1_700_000),
     ("parts/draco", 65_000),
     ("parts/fbx", 125_000),
     ("parts/ktx2", 87_000),

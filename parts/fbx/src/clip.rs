@@ -168,9 +168,10 @@ impl<'a> Clip<'a, '_> {
             let mut sample = |time: f64, out: &mut [f64]| {
                 let mut rest = out;
                 for channel in &channels {
-                    let weight = Some(ufbx::evaluate_blend_weight(anim, channel, start + time));
+                    let weight = ufbx::evaluate_blend_weight(anim, channel, start + time);
                     let (own, others) = rest.split_at_mut(channel.keyframes.count);
-                    shape_weights(channel, weight.filter(|weight| weight.is_finite()).unwrap_or_default(), own);
+                    let weight = Some(weight).filter(|weight| weight.is_finite()).unwrap_or_default();
+                    shape_weights(channel, weight, own);
                     rest = others;
                 }
             };

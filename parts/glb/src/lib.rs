@@ -222,7 +222,7 @@ fn power_of_ten(exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / power } else { power }
 }
 
-/// Returns a mesh, to which morph targets can be added; an empty name is left out.
+/// Returns a mesh's JSON object, to which the caller can add morph targets. Omits an empty name.
 pub fn mesh(name: &str, primitives: &List) -> Object {
     let mut mesh = Object::new();
     if !name.is_empty() {

@@ -98,7 +98,7 @@ impl Exchange {
 }
 
 /// Makes a program of a function `fn(&[u8]) -> Answer`: a module with the exports that the crate's documentation describes.
-/// Natively, a program that does the same by [`pipe`].
+/// Natively, the program runs [`pipe`] instead.
 #[macro_export]
 macro_rules! module {
     ($convert:path) => {
@@ -139,10 +139,11 @@ macro_rules! module {
     };
 }
 
-/// Converts standard input and writes the encoded answer to standard output, for tests to compare with the module's.
+/// Converts standard input and writes the encoded answer to standard output, so that tests can compare it with the
+/// module's.
 ///
 /// # Errors
-/// If the input cannot be read or the answer not be written.
+/// If the input cannot be read or the answer cannot be written.
 pub fn pipe(convert: fn(&[u8]) -> Answer) -> io::Result<()> {
     let mut input = Vec::new();
     io::stdin().read_to_end(&mut input)?;

@@ -51,9 +51,9 @@ pub async fn finish(part: Part, running: JsFuture) -> Answer {
             let named = |error: js_sys::Error| (String::from(error.name()), String::from(error.message()));
             let (name, message) = problem.dyn_into().map_or_else(|_| Default::default(), named);
             let title = part.title();
-            // The shell's name for a module that isn't the one the page was built with.
+            // The shell throws this if the module isn't the one the page was built with.
             Err(match name == "ChangedPart" {
-                true => format!("the {title} is damaged or of another version: {message}"),
+                true => format!("the {title} is damaged or from another version: {message}"),
                 false => format!("the {title} stopped ({message}); the file may be damaged"),
             })
         }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// Edge length of a face of the irradiance, which is smooth.
+/// Edge length of an irradiance face, small because irradiance is smooth.
 const IRRADIANCE_SIZE: usize = 16;
 
 /// One mip level. Every face has a border of one texel from its neighbours, so that filtering knows no edges.
@@ -49,7 +49,7 @@ fn center(size: usize, x: usize, y: usize) -> Vec2 {
     (Vec2::new(x as f32, y as f32) + 0.5) * (2.0 / size as f32) - 1.0
 }
 
-/// Directions to the texels of all faces, not normalized.
+/// Returns the directions to the texels of all faces, not normalized.
 fn directions(size: usize) -> impl Iterator<Item = Vec3> {
     (0..6 * size * size).map(move |texel| {
         let (face, on) = (texel / (size * size), texel % (size * size));
@@ -158,9 +158,9 @@ impl Cube {
         sum.truncate()
     }
 
-    /// Returns the light that a white diffuse surface reflects, the irradiance over π, for normals towards all directions: the
-    /// edge length of a face and the texels of all faces. Spherical harmonics of few bands would let a strong lamp shine
-    /// around corners.
+    /// Returns the irradiance over π, which a white diffuse surface reflects, as a cube map indexed by the normal: the
+    /// edge length of a face and the texels of all faces. Spherical harmonics of few bands would let a strong lamp
+    /// light surfaces that face away from it.
     pub fn irradiance(&self) -> (usize, Vec<Vec3>) {
         let lights = self.lights();
         let reflected = |normal: Vec3| {
@@ -170,14 +170,14 @@ impl Cube {
         (IRRADIANCE_SIZE, directions(IRRADIANCE_SIZE).map(|at| reflected(at.normalize_or_zero())).collect())
     }
 
-    /// Returns the mean direction that light comes from: as long as 1 for a single lamp, 0 for light from everywhere alike.
+    /// Returns the mean direction of incoming light. Its length is 1 for a single small lamp, 0 for uniform light.
     pub fn mean_direction(&self) -> Vec3 {
         let weighted = self.lights().into_iter().map(|(from, light)| from.extend(1.0) * light.truncate().element_sum());
         let sum: Vec4 = weighted.sum();
         sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
     }
 
-    /// The light from all directions, and in W the solid angle that it comes from, in parts of the same unit.
+    /// Returns directions with the light from there times its relative solid angle, which W holds.
     fn lights(&self) -> Vec<(Vec3, Vec4)> {
         let size = (self.levels[0].size / 8).max(4);
         let level = self.levels.iter().find(|level| level.size <= size).unwrap_or(&self.levels[0]);

@@ -278,7 +278,7 @@ pub(super) fn write_expressions(expressions: &BTreeMap<String, f32>) -> Written 
     Written::Text(joined(expressions.iter().map(pair)))
 }
 
-/// Names are escaped as joint names are.
+/// Names are escaped like joint names.
 pub(super) fn read_expressions(text: &str) -> Option<BTreeMap<String, f32>> {
     let pair = |pair: &str| {
         let (name, weight) = pair.split_once(':')?;

@@ -20,20 +20,20 @@ pub(super) struct Texts {
     standing: String,
     /// What the joint does without a source.
     policy: String,
-    /// The policy of the whole map.
-    as_all: String,
+    /// The option of doing what the map sets for all unmapped joints.
+    default_policy: String,
     /// What it can do without a source.
     policies: Vec<(Unmapped, String)>,
 }
 
 impl Texts {
     pub fn new(pairing: &Pairing<'_>, row: &Row) -> Self {
-        let as_all = text::as_all(&options::policy_text(pairing, &pairing.map.unmapped));
+        let default_policy = text::default_policy(&options::policy_text(pairing, &pairing.map.unmapped));
         let own = pairing.map.joints.get(&row.number).and_then(|entry| entry.unmapped.as_ref());
         Self {
-            standing: format!("{}: {}", row.state.word(), row.why),
-            policy: own.map_or_else(|| as_all.clone(), |own| options::policy_text(pairing, own)),
-            as_all,
+            standing: text::labelled(row.state.word(), &row.why),
+            policy: own.map_or_else(|| default_policy.clone(), |own| options::policy_text(pairing, own)),
+            default_policy,
             policies: options::policies(pairing),
         }
     }
@@ -94,7 +94,7 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
                 tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
             }
             let clear = ui.add_enabled(row.source.is_some(), egui::Button::new(text::CLEAR_SOURCE));
-            if clear.on_hover_text("Follow nothing").clicked() {
+            if clear.on_hover_text("Leave the joint unmapped").clicked() {
                 out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source: None });
             }
         });
@@ -284,7 +284,7 @@ fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Opti
     let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate();
     let combo = combo.selected_text(&texts.policy);
     let response = combo.show_ui(ui, |ui| {
-        if ui.selectable_label(own.is_none(), &texts.as_all).clicked() {
+        if ui.selectable_label(own.is_none(), &texts.default_policy).clicked() {
             pressed = Some(None);
         }
         for (policy, text) in &texts.policies {

@@ -100,7 +100,7 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         length("Mean height of the soles", foot_hover_metres_mean),
         length("Max. ground penetration", ground_penetration_metres_max),
     ];
-    lines.extend(planting.map(|planting| Line::Note(text::figure(text::PLANTING, &format!("{planting}.")))));
+    lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));
     lines.push(figure(text::COVERAGE, coverage.map(|share| format!("{:.0} %", 100.0 * share))));
     lines
@@ -108,7 +108,7 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
 
 fn figure(name: &'static str, value: Option<String>) -> Line {
     let value = value.unwrap_or_else(|| "cannot be measured".to_owned());
-    Line::Figure { name, text: text::figure(name, &value), value }
+    Line::Figure { name, text: text::labelled(name, &value), value }
 }
 
 fn row(ui: &mut Ui, name: &str, value: &str, text: &str) {

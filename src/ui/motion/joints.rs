@@ -138,7 +138,7 @@ impl Lines {
         let nothing = match search.is_empty() {
             true if filter == Filter::NeedsReview => text::NOTHING_TO_REVIEW.to_owned(),
             true => text::NO_SUCH_JOINTS.to_owned(),
-            false => format!("No such joint is called “{search}”."),
+            false => format!("No joint matches “{search}”."),
         };
         let detail = rows.iter().find(|row| Some(row.number) == chosen).map(|row| detail::Texts::new(pairing, row));
         Self { contents: contents.clone(), search, filter, chosen, by_body, lines, nothing, detail }

@@ -338,13 +338,13 @@ impl<'a> PairFacts<'a> {
         let left_out = pairing.proposal.and_then(|proposal| left_out(&proposal.model, joint));
         why.push(match (source, given, as_proposed) {
             (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
-            (Some(_), _, None) => "chosen by hand".to_owned(),
+            (Some(_), _, None) => "chosen manually".to_owned(),
             (None, Some(None), None) => text::DELIBERATELY_NONE.to_owned(),
             (None, None, None) if left_out.is_some() => {
                 let what = left_out.map(slot_text).unwrap_or_default();
                 format!("probably the {what}, but too uncertain to map")
             }
-            _ => "follows nothing".to_owned(),
+            _ => "unmapped".to_owned(),
         });
         let (state, needs_review) = match source {
             None => {
@@ -365,7 +365,7 @@ impl<'a> PairFacts<'a> {
         Row {
             joint,
             number,
-            follows: format!("{}{why})", text::row(&target, &source_text, state.word())),
+            follows: text::labelled(&text::row(&target, &source_text, state.word()), &why),
             target,
             what,
             source,
@@ -397,8 +397,8 @@ fn muted_text(muted: [bool; 3]) -> Option<String> {
         text::CHANNELS.into_iter().zip(muted).filter(|(_, muted)| *muted).map(|(name, _)| name).collect();
     match muted.len() {
         0 => None,
-        3 => Some("all of it left out".to_owned()),
-        _ => Some(text::left_out(&muted.join(" and "))),
+        3 => Some("all channels ignored".to_owned()),
+        _ => Some(text::ignored(&muted.join(" and "))),
     }
 }
 

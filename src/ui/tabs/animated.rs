@@ -1,10 +1,10 @@
-//! What clips animate besides joints, in the Info tab: materials, lights, cameras, visibility,
-//! expressions and single morph weights.
+//! What clips animate besides joints, in the Info tab: materials, lights, cameras, visibility, expressions and single
+//! morph weights.
 
 use egui::Ui;
 
 use super::report::{aligned, fact};
-use crate::anim::{CameraProperty, LightProperty, MaterialProperty, PropertyChannel, PropertyTarget, TextureSlot};
+use crate::anim::{PropertyChannel, PropertyTarget};
 use crate::library::Model;
 use crate::state::title;
 use crate::ui::{Shown, controls, text};
@@ -61,80 +61,30 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
     let (subject, property) = match target {
         PropertyTarget::Material(number, property) => {
             let material = asset.materials.get(number).map(|material| &*material.name);
-            (called(material, "Material", number), material_property(property))
+            (called(material, "Material", number), text::material_property(property).into_owned())
         }
         PropertyTarget::Light(number, property) => {
             let light = asset.lights.iter().find(|light| light.number == number);
             (
                 called(light.map(|light| asset.skeleton.name(light.joint)), "Light", number),
-                light_property(property).to_owned(),
+                text::light_property(property).to_owned(),
             )
         }
         PropertyTarget::Camera(number, property) => {
             let camera = asset.cameras.iter().find(|camera| camera.number == number);
-            (called(camera.map(|camera| &*camera.name), "Camera", number), camera_property(property).to_owned())
+            (called(camera.map(|camera| &*camera.name), "Camera", number), text::camera_property(property).to_owned())
         }
         PropertyTarget::Visibility(joint) => {
             (title(Some(shown.state), asset, joint).into_owned(), text::VISIBILITY.to_owned())
         }
-        PropertyTarget::LookAt => ("Eyes".to_owned(), "direction".to_owned()),
-        PropertyTarget::Expression(number) => {
-            let name = asset.avatar.expressions.get(number).map(|expression| &*expression.name);
-            (called(name, "Expression", number), "expression".to_owned())
+        PropertyTarget::LookAt => ("Eyes".to_owned(), "gaze direction".to_owned()),
+        PropertyTarget::Expression(index) => {
+            let name = asset.avatar.expressions.get(index).map(|expression| &*expression.name);
+            (called(name, "Expression", index), "expression".to_owned())
         }
         PropertyTarget::MorphWeight(joint, target) => {
             (title(Some(shown.state), asset, joint).into_owned(), format!("morph weight {target}"))
         }
     };
-    text::option_of(&subject, &property)
-}
-
-fn material_property(property: MaterialProperty) -> String {
-    let texture = |slot: TextureSlot, what: &str| format!("{} texture {what}", words(&format!("{slot:?}")));
-    match property {
-        MaterialProperty::BaseColor => text::BASE_COLOR.to_owned(),
-        MaterialProperty::Metallic => "metallic".to_owned(),
-        MaterialProperty::Roughness => "roughness".to_owned(),
-        MaterialProperty::Emissive => "emissive colour".to_owned(),
-        MaterialProperty::EmissiveStrength => "emissive strength".to_owned(),
-        MaterialProperty::AlphaCutoff => "alpha cutoff".to_owned(),
-        MaterialProperty::NormalScale => "normal scale".to_owned(),
-        MaterialProperty::OcclusionStrength => "occlusion strength".to_owned(),
-        MaterialProperty::UvOffset(slot) => texture(slot, "offset"),
-        MaterialProperty::UvRotation(slot) => texture(slot, "rotation"),
-        MaterialProperty::UvScale(slot) => texture(slot, "scale"),
-        MaterialProperty::Lobe(factor) => words(&format!("{factor:?}")),
-        MaterialProperty::Toon(color) => words(&format!("{color:?}")),
-    }
-}
-
-/// Spells a variant's name: "sheen colour" for `SheenColor`.
-fn words(name: &str) -> String {
-    let mut words = String::new();
-    for letter in name.chars() {
-        if letter.is_uppercase() && !words.is_empty() {
-            words.push(' ');
-        }
-        words.push(letter.to_ascii_lowercase());
-    }
-    words.replace("color", "colour").replace("metallic ", "metallic-")
-}
-
-fn light_property(property: LightProperty) -> &'static str {
-    match property {
-        LightProperty::Color => "colour",
-        LightProperty::Intensity => "intensity",
-        LightProperty::Range => "range",
-        LightProperty::InnerCone => "inner cone angle",
-        LightProperty::OuterCone => "outer cone angle",
-    }
-}
-
-fn camera_property(property: CameraProperty) -> &'static str {
-    match property {
-        CameraProperty::YFov => "field of view",
-        CameraProperty::YMag => "height",
-        CameraProperty::Near => "near plane",
-        CameraProperty::Far => "far plane",
-    }
+    text::labelled(&subject, &property)
 }

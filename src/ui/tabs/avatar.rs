@@ -1,4 +1,4 @@
-//! The avatar's part of the Display tab: expressions, eyes and spring bones; and of the Info tab: licence and authors.
+//! Avatars: expressions, gaze and spring bones in the Display tab, licence and authors in the Info tab.
 
 use egui::Ui;
 
@@ -9,7 +9,7 @@ use crate::state::{Command, LookTarget, title};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 
-/// Sliders for expressions, and the controls of eyes and spring bones, as far as the model has them.
+/// Shows the controls of gaze, spring bones and expressions that the model has.
 pub fn controls(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
     let avatar = &model.asset.avatar;
     let has_springs = !avatar.springs.joints().is_empty();
@@ -27,7 +27,7 @@ pub fn controls(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output)
 
 fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let now = shown.state.display.look_at;
-    // A point starts where the camera is.
+    // The first point is the camera's position.
     let point = if let LookTarget::Point(point) = now { point } else { shown.frame.view.eye };
     let choices = [
         (LookTarget::Off, text::LOOK_OFF),
@@ -52,7 +52,7 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// They follow the clip until they are touched.
+/// Shows a slider per expression. It follows the clip until the user moves it.
 fn expressions(ui: &mut Ui, shown: &Shown<'_>, avatar: &Avatar, out: &mut Output) {
     let mut expressions = avatar.expressions.iter().enumerate().filter(|(_, one)| one.has_effect()).peekable();
     if expressions.peek().is_none() {
@@ -64,8 +64,8 @@ fn expressions(ui: &mut Ui, shown: &Shown<'_>, avatar: &Avatar, out: &mut Output
         out.commands.push(Command::ClearExpressions);
     }
     for (index, expression) in expressions {
-        let set = edited.get(&expression.name).or_else(|| shown.frame.expressions().get(index));
-        let value = f64::from(set.copied().unwrap_or(0.0));
+        let weight = edited.get(&expression.name).or_else(|| shown.frame.expressions().get(index));
+        let value = f64::from(weight.copied().unwrap_or(0.0));
         let settings = SliderSettings { range: (0.0, 1.0), default: 0.0, decimals: 2, suffix: "", logarithmic: false };
         let new =
             ui.push_id(("expression", index), |ui| controls::slider(ui, &expression.title, value, settings)).inner;
@@ -76,7 +76,7 @@ fn expressions(ui: &mut Ui, shown: &Shown<'_>, avatar: &Avatar, out: &mut Output
     }
 }
 
-/// Title, authors, terms of use, and how first-person cameras treat meshes.
+/// Shows title, authors, terms of use, and how first-person cameras treat meshes.
 pub fn facts(ui: &mut Ui, shown: &Shown<'_>, model: &Model) {
     let avatar = &model.asset.avatar;
     if avatar.meta.is_empty() && avatar.first_person.is_empty() {
@@ -85,11 +85,11 @@ pub fn facts(ui: &mut Ui, shown: &Shown<'_>, model: &Model) {
     controls::section(ui, "AVATAR");
     controls::card(ui, |ui| {
         for (key, value) in &avatar.meta {
-            fact(ui, &text::words(key), value);
+            fact(ui, &text::split_words(key), value);
         }
         for (joint, flag) in &avatar.first_person {
             let mesh = title(Some(shown.state), &model.asset, *joint);
-            fact(ui, &text::first_person(&mesh), &text::words(flag));
+            fact(ui, &text::first_person(&mesh), &text::split_words(flag));
         }
     });
 }

@@ -172,7 +172,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
             let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
             ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);
         }
-        let whole = text::fact(name, &texts.join(" "));
+        let whole = text::labelled(name, &texts.join(" "));
         response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
         let exact = match unit {
             "°" => quaternion_text(value.rotation),

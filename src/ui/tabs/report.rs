@@ -142,7 +142,7 @@ pub(super) fn fact(ui: &mut Ui, name: &str, value: &str) {
     let beside = name_size.x + value_size.x + 12.0 <= width;
     let height = if beside || value.is_empty() { name_size.y } else { name_size.y + value_size.y + 2.0 };
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
-    let whole = text::fact(name, value);
+    let whole = text::labelled(name, value);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
     let value_at = if beside {
         egui::pos2(rect.right() - value_size.x, rect.top())

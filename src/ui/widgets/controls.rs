@@ -114,7 +114,7 @@ fn segments<T: Copy + PartialEq>(
         let on = chosen == Some(*value);
         let role = egui::accesskit::Role::RadioButton;
         response.widget_info(|| {
-            let name = if about.is_empty() { (*label).to_owned() } else { text::option_of(about, label) };
+            let name = if about.is_empty() { (*label).to_owned() } else { text::labelled(about, label) };
             WidgetInfo::selected(role, ui.is_enabled(), on, name)
         });
         segment(ui, cell, &response, on, label);

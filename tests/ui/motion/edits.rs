@@ -1,4 +1,4 @@
-//! Edits of the map: sides, rotation offsets, channels, joints without a source, and their undo.
+//! Editing the map: sides, rotation offsets, channels, joints without a source, and undo.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -9,18 +9,20 @@ use gaitway::samples;
 use gaitway::state::{Command, MapEdit, muted_properties};
 use gaitway::ui::{Tab, UiAction, text};
 
-use super::{choose, edit, map, number, reach, says};
-use crate::bench::{Bench, WIDE, bench_of, drag, motion_bench, press, press_key};
+use super::{choose, edit, map, motion_tab, neck_details, number, reach, says};
+use crate::bench::{Bench, WIDE, bench_of, drag, press, press_key};
 
 #[test]
-fn whole_maps_are_swapped_cleared_and_taken_back() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn whole_maps_are_swapped_cleared_and_restored() {
+    let mut harness = motion_tab();
     let before = harness.state().state().clone();
     let [left, right] = ["LeftHand", "RightHand"].map(|name| number(&harness, name));
     assert_eq!(press(&mut harness, text::SWAP_SIDES), [edit(MapEdit::SwapSides)]);
     let swapped = text::row("LeftHand", &text::joint(right, "RightHand"), text::IS_SURE);
-    assert!(harness.query_by_label_contains(&swapped).is_some(), "on purpose: no conflict");
+    assert!(
+        harness.query_by_label_contains(&swapped).is_some(),
+        "swapping sides is deliberate, so there is no conflict"
+    );
     press(&mut harness, text::UNDO_KEY);
     assert!(harness.query_by_label_contains(&text::follows("LeftHand", &text::joint(left, "LeftHand"))).is_some());
     press(&mut harness, text::REDO_KEY);
@@ -36,7 +38,7 @@ fn whole_maps_are_swapped_cleared_and_taken_back() {
     assert_eq!(harness.state().state(), &before);
 }
 
-/// The walker in other words, with left and right exchanged, as converters that mirror a model leave it.
+/// The walker with other joint names, left and right exchanged, as by a converter that mirrors a model.
 #[test]
 fn sides_matched_by_position_are_matched_by_name_with_one_click() {
     let walker = samples::load("walker").expect("the sample is there");
@@ -75,7 +77,7 @@ fn sides_matched_by_position_are_matched_by_name_with_one_click() {
     let by_name = text::row("LeftWrist", &text::joint(at("LeftHand"), "LeftHand"), text::IS_SURE);
     assert!(harness.query_by_label_contains(&by_position).is_some());
     assert!(harness.query_by_label_contains(text::sides_matched(true)).is_some());
-    assert!(harness.query_by_label(text::SWAP_SIDES).is_none(), "one control for one effect");
+    assert!(harness.query_by_label(text::SWAP_SIDES).is_none(), "one control per effect");
     assert_eq!(press(&mut harness, text::MATCH_SIDES_BY_NAME), [edit(MapEdit::SwapSides)]);
     assert!(harness.query_by_label_contains(&by_name).is_some());
     assert!(harness.query_by_label_contains(text::sides_matched(false)).is_some());
@@ -83,11 +85,10 @@ fn sides_matched_by_position_are_matched_by_name_with_one_click() {
     assert!(harness.query_by_label_contains(&by_position).is_some());
 }
 
-/// A button that was reached with the tab key keeps the keyboard; edits made with it can be undone all the same.
+/// A button that was reached with the tab key keeps the focus; its edits can still be undone.
 #[test]
-fn undo_works_while_a_button_has_the_keyboard() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn undo_works_while_a_button_has_the_focus() {
+    let mut harness = motion_tab();
     harness.get_by_label(text::SWAP_SIDES).focus();
     harness.run();
     assert_eq!(press_key(&mut harness, egui::Key::Enter), [edit(MapEdit::SwapSides)]);
@@ -98,18 +99,15 @@ fn undo_works_while_a_button_has_the_keyboard() {
         harness.state().actions.clone()
     };
     assert_eq!(undo(&mut harness), [UiAction::Undo]);
-    // Where text is typed it is the text that is undone.
+    // In a text field, the shortcut undoes typing.
     harness.get_by_label(text::SEARCH_JOINTS).focus();
     harness.run();
     assert_eq!(undo(&mut harness), []);
 }
 
 #[test]
-fn a_joint_is_turned_further_and_back() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
-    let neck = number(&harness, "Neck");
-    press(&mut harness, &text::edit_joint("Neck"));
+fn a_rotation_offset_is_dragged_and_reset() {
+    let (mut harness, neck) = neck_details();
     harness.get_by_label(&text::rotation_offset_about("Y")).scroll_to_me();
     harness.run();
     let from = harness.get_by_label(&text::rotation_offset_about("Y")).rect().center();
@@ -118,7 +116,7 @@ fn a_joint_is_turned_further_and_back() {
     let turned = map(&harness, 0).joints[&neck].correction;
     let (axis, angle) = turned.to_axis_angle();
     assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
-    assert!(says(&harness, &format!("{})", text::HAS_OFFSET)));
+    assert!(says(&harness, &format!("· {}", text::HAS_OFFSET)));
     let reset = reach(&mut harness, text::RESET_OFFSET);
     assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
     // The drag was one step, the reset another.
@@ -130,16 +128,13 @@ fn a_joint_is_turned_further_and_back() {
 }
 
 #[test]
-fn channels_of_a_source_are_left_out() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
-    let neck = number(&harness, "Neck");
-    press(&mut harness, &text::edit_joint("Neck"));
+fn channels_of_a_source_can_be_ignored() {
+    let (mut harness, neck) = neck_details();
     let [_, rotation, scale] = text::CHANNELS;
     let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
     assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, true));
     assert!(harness.query_by_label_contains(&text::follows("Neck", "")).is_some());
-    assert!(says(&harness, &text::left_out(rotation)));
+    assert!(says(&harness, &text::ignored(rotation)));
     assert_eq!(muted_properties(&map(&harness, 0), neck), [false, true, false]);
     assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, false));
     reach(&mut harness, &text::ignore_channels(scale));
@@ -148,17 +143,14 @@ fn channels_of_a_source_are_left_out() {
 }
 
 #[test]
-fn one_joint_without_a_source_has_a_policy_of_its_own() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
-    let neck = number(&harness, "Neck");
-    press(&mut harness, &text::edit_joint("Neck"));
+fn a_joint_without_a_source_can_have_its_own_policy() {
+    let (mut harness, neck) = neck_details();
     let clear = Command::SetSource { motion: 0, target: neck, source: None };
     assert_eq!(reach(&mut harness, text::CLEAR_SOURCE), [clear]);
     let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
     let commands = choose(&mut harness, text::OWN_POLICY, &text::first_key_of("Wave"));
     assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: Some(frozen) })]);
     assert!(says(&harness, &text::holds_first_key("Wave")));
-    let commands = choose(&mut harness, text::OWN_POLICY, &text::as_all(text::REST));
+    let commands = choose(&mut harness, text::OWN_POLICY, &text::default_policy(text::REST));
     assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: None })]);
 }

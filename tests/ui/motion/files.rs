@@ -1,15 +1,15 @@
-//! Motions and their files: borrowing, saving, removing, and what is offered when one does not fit.
+//! Motions and their files: borrowing, saving, removing, and the choices if a motion doesn't fit.
 
 use egui_kittest::kittest::Queryable;
 use gaitway::editor::Export;
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
-use super::reach;
+use super::{motion_tab, reach};
 use crate::bench::{WIDE, motion_bench, press, sample_bench};
 
 #[test]
-fn borrowed_clips_stand_under_the_name_of_their_file() {
+fn borrowed_clips_are_listed_under_the_name_of_their_file() {
     let mut harness = motion_bench(WIDE, &["folder/dance.bvh"]);
     assert!(harness.query_by_label(&text::from_motion("dance.bvh")).is_some());
     let [walk, idle, wave] = ["Walk (2)", "Idle (2)", "Wave (2)"];
@@ -20,7 +20,7 @@ fn borrowed_clips_stand_under_the_name_of_their_file() {
 }
 
 #[test]
-fn without_a_motion_there_is_no_tab_for_it() {
+fn without_a_motion_there_is_no_motion_tab() {
     let mut harness = sample_bench(WIDE);
     assert!(harness.query_by_label(Tab::Motion.label()).is_none());
     press(&mut harness, text::BORROW_MOTION);
@@ -28,9 +28,8 @@ fn without_a_motion_there_is_no_tab_for_it() {
 }
 
 #[test]
-fn files_are_asked_of_the_host() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn files_are_requested_from_the_host() {
+    let mut harness = motion_tab();
     press(&mut harness, text::FILES);
     press(&mut harness, text::SAVE_MAP);
     press(&mut harness, text::LOAD_MAP);
@@ -50,7 +49,7 @@ fn files_are_asked_of_the_host() {
 
 /// The tab shows the motion whose clip plays.
 #[test]
-fn one_of_several_motions_is_chosen() {
+fn choosing_a_motion_plays_its_first_clip() {
     let mut harness = motion_bench(WIDE, &["first.bvh", "second.bvh"]);
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, text::MOTION_FILE);
@@ -62,7 +61,7 @@ fn one_of_several_motions_is_chosen() {
 }
 
 #[test]
-fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
+fn a_motion_that_does_not_fit_can_be_shown_alone_or_mapped_manually() {
     let offers = [
         (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
         (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedManually),
@@ -82,7 +81,7 @@ fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
 
 /// A model without a skeleton has no joints to map.
 #[test]
-fn a_motion_for_a_model_without_a_skeleton_can_only_be_looked_at() {
+fn a_motion_for_a_model_without_a_skeleton_can_only_be_shown_alone() {
     let mut harness = sample_bench(WIDE);
     let messages = &mut harness.state_mut().panels.messages;
     messages.error = Some("dance.bvh: Chair has no skeleton".to_owned());

@@ -1,4 +1,4 @@
-//! Everything in the Motion tab fits on every screen.
+//! Everything in the Motion tab fits every screen.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -7,8 +7,8 @@ use gaitway::ui::{Tab, text};
 use super::number;
 use crate::bench::{Bench, NARROW, WIDE, motion_bench, press};
 
-/// All of them are inside, and none lies over another.
-fn fits(harness: &Harness<'_, Bench>, screen: egui::Rect, labels: &[&str]) {
+/// Checks that all controls are inside `screen` and none overlaps another.
+fn check_fit(harness: &Harness<'_, Bench>, screen: egui::Rect, labels: &[&str]) {
     let rects: Vec<egui::Rect> = labels.iter().map(|label| harness.get_by_label(label).rect()).collect();
     for (at, (rect, label)) in rects.iter().zip(labels).enumerate() {
         assert!(screen.expand(0.5).contains_rect(*rect), "{label} at {rect:?} on {screen:?}");
@@ -19,7 +19,7 @@ fn fits(harness: &Harness<'_, Bench>, screen: egui::Rect, labels: &[&str]) {
 }
 
 #[test]
-fn the_chosen_joint_fits_everywhere() {
+fn the_selected_joint_fits_every_screen() {
     for size in [NARROW, [360.0, 640.0], WIDE, [1920.0, 1080.0]] {
         let mut harness = motion_bench(size, &["dance.bvh"]);
         if size[0] < 700.0 {
@@ -50,7 +50,7 @@ fn the_chosen_joint_fits_everywhere() {
             let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }
-        fits(&harness, egui::Rect::EVERYTHING, &labels);
+        check_fit(&harness, egui::Rect::EVERYTHING, &labels);
     }
 }
 
@@ -72,17 +72,17 @@ fn everything_fits_on_a_narrow_screen() {
             text::REMATCH,
             text::SWAP_SIDES,
             text::CLEAR_MAP,
-            &text::option_of(text::ORDER, text::BY_BODY),
+            &text::labelled(text::ORDER, text::BY_BODY),
             text::JOINT_FILTER,
         ];
-        fits(&harness, screen, &head);
+        check_fit(&harness, screen, &head);
         press(&mut harness, text::FILES);
-        fits(&harness, screen, &[text::SAVE_MAP, text::LOAD_MAP]);
+        check_fit(&harness, screen, &[text::SAVE_MAP, text::LOAD_MAP]);
         press(&mut harness, text::JOINTS);
         harness.get_by_label_contains(&text::follows("RightHand", "")).scroll_to_me();
         harness.run();
         harness.get_by_label_contains(&text::follows("RightHand", "")).click();
         harness.run();
-        fits(&harness, screen, &[text::FOLLOW_NOTHING, text::CANCEL, text::SEARCH_SOURCES]);
+        check_fit(&harness, screen, &[text::FOLLOW_NOTHING, text::CANCEL, text::SEARCH_SOURCES]);
     }
 }

@@ -1,4 +1,4 @@
-//! The Motion tab: borrowed clips, the joint table, how sources are chosen, options and files.
+//! The Motion tab: borrowed clips, the joint table, choosing sources, options and files.
 
 mod edits;
 mod files;
@@ -11,8 +11,24 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::retarget::JointMap;
 use gaitway::state::{Command, MapEdit, active_map};
+use gaitway::ui::{Tab, text};
 
-use crate::bench::{Bench, press};
+use crate::bench::{Bench, WIDE, motion_bench, press};
+
+/// The walker with its own clips as the motion `dance.bvh`, and the Motion tab open.
+pub fn motion_tab() -> Harness<'static, Bench> {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    harness
+}
+
+/// The Motion tab with the details of the joint `Neck`, and the joint's index in the file.
+pub fn neck_details() -> (Harness<'static, Bench>, usize) {
+    let mut harness = motion_tab();
+    let neck = number(&harness, "Neck");
+    press(&mut harness, &text::edit_joint("Neck"));
+    (harness, neck)
+}
 
 pub fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
@@ -24,14 +40,14 @@ pub fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
     skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
 }
 
-/// Presses what may have to be scrolled to first.
+/// Scrolls to a control and presses it.
 pub fn reach(harness: &mut Harness<'_, Bench>, label: &str) -> Vec<Command> {
     harness.get_by_label(label).scroll_to_me();
     harness.run();
     press(harness, label)
 }
 
-/// Presses the line of the table that begins so.
+/// Scrolls to the row of the joint table that begins with `start`, and presses it.
 pub fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
     harness.get_by_label_contains(start).scroll_to_me();
     harness.run();
@@ -43,7 +59,7 @@ pub fn edit(edit: MapEdit) -> Command {
     Command::EditMap { motion: 0, edit }
 }
 
-/// Chooses from a list that opens under a button; the entry may stand elsewhere too.
+/// Chooses an entry of a drop-down list; other controls may have the same label.
 pub fn choose(harness: &mut Harness<'_, Bench>, list: &str, entry: &str) -> Vec<Command> {
     reach(harness, list);
     harness.get_all_by_label(entry).last().expect("in the list").scroll_to_me();
@@ -54,7 +70,7 @@ pub fn choose(harness: &mut Harness<'_, Bench>, list: &str, entry: &str) -> Vec<
     std::mem::take(&mut harness.state_mut().commands)
 }
 
-/// Whether a label contains this: a row of the table, the details below it, or both.
+/// Whether any label contains these words: a row of the table, the details below it, or both.
 pub fn says(harness: &Harness<'_, Bench>, words: &str) -> bool {
     harness.query_all_by_label_contains(words).next().is_some()
 }

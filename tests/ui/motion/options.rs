@@ -10,22 +10,21 @@ use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
 use glam::{Quat, Vec3};
 
-use super::{edit, map, press_row, reach, says};
-use crate::bench::{WIDE, bench_of, drag, motion_bench, press};
+use super::{edit, map, motion_tab, press_row, reach, says};
+use crate::bench::{WIDE, bench_of, drag, press};
 use crate::skeletons;
 
 #[test]
-fn the_options_say_how_the_motion_is_carried_over() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn options_set_root_motion_foot_planting_and_rest_poses() {
+    let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
     let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     assert_eq!(
-        press(&mut harness, &text::option_of(text::ROOT_HORIZONTAL, text::IN_PLACE)),
+        press(&mut harness, &text::labelled(text::ROOT_HORIZONTAL, text::IN_PLACE)),
         [Command::SetRoot(Some(root))]
     );
     root.yaw = RootPart::Freeze;
-    assert_eq!(press(&mut harness, &text::option_of(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
+    assert_eq!(press(&mut harness, &text::labelled(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
     root.extract = true;
     assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
@@ -38,11 +37,10 @@ fn the_options_say_how_the_motion_is_carried_over() {
 
 #[test]
 fn joints_without_a_source_can_play_a_clip() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
     reach(&mut harness, text::UNMAPPED_JOINTS);
-    // One in the list at the left, one in the list that has opened.
+    // The label also stands in the list of clips; the last one is in the open drop-down list.
     harness.state_mut().commands.clear();
     harness.get_all_by_label("Wave").last().expect("in the list").click();
     harness.run();
@@ -57,15 +55,14 @@ fn joints_without_a_source_can_play_a_clip() {
 }
 
 #[test]
-fn translations_scales_and_the_crossfade_are_options() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn options_set_translations_scales_and_the_crossfade() {
+    let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
     assert_eq!(
-        reach(&mut harness, &text::option_of(text::TRANSLATIONS, text::DROP)),
+        reach(&mut harness, &text::labelled(text::TRANSLATIONS, text::DROP)),
         [edit(MapEdit::Translations(Keep::Drop))]
     );
-    assert_eq!(reach(&mut harness, &text::option_of(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
+    assert_eq!(reach(&mut harness, &text::labelled(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
     let field = text::value_of(text::CROSSFADE);
     harness.get_by_label(&field).scroll_to_me();
     harness.run();
@@ -102,7 +99,7 @@ fn striding() -> Asset {
 }
 
 #[test]
-fn a_rest_in_motion_is_remarked_until_one_is_chosen() {
+fn a_rest_pose_in_mid_stride_is_mentioned_until_one_is_chosen() {
     let mut library = Library::default();
     library.add(samples::load("walker").expect("the sample is there"));
     library.set_motions(vec![Motion::new("stride.glb".to_owned(), striding().into())]);

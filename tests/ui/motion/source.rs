@@ -1,17 +1,16 @@
-//! Choosing the source of a joint: from the list, by typing, in the viewport.
+//! Choosing the source of a joint: from the list, by typing, or by picking in the viewport.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::state::Command;
 use gaitway::ui::{Tab, text};
 
-use super::{map, number, press_row, reach};
+use super::{map, motion_tab, neck_details, number, press_row, reach};
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key};
 
 #[test]
 fn another_source_is_chosen_from_a_list() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     let (neck, head) = (number(&harness, "Neck"), number(&harness, "Head"));
     press_row(&mut harness, &text::follows("Neck", ""));
     assert!(harness.query_by_label(&text::what_follows("Neck")).is_some());
@@ -23,15 +22,14 @@ fn another_source_is_chosen_from_a_list() {
     press_row(&mut harness, &text::follows("Neck", ""));
     press(&mut harness, text::FOLLOW_NOTHING);
     assert!(harness.query_by_label_contains(&text::follows("Neck", text::NO_SOURCE)).is_some());
-    // And all the way back.
+    // Matching again restores the proposal.
     press(&mut harness, text::REMATCH);
     assert!(harness.query_by_label_contains(&text::follows("Neck", &text::joint(neck, "Neck"))).is_some());
 }
 
 #[test]
 fn a_source_is_typed_by_number_or_name() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     let (neck, head, chest) = (number(&harness, "Neck"), number(&harness, "Head"), number(&harness, "Chest"));
     for (typed, source) in [(head.to_string(), head), ("chest".to_owned(), chest)] {
         press_row(&mut harness, &text::follows("Neck", ""));
@@ -44,8 +42,7 @@ fn a_source_is_typed_by_number_or_name() {
 
 #[test]
 fn a_source_is_chosen_by_arrow_keys() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     let neck = number(&harness, "Neck");
     for (keys, source) in
         [(&[egui::Key::ArrowDown][..], neck + 1), (&[egui::Key::ArrowUp, egui::Key::ArrowUp], neck - 1)]
@@ -59,8 +56,7 @@ fn a_source_is_chosen_by_arrow_keys() {
 
 #[test]
 fn keys_do_nothing_else_while_a_source_is_chosen() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     press_row(&mut harness, &text::follows("Neck", ""));
     assert_eq!(press_key(&mut harness, egui::Key::Space), []);
     assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
@@ -69,10 +65,8 @@ fn keys_do_nothing_else_while_a_source_is_chosen() {
 
 #[test]
 fn a_source_is_typed_in_the_table() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
-    let [neck, head, chest] = ["Neck", "Head", "Chest"].map(|name| number(&harness, name));
-    press(&mut harness, &text::edit_joint("Neck"));
+    let (mut harness, neck) = neck_details();
+    let [head, chest] = ["Head", "Chest"].map(|name| number(&harness, name));
     let mut enter = |text: &str| {
         harness.get_by_label(&text::source_of("Neck")).focus();
         harness.run();
@@ -92,7 +86,7 @@ fn a_source_is_typed_in_the_table() {
     assert_eq!(enter("tail"), []);
     assert!(harness.query_by_label(&text::no_source_called("tail")).is_some());
     assert_eq!(map(&harness, 0).joints[&neck].source, None);
-    // Escape takes back what was typed and leaves the joint chosen.
+    // Escape discards the typed text; the joint stays selected.
     harness.get_by_label(&text::source_of("Neck")).focus();
     harness.run();
     harness.get_by_label(&text::source_of("Neck")).type_text("5");
@@ -102,8 +96,8 @@ fn a_source_is_typed_in_the_table() {
     assert_eq!(harness.state().state().selection.joint, Some(neck));
 }
 
-/// Where a joint of the walker is in the picture: of the model, or of the motion beside it.
-fn place(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Pos2 {
+/// Where a joint of the walker is on the screen: of the model, or of the motion beside it.
+fn screen_position(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Pos2 {
     let bench = harness.state();
     let joint = bench.library().active().expect("a model").asset.skeleton.find(name).expect("a joint");
     let view = &bench.frame.view;
@@ -117,9 +111,9 @@ fn click(harness: &mut Harness<'_, Bench>, at: egui::Pos2) -> Vec<Command> {
     drag(harness, at, at, egui::PointerButton::Primary)
 }
 
-/// The skeleton is not drawn, and need not be: dots show what can be clicked.
+/// This works without the skeleton overlay: dots show what can be clicked.
 #[test]
-fn the_joint_is_chosen_by_clicking_it() {
+fn a_joint_is_picked_in_the_viewport() {
     for size in [WIDE, NARROW] {
         let mut harness = motion_bench(size, &["dance.bvh"]);
         let [hand, head] = ["LeftHand", "Head"].map(|name| number(&harness, name));
@@ -129,13 +123,13 @@ fn the_joint_is_chosen_by_clicking_it() {
         press(&mut harness, Tab::Motion.label());
         press(&mut harness, text::PICK_IN_VIEWPORT);
         assert!(harness.query_by_label(text::PICK_TARGET).is_some());
-        let at = place(&harness, 0, "LeftHand");
+        let at = screen_position(&harness, 0, "LeftHand");
         assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
         assert!(harness.query_by_label(&text::what_follows("LeftHand")).is_some());
         let commands = press(&mut harness, &text::joint(head, "Head"));
         assert_eq!(commands, [Command::SetSource { motion: 0, target: hand, source: Some(head) }]);
         assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some(), "the table is back on {size:?}");
-        // And by escape, or the button, to nothing.
+        // The button and Escape both end picking without a change.
         for stop in [true, false] {
             harness.get_by_label(text::PICK_IN_VIEWPORT).scroll_to_me();
             harness.run();
@@ -154,9 +148,9 @@ fn the_joint_is_chosen_by_clicking_it() {
     }
 }
 
-/// Where the motion's skeleton stands on the stage, its joint is clicked too.
+/// With the motion's skeleton on the stage, the source is picked in the viewport as well.
 #[test]
-fn both_joints_are_clicked_where_both_are_shown() {
+fn both_joints_are_picked_if_both_are_shown() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Walk (2)");
     press(&mut harness, Tab::Motion.label());
@@ -166,16 +160,16 @@ fn both_joints_are_clicked_where_both_are_shown() {
     harness.run();
     let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
     press(&mut harness, text::PICK_IN_VIEWPORT);
-    let at = place(&harness, 0, "LeftHand");
+    let at = screen_position(&harness, 0, "LeftHand");
     assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label(&text::pick_source_of("LeftHand")).is_some());
-    let at = place(&harness, 1, "Head");
+    let at = screen_position(&harness, 1, "Head");
     let source = |source| [Command::SetSource { motion: 0, target: hand, source: Some(source) }];
     assert_eq!(click(&mut harness, at), source(head));
     assert_eq!(map(&harness, 0).joints[&hand].source, Some(head));
-    // From the table the model's joint is known already.
+    // Starting from the table, only the source is picked.
     reach(&mut harness, text::CLICK_SOURCE);
-    let at = place(&harness, 1, "RightFoot");
+    let at = screen_position(&harness, 1, "RightFoot");
     assert_eq!(click(&mut harness, at), source(foot));
     reach(&mut harness, text::CLICK_SOURCE);
     press(&mut harness, text::CHOOSE_FROM_LIST);

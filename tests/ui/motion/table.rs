@@ -1,4 +1,4 @@
-//! The joint table: its order, filters and words, and what it costs.
+//! The joint table: order, filters, wording and cost.
 
 use std::sync::Arc;
 
@@ -11,33 +11,34 @@ use gaitway::samples;
 use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
 
-use super::{choose, edit, map, number, press_row, reach};
+use super::{choose, edit, map, motion_tab, number, press_row, reach};
 use crate::allocations::allocations_after;
 use crate::bench::{Bench, WIDE, bench_of, motion_bench, painted, press};
 use crate::call_sites::own_allocations;
 use crate::skeletons;
 
+/// Types into the search field of the joints.
+fn search(harness: &mut Harness<'_, Bench>, words: &str) {
+    harness.get_by_label(text::SEARCH_JOINTS).click();
+    harness.run();
+    harness.get_by_label(text::SEARCH_JOINTS).type_text(words);
+    harness.run();
+}
+
 #[test]
-fn the_table_says_who_follows_whom_and_why() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn the_table_lists_and_finds_joints_with_their_sources() {
+    let mut harness = motion_tab();
     let (hips, spine) = (number(&harness, "Hips"), number(&harness, "Spine"));
     assert!(harness.query_by_label_contains(&text::follows("Hips", &text::joint(hips, "Hips"))).is_some());
     assert!(harness.query_by_label_contains(&text::follows("Spine", &text::joint(spine, "Spine"))).is_some());
     let joints = harness.state().library().active().expect("a model").asset.skeleton.len();
     assert!(harness.query_by_label(&text::joints_mapped(joints, joints)).is_some());
-    harness.get_by_label(text::SEARCH_JOINTS).click();
-    harness.run();
-    harness.get_by_label(text::SEARCH_JOINTS).type_text("lefttoes");
-    harness.run();
+    search(&mut harness, "lefttoes");
     assert!(harness.query_by_label_contains(&text::follows("LeftToes", "")).is_some());
     assert!(harness.query_by_label_contains(&text::follows("Hips", "")).is_none());
-    // By what it is, too.
+    // Body parts are found as well.
     press(&mut harness, text::CLEAR_SEARCH);
-    harness.get_by_label(text::SEARCH_JOINTS).click();
-    harness.run();
-    harness.get_by_label(text::SEARCH_JOINTS).type_text("left lower");
-    harness.run();
+    search(&mut harness, "left lower");
     assert!(harness.query_by_label_contains(&text::follows("LeftLowerArm", "")).is_some());
     assert!(harness.query_by_label_contains(&text::follows("RightLowerArm", "")).is_none());
 }
@@ -45,23 +46,21 @@ fn the_table_says_who_follows_whom_and_why() {
 /// The one test of the table's own wording.
 #[test]
 fn rows_read_like_sentences() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     let [left, head, right] = ["LeftHand", "Head", "RightHand"].map(|name| number(&harness, name));
     for (target, source) in [(left, Some(right)), (head, None)] {
         harness.state_mut().editor.apply(Command::SetSource { motion: 0, target, source });
     }
     harness.run();
-    let shared = format!("{right}  RightHand (conflict: right hand · same name · 100 % · shared with LeftHand)");
-    for row in [&format!("RightHand follows {shared}"), "Head follows none (none: head · deliberately none)"] {
+    let shared = format!("{right}  RightHand (conflict): right hand · same name · 100 % · shared with LeftHand");
+    for row in [&format!("RightHand follows {shared}"), "Head follows none (none): head · unmapped manually"] {
         assert!(harness.query_by_label(row).is_some(), "{row}");
     }
 }
 
 #[test]
-fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn the_table_is_ordered_by_body_part_or_as_a_tree() {
+    let mut harness = motion_tab();
     let top = |harness: &Harness<'_, Bench>, label: &str| harness.get_by_label_contains(label).rect().top();
     let left_arm = harness.get_by_label_contains(text::LEFT_ARM).rect();
     assert!(top(&harness, &text::follows("LeftHand", "")) > left_arm.top());
@@ -74,7 +73,7 @@ fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
     harness.run();
     assert!(harness.query_by_label_contains(&text::follows("LeftHand", "")).is_none());
     assert!(top(&harness, text::RIGHT_ARM) < before);
-    press(&mut harness, &text::option_of(text::ORDER, text::BY_TREE));
+    press(&mut harness, &text::labelled(text::ORDER, text::BY_TREE));
     assert!(harness.query_by_label_contains(text::LEFT_ARM).is_none());
     let order = [&text::follows("Hips", ""), &text::follows("Spine", ""), &text::follows("LeftHand", "")]
         .map(|label| top(&harness, label));
@@ -82,13 +81,12 @@ fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
 }
 
 #[test]
-fn the_table_is_filtered_by_how_it_stands() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+fn the_table_is_filtered_by_status() {
+    let mut harness = motion_tab();
     choose(&mut harness, text::JOINT_FILTER, &text::counted(text::NEEDS_REVIEW, 0));
     assert!(harness.query_by_label(text::NOTHING_TO_REVIEW).is_some());
     choose(&mut harness, text::JOINT_FILTER, &text::counted(text::ALL_JOINTS, 24));
-    // A left arm that follows a right one, and two that follow the same.
+    // A left hand that follows a right one, and two hands with the same source.
     let (left, right) = (number(&harness, "LeftHand"), number(&harness, "RightHand"));
     press_row(&mut harness, &text::follows("LeftHand", ""));
     press(&mut harness, &text::joint(right, "RightHand"));
@@ -106,8 +104,7 @@ fn the_table_is_filtered_by_how_it_stands() {
 
 #[test]
 fn a_joint_chosen_anywhere_opens_in_the_table() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, Tab::Motion.label());
+    let mut harness = motion_tab();
     let [neck, toes] = ["Neck", "RightToes"].map(|name| number(&harness, name));
     assert_eq!(press(&mut harness, &text::edit_joint("Neck")), [Command::SelectJoint(Some(neck))]);
     assert!(harness.query_by_label(&text::source_of("Neck")).is_some());
@@ -123,7 +120,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     press(&mut harness, &text::edit_joint("LeftHand"));
     assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some());
     assert!((top(&harness) - before).abs() < 1.0, "{before} became {}", top(&harness));
-    // As a click in the picture does; the table scrolls to it.
+    // Selected as by a click in the viewport; the table scrolls to it.
     harness.state_mut().change(|state| {
         state.selection.joint = Some(toes);
     });
@@ -132,7 +129,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     assert!(field.bottom() < WIDE[1] - 80.0, "{field:?}");
 }
 
-/// The Motion tab of a chain of joints that borrows from itself.
+/// The Motion tab of a chain of joints whose motion has the same skeleton.
 fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
     let names: Vec<String> = (0..joints).map(|index| format!("Tentacle{index}")).collect();
     let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
@@ -146,10 +143,10 @@ fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
 }
 
 #[test]
-fn three_hundred_joints_have_their_lines() {
+fn three_hundred_joints_have_their_rows() {
     let mut harness = bench_of_chain(300);
     assert!(harness.query_by_label(&text::joints_mapped(300, 300)).is_some());
-    assert!(harness.query_by_label(&text::option_of(text::ORDER, text::BY_BODY)).is_none(), "it has no body");
+    assert!(harness.query_by_label(&text::labelled(text::ORDER, text::BY_BODY)).is_none(), "it has no body");
     assert!(harness.query_by_label_contains(&text::follows("Tentacle250", "")).is_none(), "far out of sight");
     harness.state_mut().change(|state| {
         state.selection.joint = Some(250);
@@ -175,9 +172,9 @@ fn three_hundred_joints_have_their_lines() {
     assert_eq!(map(&harness, 0).joints.len(), 300);
 }
 
-/// Names are told apart by what follows their namespace, and a wide table has room for them.
+/// A namespace that all joints share only takes room; a wide table shows the rest of each name in full.
 #[test]
-fn names_are_shown_without_the_namespace_that_all_have() {
+fn names_are_shown_without_their_common_namespace() {
     let walker = samples::load("walker").expect("the sample is there").asset;
     let parts = Arc::into_inner(walker).expect("of one model").into_parts();
     let name = |joint| (parts.skeleton.source_index(joint), format!("mixamorig:{}Joint", parts.skeleton.name(joint)));
@@ -201,8 +198,8 @@ fn names_are_shown_without_the_namespace_that_all_have() {
     }
 }
 
-/// egui allocates for what it lays out, which is the same for both, and grows some lists of its own. Rows out of sight must
-/// cost nothing.
+/// egui allocates for what it lays out, the same for both tables, and now and then grows its own lists. Rows out of
+/// sight must cost nothing.
 #[test]
 fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     let frames = |joints: usize| {
@@ -216,7 +213,7 @@ fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
 }
 
-/// Every part of the tab, with a joint's details open once with a source and once without one, and all of the fit's groups.
+/// Checks every section of the tab: a joint's details with and without a source, and all groups of figures in the fit.
 #[test]
 fn an_open_motion_tab_allocates_nothing_of_its_own() {
     let mut harness = motion_bench([1280.0, 2400.0], &["dance.bvh", "other.bvh"]);

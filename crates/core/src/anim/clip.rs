@@ -217,7 +217,8 @@ impl Clip {
         &self.channels
     }
 
-    /// The channels of materials, lights, cameras, visibility, expressions and single morph weights, one per target, in their order.
+    /// The channels of materials, lights, cameras, visibility, expressions and single morph weights: one per target,
+    /// sorted.
     pub fn properties(&self) -> &[PropertyChannel] {
         &self.properties.channels
     }
@@ -227,8 +228,8 @@ impl Clip {
         &self.properties.timelines
     }
 
-    /// Returns the clip with some property channels of another one, such as its source in retargeting: those whose target
-    /// `map` finds.
+    /// Adds property channels of another clip, such as the source of a retargeting: those for which `map` returns a
+    /// target.
     pub fn with_properties_of(mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) -> Self {
         if other.properties().iter().any(|channel| map(channel.target).is_some()) {
             self.properties.add_mapped(&other.properties, map);

@@ -35,7 +35,7 @@ pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
-pub use pose::{Pose, model_from_joint, model_from_one};
+pub use pose::{Pose, model_from_joint, model_from_single_joint};
 pub use property::{
     CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
     TextureSlot, ToonColor,

@@ -129,13 +129,13 @@ pub fn model_from_joint(skeleton: &Skeleton, pose: &Pose, world_from_model: Affi
     kernels::model_from_joint(&pose.groups, skeleton.by_depth(), world_from_model, out);
 }
 
-/// Computes one joint's transform in model space. For many joints, [`model_from_joint`] is cheaper.
-pub fn model_from_one(skeleton: &Skeleton, pose: &Pose, joint: JointIndex) -> Affine3A {
+/// Returns one joint's transform in model space. For many joints, [`model_from_joint`] is cheaper.
+pub fn model_from_single_joint(skeleton: &Skeleton, pose: &Pose, joint: JointIndex) -> Affine3A {
     let mut model_from_joint = pose.local(joint).to_affine();
-    let mut at = joint;
-    while let Some(parent) = skeleton.parent(at) {
-        model_from_joint = pose.local(parent).to_affine() * model_from_joint;
-        at = parent;
+    let mut ancestor = skeleton.parent(joint);
+    while let Some(joint) = ancestor {
+        model_from_joint = pose.local(joint).to_affine() * model_from_joint;
+        ancestor = skeleton.parent(joint);
     }
     model_from_joint
 }

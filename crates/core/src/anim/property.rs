@@ -17,9 +17,9 @@ pub enum PropertyTarget {
     Camera(usize, CameraProperty),
     /// Whether a joint and all below it are shown: 0 hides them.
     Visibility(JointIndex),
-    /// The weight of an expression, by its number in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
+    /// The weight of an expression, by its index in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
     Expression(usize),
-    /// Yaw to the left and pitch downwards of an avatar's eyes, in degrees.
+    /// The gaze direction of an avatar in degrees: yaw, positive to its left, and pitch, positive down.
     LookAt,
     /// The weight of one morph target of the mesh on a joint.
     MorphWeight(JointIndex, usize),
@@ -50,9 +50,9 @@ pub enum MaterialProperty {
     UvRotation(TextureSlot),
     /// U and V.
     UvScale(TextureSlot),
-    /// Only of materials with lobes.
+    /// A factor of a material's lobes, if it has any.
     Lobe(LobeFactor),
-    /// Linear RGB; only of MToon materials.
+    /// Linear RGB, if it is an MToon material.
     Toon(ToonColor),
 }
 
@@ -132,7 +132,7 @@ pub enum TextureSlot {
     SheenRoughness,
     /// Weight of the iridescence, in red.
     Iridescence,
-    /// Thickness of the thin film between minimum and maximum, in green.
+    /// Interpolates the thickness of the thin film from its minimum to its maximum, in green.
     IridescenceThickness,
     /// Direction in red and green, strength in blue.
     Anisotropy,
@@ -148,7 +148,7 @@ pub enum TextureSlot {
     ShadeMultiply,
     /// Added to MToon's shading shift, in red.
     ShadingShift,
-    /// Added to MToon's colour by the direction of the normal.
+    /// Added to MToon's colour; looked up by the normal in view space.
     Matcap,
     /// Multiplied with MToon's rim and matcap.
     RimMultiply,
@@ -157,8 +157,8 @@ pub enum TextureSlot {
 }
 
 impl TextureSlot {
-    /// All slots in the order of their numbers: first those of core glTF, then from [`Self::Specular`] on those of lobes,
-    /// and from [`Self::ShadeMultiply`] on those of MToon.
+    /// All slots in declaration order: core glTF, then lobes from [`Self::Specular`] on, then MToon from
+    /// [`Self::ShadeMultiply`] on.
     pub const ALL: [Self; 24] = [
         Self::BaseColor,
         Self::MetallicRoughness,
@@ -186,7 +186,7 @@ impl TextureSlot {
         Self::OutlineWidth,
     ];
 
-    /// Whether the texture holds colours, which are sRGB; otherwise it holds linear data.
+    /// Whether the texture holds sRGB colours rather than linear data.
     pub fn is_color(self) -> bool {
         matches!(
             self,
@@ -278,7 +278,7 @@ impl PropertyValues {
         Some(self.0[at].1)
     }
 
-    /// Adds to a target's value, which is `rest` unless it is animated.
+    /// Adds `delta` to the value of a target, or to `rest` if the target has no value yet.
     pub fn add(&mut self, target: PropertyTarget, rest: Vec4, delta: Vec4) {
         match self.0.binary_search_by_key(&target, |&(target, _)| target) {
             Ok(at) => self.0[at].1 += delta,
@@ -314,7 +314,7 @@ impl Properties {
         Self { timelines, channels, first_weight }
     }
 
-    /// Adds the channels of another clip whose target `map` finds.
+    /// Adds the channels of another clip for which `map` returns a target.
     pub fn add_mapped(&mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) {
         let start = self.timelines.len() as u32;
         let mut channels = std::mem::take(&mut self.channels);

@@ -57,7 +57,7 @@ pub struct AssetParts {
     pub hidden: Vec<JointIndex>,
     /// Indexed by [`crate::mesh::Geometry::material`].
     pub materials: Vec<Material>,
-    /// Names of the material variants (KHR_materials_variants), not empty and each unique.
+    /// Names of the material variants (KHR_materials_variants): unique and never empty.
     pub variants: Vec<String>,
     /// Indexed by [`crate::mesh::TextureRef::texture`].
     pub textures: Vec<Texture>,
@@ -69,7 +69,7 @@ pub struct AssetParts {
     pub lights: Vec<Light>,
     /// The humanoid bones that the file declares (VRM, VRMA).
     pub humanoid: Option<Humanoid>,
-    /// Expressions, constraints, eyes and spring bones that the file declares (VRM, VRMA).
+    /// Expressions, node constraints, gaze and spring bones that the file declares (VRM, VRMA).
     pub avatar: Avatar,
     /// glTF's `extensionsUsed`.
     pub extensions_used: Vec<String>,
@@ -86,7 +86,7 @@ pub struct Scene {
     pub roots: Vec<JointIndex>,
 }
 
-/// A mesh at a node. A node has several if its mesh is copied (EXT_mesh_gpu_instancing); they follow each other.
+/// A mesh drawn at a node. The copies that EXT_mesh_gpu_instancing makes of a node's mesh are adjacent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshInstance {
     /// The node. Its transform places the mesh only if there is no skin.
@@ -95,12 +95,12 @@ pub struct MeshInstance {
     pub mesh: usize,
     /// Index into [`AssetParts::skins`]; `None` if the mesh is rigid, even if it has influences.
     pub skin: Option<usize>,
-    /// Places a copy of the mesh relative to the node; the identity otherwise. Unused with a skin.
+    /// Transform of an EXT_mesh_gpu_instancing copy relative to the node, otherwise the identity. Unused with a skin.
     pub joint_from_mesh: Affine3A,
 }
 
 impl MeshInstance {
-    /// Returns a mesh at its node's own place.
+    /// Returns an instance that only its node places.
     pub fn new(joint: JointIndex, mesh: usize, skin: Option<usize>) -> Self {
         Self { joint, mesh, skin, joint_from_mesh: Affine3A::IDENTITY }
     }
@@ -318,7 +318,7 @@ impl AssetParts {
                 PropertyTarget::Visibility(joint) | PropertyTarget::MorphWeight(joint, _) => {
                     check("clips", joint.get(), joints)?;
                 }
-                PropertyTarget::Expression(number) => check("clips", number, self.avatar.expressions.len())?,
+                PropertyTarget::Expression(index) => check("clips", index, self.avatar.expressions.len())?,
                 PropertyTarget::Light(..) | PropertyTarget::Camera(..) | PropertyTarget::LookAt => {}
             }
         }
@@ -336,7 +336,7 @@ impl AssetParts {
         self.default_scene.map_or(Ok(()), |scene| check("default_scene", scene, self.scenes.len()))
     }
 
-    /// Checks all indices except those of joints.
+    /// Checks all of the avatar's indices except those of joints.
     fn check_avatar(&self) -> Result<(), AssetError> {
         let expressions = &self.avatar.expressions;
         for expression in expressions {

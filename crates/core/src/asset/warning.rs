@@ -72,7 +72,7 @@ pub enum Warning {
     Other {
         /// What [`Warning::code`] returns.
         code: &'static str,
-        /// Place in the file; empty if `problem` says where, or if it is about the whole file.
+        /// Place in the file; empty if `problem` names it or concerns the whole file.
         place: String,
         /// What is wrong, and how it was handled.
         problem: String,

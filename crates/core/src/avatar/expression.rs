@@ -5,20 +5,20 @@ use glam::Vec4;
 
 use crate::anim::{Pose, PropertyTarget, PropertyValues};
 
-/// A named expression. Its weight goes from 0 to 1.
+/// A named expression, with a weight from 0 to 1.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Expression {
-    /// VRM 1.0's name of a preset, otherwise the file's; unique in its avatar.
+    /// A preset's name in VRM 1.0, otherwise the file's name. Unique within the avatar.
     pub name: String,
-    /// The file's own name; differs from `name` for presets of VRM 0.x.
+    /// The file's name, which differs from `name` for presets of VRM 0.x.
     pub title: String,
-    /// Whether the name is one that VRM defines.
+    /// Whether VRM defines the name.
     pub is_preset: bool,
     /// The group that other expressions can override.
     pub group: Option<ExpressionGroup>,
     /// Weights above 0.5 count as 1, all others as 0.
     pub is_binary: bool,
-    /// What it does to the expressions of each [`ExpressionGroup`], in their order.
+    /// How it overrides the expressions of each [`ExpressionGroup`], in declaration order.
     pub overrides: [Override; 3],
     /// Morph targets and their weights.
     pub morphs: Vec<MorphBind>,
@@ -26,7 +26,7 @@ pub struct Expression {
     pub materials: Vec<MaterialBind>,
 }
 
-/// Expressions that tools set by themselves, which others may have to suppress.
+/// Expressions that applications drive automatically and that others may have to suppress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExpressionGroup {
     /// `blink`, `blinkLeft`, `blinkRight`.
@@ -37,15 +37,15 @@ pub enum ExpressionGroup {
     Mouth,
 }
 
-/// How an expression suppresses those of a group.
+/// How an expression overrides those of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Override {
     /// Not at all.
     #[default]
     None,
-    /// Completely, as soon as its own weight isn't 0.
+    /// Turns them off while its own weight is above 0.
     Block,
-    /// By its own weight.
+    /// Fades them out by its own weight.
     Blend,
 }
 
@@ -92,7 +92,7 @@ impl Expression {
         "neutral",
     ];
 
-    /// Returns an expression without effect. Its group follows from the name, if that is a preset's.
+    /// Returns an expression without effect. A preset's name determines the group.
     pub fn new(name: &str, title: &str, is_preset: bool) -> Self {
         let group = match name {
             _ if !is_preset => None,
@@ -110,8 +110,8 @@ impl Expression {
     }
 }
 
-/// Replaces the weights that were set by those that are shown: binary ones are rounded, then overrides apply. A binary
-/// expression that is overridden in part is off.
+/// Replaces requested weights with the ones to display: rounds those of binary expressions, then applies overrides. A
+/// partly overridden binary expression is off.
 pub fn resolve_weights(expressions: &[Expression], weights: &mut [f32]) {
     let mut factors = [1.0_f32; 3];
     for (expression, weight) in expressions.iter().zip(weights.iter_mut()) {
@@ -119,8 +119,8 @@ pub fn resolve_weights(expressions: &[Expression], weights: &mut [f32]) {
             true => f32::from(*weight > 0.5),
             false => weight.clamp(0.0, 1.0),
         };
-        for (factor, rule) in factors.iter_mut().zip(expression.overrides) {
-            *factor -= match rule {
+        for (factor, mode) in factors.iter_mut().zip(expression.overrides) {
+            *factor -= match mode {
                 Override::None => 0.0,
                 Override::Block => f32::from(*weight > 0.0),
                 Override::Blend => *weight,
@@ -136,7 +136,7 @@ pub fn resolve_weights(expressions: &[Expression], weights: &mut [f32]) {
     }
 }
 
-/// Adds expressions to a pose and to animated properties. `weights` are those of [`resolve_weights`].
+/// Adds expressions to a pose and to animated properties. `weights` come from [`resolve_weights`].
 pub fn apply_expressions(
     expressions: &[Expression],
     weights: &[f32],

@@ -1,5 +1,5 @@
-//! What an avatar format (VRM) adds to a model: expressions, node constraints, where the eyes look, spring bones, and
-//! the licence. Plain data with the arithmetic that applies it to a pose; reading it from files is left to the loaders.
+//! What an avatar format (VRM) adds to a model: expressions, node constraints, gaze, spring bones and metadata. Plain
+//! data and the arithmetic that applies it to a pose. Reading it from files is left to the loaders.
 
 mod constraint;
 mod expression;
@@ -7,9 +7,11 @@ mod look_at;
 mod spring;
 mod spring_cache;
 
-use crate::anim::JointIndex;
+use glam::Quat;
 
-pub use constraint::{Constraint, ConstraintKind, in_order};
+use crate::anim::{JointIndex, Pose, Skeleton, model_from_single_joint};
+
+pub use constraint::{Constraint, ConstraintKind, sort_constraints};
 pub use expression::{
     Expression, ExpressionGroup, MaterialBind, MorphBind, Override, apply_expressions, resolve_weights,
 };
@@ -22,22 +24,22 @@ pub use spring_cache::{SpringCache, SpringMotion};
 pub struct Avatar {
     /// Named facial expressions, in the file's order.
     pub expressions: Vec<Expression>,
-    /// How the eyes turn.
+    /// How the eyes follow a target.
     pub look_at: Option<LookAt>,
-    /// Sorted by [`in_order`].
+    /// Sorted by [`sort_constraints`].
     pub constraints: Vec<Constraint>,
-    /// Hair, clothes and the like.
+    /// The spring bones of hair, clothes and the like.
     pub springs: Springs,
     /// Version of the VRM specification; empty for other files.
     pub spec_version: String,
     /// Title, authors and terms of use, under the file's own keys, in its order.
     pub meta: Vec<(String, String)>,
-    /// How first-person cameras treat meshes, by the joint that holds the mesh: the file's words. Not applied here.
+    /// How first-person cameras treat the mesh at each joint, in the file's words. Shown to the user, never applied.
     pub first_person: Vec<(JointIndex, String)>,
 }
 
 impl Avatar {
-    /// All joints that the avatar refers to.
+    /// Returns every joint that the avatar refers to.
     pub fn joints(&self) -> impl Iterator<Item = JointIndex> + '_ {
         let constraints = self.constraints.iter().flat_map(|constraint| [constraint.joint, constraint.source]);
         let look_at = self.look_at.iter().flat_map(LookAt::joints);
@@ -45,8 +47,16 @@ impl Avatar {
         constraints.chain(look_at).chain(first_person).chain(self.springs.all_joints())
     }
 
-    /// Returns the index of an expression.
+    /// Returns the index of the expression with this name.
     pub fn expression(&self, name: &str) -> Option<usize> {
         self.expressions.iter().position(|expression| expression.name == name)
+    }
+}
+
+/// Returns the rotation of a joint's parent in model space; the identity for a root.
+fn model_from_parent(skeleton: &Skeleton, pose: &Pose, joint: JointIndex) -> Quat {
+    match skeleton.parent(joint) {
+        Some(parent) => model_from_single_joint(skeleton, pose, parent).to_scale_rotation_translation().1,
+        None => Quat::IDENTITY,
     }
 }

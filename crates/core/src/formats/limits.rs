@@ -34,7 +34,7 @@ pub enum Limit {
     DataBytes,
     /// Pixels of all images, as their headers say.
     ImagePixels,
-    /// Nodes of a glTF and copies of their meshes, joints of a .bvh or a .skel.
+    /// Nodes of a glTF and EXT_mesh_gpu_instancing copies, joints of a .bvh or a .skel.
     Nodes,
     /// Each node of a mesh has a weight for each of its morph targets.
     MorphWeights,

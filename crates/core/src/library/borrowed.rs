@@ -122,16 +122,16 @@ pub(super) fn borrow(
         let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
-        let own = |target| match target {
-            PropertyTarget::Expression(number) => {
-                let name = &motion.asset.avatar.expressions.get(number)?.name;
+        let target_of_model = |target| match target {
+            PropertyTarget::Expression(index) => {
+                let name = &motion.asset.avatar.expressions.get(index)?.name;
                 model.asset.avatar.expression(name).map(PropertyTarget::Expression)
             }
             PropertyTarget::LookAt => model.asset.avatar.look_at.map(|_| target),
             _ => None,
         };
         let clip = match motion.asset.clips.get(source_clip) {
-            Some(source) => baked.clip.with_properties_of(source, &own),
+            Some(source) => baked.clip.with_properties_of(source, &target_of_model),
             None => baked.clip,
         };
         Ok(BorrowedClip {

@@ -56,7 +56,7 @@ fn target_count(mesh: &Mesh) -> usize {
     mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0)
 }
 
-/// What a VRM file says about its avatar; null for other files. `meta` has the file's own keys.
+/// Describes the avatar of a VRM file; null for other files. `meta` has the file's own keys.
 fn avatar_document(asset: &Asset) -> Value {
     let avatar = &asset.avatar;
     if *avatar == Avatar::default() {

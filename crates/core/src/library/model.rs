@@ -108,7 +108,7 @@ impl Model {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 
-    /// Changes whenever borrowed clips may have: then a clip with the same index may be another.
+    /// Changes whenever the borrowed clips are replaced, after which an index may refer to another clip.
     pub fn borrowed_revision(&self) -> u32 {
         self.borrowed_revision
     }

@@ -77,8 +77,8 @@ pub struct Geometry {
     pub morph_targets: Vec<MorphTarget>,
     /// Index into the asset's materials; `None` for the default material.
     pub material: Option<usize>,
-    /// Pairs of a variant and the material that replaces [`Self::material`] in it, indices into the asset's lists. A variant
-    /// occurs at most once.
+    /// Pairs of a material variant and the material that replaces [`Self::material`] in it, as indices into the asset's
+    /// lists. Each variant occurs at most once.
     pub variants: Vec<(usize, usize)>,
     /// Number of vertices in the file, which come first and in the file's order. The rest are copies, made where a
     /// vertex has several tangents, texture coordinates or normals.

@@ -1,4 +1,4 @@
-//! The optional lobes of a material: glTF's extensions of the metallic-roughness model. Colours are linear.
+//! The optional lobes of a material: glTF's extensions of the metallic-roughness model.
 
 use std::slice;
 
@@ -10,28 +10,28 @@ use crate::anim::{LobeFactor, TextureSlot};
 /// Number of slots in [`Lobes::textures`].
 const TEXTURES: usize = TextureSlot::ShadeMultiply as usize - TextureSlot::Specular as usize;
 
-/// What a material has beyond metallic-roughness. The default changes nothing. Factors are multiplied with the matching
-/// textures.
+/// What a material has beyond metallic-roughness. The default changes nothing. Factors multiply the matching textures;
+/// colours are linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobes {
-    /// Index of refraction (KHR_materials_ior); 0 makes the dielectric reflect everything at all angles.
+    /// Index of refraction (KHR_materials_ior); 0 means total reflection at all angles.
     pub ior: f32,
     /// Weight of the dielectric reflection (KHR_materials_specular), from 0 to 1.
     pub specular: f32,
-    /// Linear RGB factor on the dielectric reflection at normal incidence; may exceed 1.
+    /// Colour of the dielectric reflection at normal incidence; may exceed 1.
     pub specular_color: Vec3,
-    /// Whether alpha of the specular colour texture is glossiness, a factor on 1 − roughness: the material was converted from
-    /// KHR_materials_pbrSpecularGlossiness.
+    /// Whether the alpha of the specular colour texture is glossiness, a factor on 1 − roughness. Set for materials
+    /// converted from KHR_materials_pbrSpecularGlossiness.
     pub glossiness_in_specular_color: bool,
-    /// Weight of the clear coating (KHR_materials_clearcoat), from 0 to 1.
+    /// Weight of the clearcoat (KHR_materials_clearcoat), from 0 to 1.
     pub clearcoat: f32,
-    /// Perceptual roughness of the coating.
+    /// Perceptual roughness of the clearcoat.
     pub clearcoat_roughness: f32,
-    /// Multiplies X and Y of the coating's normal texture.
+    /// Scale of X and Y of the clearcoat normal texture.
     pub clearcoat_normal_scale: f32,
-    /// Linear RGB of the fibres (KHR_materials_sheen); black for none.
+    /// Colour of the sheen (KHR_materials_sheen); black for none.
     pub sheen_color: Vec3,
-    /// Perceptual roughness of the fibres.
+    /// Perceptual roughness of the sheen.
     pub sheen_roughness: f32,
     /// Weight of the thin film (KHR_materials_iridescence), from 0 to 1.
     pub iridescence: f32,
@@ -39,7 +39,7 @@ pub struct Lobes {
     pub iridescence_ior: f32,
     /// Thickness of the film in nanometres where its texture is 0.
     pub iridescence_thickness_min: f32,
-    /// Thickness of the film in nanometres where its texture is 1, and without one.
+    /// Thickness of the film in nanometres where its texture is 1, or without a texture.
     pub iridescence_thickness_max: f32,
     /// How much highlights are stretched (KHR_materials_anisotropy), from 0 to 1.
     pub anisotropy: f32,
@@ -51,15 +51,15 @@ pub struct Lobes {
     pub thickness: f32,
     /// Distance in metres at which white light has become [`Self::attenuation_color`]; infinite for a clear volume.
     pub attenuation_distance: f32,
-    /// Linear RGB.
+    /// Colour of white light after [`Self::attenuation_distance`].
     pub attenuation_color: Vec3,
     /// 20 divided by the Abbe number (KHR_materials_dispersion); 0 for none.
     pub dispersion: f32,
     /// Fraction of diffuse light that passes through (KHR_materials_diffuse_transmission), from 0 to 1.
     pub diffuse_transmission: f32,
-    /// Linear RGB of light that passes through diffusely.
+    /// Colour of diffusely transmitted light.
     pub diffuse_transmission_color: Vec3,
-    /// By slot, from [`TextureSlot::Specular`] on.
+    /// Textures by slot, from [`TextureSlot::Specular`] on.
     pub textures: [Option<TextureRef>; TEXTURES],
 }
 
@@ -93,17 +93,21 @@ impl Default for Lobes {
     }
 }
 
+fn components(color: &mut Vec3) -> &mut [f32] {
+    AsMut::<[f32; 3]>::as_mut(color)
+}
+
 impl Lobes {
     /// Returns the components of a factor, [`LobeFactor::width`] of them.
     pub fn factor_mut(&mut self, factor: LobeFactor) -> &mut [f32] {
         slice::from_mut(match factor {
             LobeFactor::Ior => &mut self.ior,
             LobeFactor::Specular => &mut self.specular,
-            LobeFactor::SpecularColor => return AsMut::<[f32; 3]>::as_mut(&mut self.specular_color),
+            LobeFactor::SpecularColor => return components(&mut self.specular_color),
             LobeFactor::Clearcoat => &mut self.clearcoat,
             LobeFactor::ClearcoatRoughness => &mut self.clearcoat_roughness,
             LobeFactor::ClearcoatNormalScale => &mut self.clearcoat_normal_scale,
-            LobeFactor::SheenColor => return AsMut::<[f32; 3]>::as_mut(&mut self.sheen_color),
+            LobeFactor::SheenColor => return components(&mut self.sheen_color),
             LobeFactor::SheenRoughness => &mut self.sheen_roughness,
             LobeFactor::Iridescence => &mut self.iridescence,
             LobeFactor::IridescenceIor => &mut self.iridescence_ior,
@@ -114,22 +118,20 @@ impl Lobes {
             LobeFactor::Transmission => &mut self.transmission,
             LobeFactor::Thickness => &mut self.thickness,
             LobeFactor::AttenuationDistance => &mut self.attenuation_distance,
-            LobeFactor::AttenuationColor => return AsMut::<[f32; 3]>::as_mut(&mut self.attenuation_color),
+            LobeFactor::AttenuationColor => return components(&mut self.attenuation_color),
             LobeFactor::Dispersion => &mut self.dispersion,
             LobeFactor::DiffuseTransmission => &mut self.diffuse_transmission,
-            LobeFactor::DiffuseTransmissionColor => {
-                return AsMut::<[f32; 3]>::as_mut(&mut self.diffuse_transmission_color);
-            }
+            LobeFactor::DiffuseTransmissionColor => return components(&mut self.diffuse_transmission_color),
         })
     }
 
-    /// Returns the texture in a slot of lobes; `None` for the others.
+    /// Returns the texture in a slot; `None` for slots that don't belong to lobes.
     pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
         let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
         *self.textures.get(index)?
     }
 
-    /// The place of a texture; `None` for slots that are not those of lobes.
+    /// Returns the texture in a slot; `None` for slots that don't belong to lobes.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
         self.textures.get_mut(index)

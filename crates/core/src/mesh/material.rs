@@ -54,9 +54,9 @@ pub struct Material {
     pub occlusion_texture: Option<TextureRef>,
     /// sRGB.
     pub emissive_texture: Option<TextureRef>,
-    /// Clearcoat, sheen, transmission and so on, if the file has any.
+    /// Clearcoat, sheen, transmission and so on; `None` for plain metallic-roughness.
     pub lobes: Option<Box<Lobes>>,
-    /// Shades it as MToon, without lobes, metal, roughness, occlusion and vertex colours.
+    /// Shades it as MToon, which has no lobes, metalness, roughness, occlusion or vertex colours.
     pub toon: Option<Box<Toon>>,
 }
 
@@ -95,8 +95,8 @@ impl Material {
         *self = Self { name, lobes, toon, ..*other };
     }
 
-    /// Sets an animated property. The alpha cutoff of a material that is not masked, and textures, lobes and MToon
-    /// that it doesn't have, are ignored.
+    /// Sets an animated property. Ignored if the material lacks what it belongs to: the alpha mask, a texture, lobes or
+    /// MToon.
     pub fn set(&mut self, property: MaterialProperty, value: Vec4) {
         match property {
             MaterialProperty::BaseColor => self.base_color = value,
@@ -128,7 +128,7 @@ impl Material {
         }
     }
 
-    /// Shades it as MToon. What that has no use for is dropped.
+    /// Shades it as MToon, and drops everything that MToon doesn't use.
     pub fn shade_as_toon(&mut self, toon: Toon) {
         self.toon = Some(Box::new(toon));
         self.lobes = None;
@@ -150,15 +150,22 @@ impl Material {
         }
     }
 
-    /// Returns the texture coordinates that tangents follow; `None` if nothing needs tangents.
+    /// Returns the UV set that tangents are computed from; `None` if nothing needs tangents.
     pub fn tangent_uv_set(&self) -> Option<usize> {
         let slots = [TextureSlot::Normal, TextureSlot::ClearcoatNormal, TextureSlot::Anisotropy];
         let texture = slots.into_iter().find_map(|slot| self.texture(slot));
-        let is_stretched = || self.lobes.as_ref().is_some_and(|lobes| lobes.anisotropy > 0.0);
-        texture.map(|texture| texture.uv_set).or_else(|| is_stretched().then_some(0))
+        let is_anisotropic = || self.lobes.as_ref().is_some_and(|lobes| lobes.anisotropy > 0.0);
+        texture.map(|texture| texture.uv_set).or_else(|| is_anisotropic().then_some(0))
     }
 
-    /// The place of a texture; `None` if it is one of lobes or MToon and the material has none.
+    /// Sets the texture in a slot. Ignored if the material lacks the lobes or the MToon that the slot belongs to.
+    pub fn set_texture(&mut self, slot: TextureSlot, texture: Option<TextureRef>) {
+        if let Some(place) = self.texture_mut(slot) {
+            *place = texture;
+        }
+    }
+
+    /// Returns the texture in a slot; `None` if the material lacks the lobes or the MToon that the slot belongs to.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         Some(match slot {
             TextureSlot::BaseColor => &mut self.base_color_texture,

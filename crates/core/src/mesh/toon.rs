@@ -1,4 +1,4 @@
-//! MToon, the toon shading of avatars (`VRMC_materials_mtoon-1.0`). Colours are linear.
+//! MToon, the toon shading of avatars (`VRMC_materials_mtoon-1.0`).
 
 use glam::Vec3;
 
@@ -8,34 +8,35 @@ use crate::anim::{TextureSlot, ToonColor};
 /// Number of slots in [`Toon::textures`].
 const TEXTURES: usize = TextureSlot::ALL.len() - TextureSlot::ShadeMultiply as usize;
 
-/// What [`Toon::outline_width`] is measured in.
+/// The unit of [`Toon::outline_width`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OutlineMode {
-    /// There is no outline.
+    /// No outline.
     #[default]
     None,
     /// Metres.
     World,
-    /// The height of the picture.
+    /// Fractions of the viewport's height.
     Screen,
 }
 
-/// What MToon adds to a material's base colour, normals and emission. Factors are multiplied with the matching textures.
+/// What MToon adds to a material's base colour, normals and emission. Factors multiply the matching textures; colours
+/// are linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Toon {
-    /// Replaces the base colour where a light doesn't reach.
+    /// Replaces the base colour where the surface is unlit.
     pub shade_color: Vec3,
-    /// Added to the cosine between normal and light, so that more of the surface is lit.
+    /// Added to the cosine between normal and light; above 0, more of the surface is lit.
     pub shading_shift: f32,
     /// Factor on the texture that is added to [`Self::shading_shift`].
     pub shading_shift_scale: f32,
-    /// How sharp the boundary between the colours is, from 0 to 1.
+    /// Sharpness of the boundary between lit and shade colour, from 0 to 1.
     pub shading_toony: f32,
-    /// How little the light of the environment depends on the normal, from 0 to 1.
+    /// How far ambient light is averaged over all normals, from 0 to 1.
     pub gi_equalization: f32,
-    /// Factor on the matcap texture, without which it has no effect.
+    /// Factor on the matcap texture; unused without one.
     pub matcap_color: Vec3,
-    /// Added towards grazing angles.
+    /// Added at grazing angles.
     pub rim_color: Vec3,
     /// Exponent of the rim's falloff.
     pub rim_fresnel_power: f32,
@@ -43,15 +44,15 @@ pub struct Toon {
     pub rim_lift: f32,
     /// How much matcap and rim depend on the light, from 0 to 1.
     pub rim_lighting_mix: f32,
-    /// What [`Self::outline_width`] is measured in.
+    /// Unit of [`Self::outline_width`].
     pub outline_mode: OutlineMode,
     /// Distance between surface and outline.
     pub outline_width: f32,
     /// Colour of the outline.
     pub outline_color: Vec3,
-    /// How much the outline takes on the shaded colour, from 0 to 1.
+    /// How much of the surface's shading the outline takes on, from 0 to 1.
     pub outline_lighting_mix: f32,
-    /// By slot, from [`TextureSlot::ShadeMultiply`] on.
+    /// Textures by slot, from [`TextureSlot::ShadeMultiply`] on.
     pub textures: [Option<TextureRef>; TEXTURES],
 }
 
@@ -79,7 +80,7 @@ impl Default for Toon {
 }
 
 impl Toon {
-    /// The place of a colour.
+    /// Returns a colour to change.
     pub fn color_mut(&mut self, color: ToonColor) -> &mut Vec3 {
         match color {
             ToonColor::ShadeColor => &mut self.shade_color,
@@ -89,19 +90,19 @@ impl Toon {
         }
     }
 
-    /// Returns the texture in a slot of MToon; `None` for the others.
+    /// Returns the texture in a slot; `None` for slots that don't belong to MToon.
     pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
         let index = (slot as usize).checked_sub(TextureSlot::ShadeMultiply as usize)?;
         *self.textures.get(index)?
     }
 
-    /// The place of a texture; `None` for slots that are not those of MToon.
+    /// Returns the texture in a slot; `None` for slots that don't belong to MToon.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         let index = (slot as usize).checked_sub(TextureSlot::ShadeMultiply as usize)?;
         self.textures.get_mut(index)
     }
 
-    /// Whether there is an outline to draw.
+    /// Whether it draws an outline.
     pub fn has_outline(&self) -> bool {
         self.outline_mode != OutlineMode::None && self.outline_width > 0.0
     }

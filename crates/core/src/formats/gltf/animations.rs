@@ -197,10 +197,10 @@ impl ClipReader<'_> {
         let keys = keys(accessors, property, source.output, &format_args!("{here}.output"), targets)?;
         let key_times = times.get(source.input, &format_args!("{here}.input"))?;
         let interpolation = interpolation_mode(accessors.document, source, warnings);
-        // Tangents of a rotation aren't those of its angles.
-        let is_spline_of_angles = matches!(keys, Keys::Rotation(_)) && interpolation == Interpolation::CubicSpline;
+        // The tangents of a rotation can't be converted to tangents of its angles.
+        let is_rotation_spline = matches!(keys, Keys::Rotation(_)) && interpolation == Interpolation::CubicSpline;
         if let Some((target, values)) = self.pointers.animated.property(joint, &keys)
-            && !is_spline_of_angles
+            && !is_rotation_spline
         {
             let added = self.builder.property(target, interpolation, key_times, values);
             added.map_err(|problem| unusable(source, problem))?;

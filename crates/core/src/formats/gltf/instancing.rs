@@ -1,4 +1,4 @@
-//! Copies of a node's mesh (EXT_mesh_gpu_instancing): each has a translation, rotation and scale relative to the node.
+//! Copies of a node's mesh (EXT_mesh_gpu_instancing), each with a translation, rotation and scale relative to the node.
 
 use glam::{Affine3A, Quat};
 use gltf::json::Node;
@@ -11,8 +11,8 @@ use crate::formats::limits::Limit;
 
 pub const NAME: &str = "EXT_mesh_gpu_instancing";
 
-/// Returns the transforms from the mesh to the node, one per copy; `None` without the extension. If its data is invalid, which is
-/// reported, the mesh is drawn once.
+/// Returns the transform from mesh to node of each copy. `None` without the extension, or with a warning if its data is
+/// invalid: the mesh is drawn once.
 pub fn copies(
     accessors: &Accessors,
     node: &Node,
@@ -70,10 +70,12 @@ fn read(accessors: &Accessors, extension: &Value, place: &str) -> Result<Vec<Aff
         None => vec![[0.0, 0.0, 0.0, 1.0]; count],
         Some((index, place)) => accessors.finite::<4>(*index, place, "VEC4")?,
     };
-    let transform = |((&translation, &scale), &rotation): ((&[f32; 3], &[f32; 3]), &[f32; 4])| {
-        let rotation = Quat::from_array(rotation);
-        let rotation = if rotation.length() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
-        Affine3A::from_scale_rotation_translation(scale.into(), rotation, translation.into())
-    };
-    Ok(translations.iter().zip(&scales).zip(&rotations).map(transform).collect())
+    let copies = translations.into_iter().zip(rotations).zip(scales);
+    Ok(copies.map(|((translation, rotation), scale)| transform(translation, rotation, scale)).collect())
+}
+
+fn transform(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> Affine3A {
+    let rotation = Quat::from_array(rotation);
+    let rotation = if rotation.length() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
+    Affine3A::from_scale_rotation_translation(scale.into(), rotation, translation.into())
 }

@@ -1,7 +1,7 @@
-//! The extensions of a material that add lobes to it: KHR_materials_specular, clearcoat, sheen and so on.
+//! The material extensions that add lobes: KHR_materials_specular, clearcoat, sheen and so on.
 //!
-//! Their factors and textures are all read the same way, from a table of JSON paths, which animation pointers share.
-//! KHR_materials_pbrSpecularGlossiness is converted: its two reflections become those of a dielectric without metal.
+//! Tables of JSON paths list their factors and textures; animation pointers share them.
+//! KHR_materials_pbrSpecularGlossiness is converted to a dielectric with a specular colour.
 
 use glam::{Vec3, Vec4};
 use serde_json::{Map, Value};
@@ -25,7 +25,7 @@ pub const EXTENSIONS: [&str; 10] = [
     "KHR_materials_transmission",
     "KHR_materials_volume",
 ];
-/// Below a material's `extensions`.
+/// Factors by path below a material's `extensions`.
 pub const FACTORS: [(&str, LobeFactor); 21] = [
     ("KHR_materials_ior/ior", LobeFactor::Ior),
     ("KHR_materials_specular/specularFactor", LobeFactor::Specular),
@@ -49,7 +49,7 @@ pub const FACTORS: [(&str, LobeFactor); 21] = [
     ("KHR_materials_diffuse_transmission/diffuseTransmissionFactor", LobeFactor::DiffuseTransmission),
     ("KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", LobeFactor::DiffuseTransmissionColor),
 ];
-/// Below a material's `extensions`.
+/// Textures by path below a material's `extensions`.
 pub const TEXTURES: [(&str, TextureSlot); 14] = [
     ("KHR_materials_specular/specularTexture", TextureSlot::Specular),
     ("KHR_materials_specular/specularColorTexture", TextureSlot::SpecularColor),
@@ -66,9 +66,10 @@ pub const TEXTURES: [(&str, TextureSlot); 14] = [
     ("KHR_materials_diffuse_transmission/diffuseTransmissionTexture", TextureSlot::DiffuseTransmission),
     ("KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture", TextureSlot::DiffuseTransmissionColor),
 ];
-/// Textures that a material can have. WebGL2 has 16; light, skinning and what is behind glass take eight.
+/// Maximum number of textures of a material. WebGL2 has 16 texture units, of which lighting, skinning and transmission
+/// take eight.
 const MAX_TEXTURES: usize = 8;
-/// The first of these are missed the least.
+/// The textures to drop first if a material has too many, least noticeable first.
 const DISPENSABLE: [TextureSlot; 11] = [
     TextureSlot::IridescenceThickness,
     TextureSlot::SheenRoughness,
@@ -83,7 +84,7 @@ const DISPENSABLE: [TextureSlot; 11] = [
     TextureSlot::Clearcoat,
 ];
 
-/// Reads the lobes of a material whose other members have been read.
+/// Adds lobes to a material whose other members have been read.
 pub fn read(
     extensions: &Map<String, Value>,
     material: &mut Material,
@@ -104,22 +105,18 @@ pub fn read(
     for (path, factor) in FACTORS {
         read_numbers(extensions, path, lobes.factor_mut(factor), reader);
     }
-    for (path, slot) in TEXTURES {
-        let texture = reader.lobe(member(extensions, path), &format!("extensions.{}", path.replace('/', ".")))?;
-        if let Some(place) = lobes.texture_mut(slot) {
-            *place = texture;
-        }
-    }
     material.lobes = Some(lobes);
+    read_textures(extensions, &TEXTURES, material, reader)?;
     if extensions.get(SPECULAR_GLOSSINESS).is_some_and(Value::is_object) {
         convert_specular_glossiness(extensions, material, reader)?;
     }
-    drop_textures(material, reader);
+    drop_surplus_textures(material, reader);
     Ok(())
 }
 
-/// With an index of refraction of 0 and no metal, the specular colour is the reflectance at normal incidence, as it is in
-/// KHR_materials_pbrSpecularGlossiness. Glossiness stays where it is, in alpha of the specular colour texture.
+/// Converts KHR_materials_pbrSpecularGlossiness, whose specular colour is the reflectance at normal incidence. Without
+/// metal and with an index of refraction of 0, KHR_materials_specular's is the same. Glossiness stays in the texture's
+/// alpha.
 fn convert_specular_glossiness(
     extensions: &Map<String, Value>,
     material: &mut Material,
@@ -130,59 +127,73 @@ fn convert_specular_glossiness(
     read_numbers(extensions, &path("diffuseFactor"), &mut diffuse, reader);
     read_numbers(extensions, &path("specularFactor"), &mut specular, reader);
     read_numbers(extensions, &path("glossinessFactor"), &mut glossiness, reader);
-    let mut texture =
-        |name: &str| reader.lobe(member(extensions, &path(name)), &format!("extensions.{SPECULAR_GLOSSINESS}.{name}"));
+    let mut texture = |name: &str| {
+        reader.extension_texture(member(extensions, &path(name)), &format!("extensions.{SPECULAR_GLOSSINESS}.{name}"))
+    };
     material.base_color_texture = texture("diffuseTexture")?;
     let specular_texture = texture("specularGlossinessTexture")?;
     material.base_color = Vec4::from(diffuse);
     material.metallic = 0.0;
     material.roughness = 1.0 - glossiness[0];
     material.metallic_roughness_texture = None;
-    if let Some(lobes) = &mut material.lobes {
+    if let Some(lobes) = material.lobes.as_deref_mut() {
         lobes.ior = 0.0;
         lobes.specular = 1.0;
         lobes.specular_color = Vec3::from(specular);
         lobes.glossiness_in_specular_color = specular_texture.is_some();
-        for (slot, texture) in [(TextureSlot::Specular, None), (TextureSlot::SpecularColor, specular_texture)] {
-            if let Some(place) = lobes.texture_mut(slot) {
-                *place = texture;
-            }
-        }
+    }
+    material.set_texture(TextureSlot::Specular, None);
+    material.set_texture(TextureSlot::SpecularColor, specular_texture);
+    Ok(())
+}
+
+/// Reads textures by their paths into slots of the material.
+pub fn read_textures(
+    extensions: &Map<String, Value>,
+    table: &[(&str, TextureSlot)],
+    material: &mut Material,
+    reader: &mut TextureReader<'_>,
+) -> Result<(), Problem> {
+    for &(path, slot) in table {
+        let name = format!("extensions.{}", path.replace('/', "."));
+        let texture = reader.extension_texture(member(extensions, path), &name)?;
+        material.set_texture(slot, texture);
     }
     Ok(())
 }
 
-fn drop_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
+fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
     let count = TextureSlot::ALL.into_iter().filter(|&slot| material.texture(slot).is_some()).count();
     let surplus = count.saturating_sub(MAX_TEXTURES);
     let dispensable = DISPENSABLE.into_iter().filter(|&slot| material.texture(slot).is_some());
     let dropped: Vec<TextureSlot> = dispensable.take(surplus).collect();
     for &slot in &dropped {
-        if let Some(place) = material.texture_mut(slot) {
-            *place = None;
-        }
+        material.set_texture(slot, None);
     }
     if surplus > 0 {
         let names: Vec<&str> =
             TEXTURES.iter().filter(|(_, slot)| dropped.contains(slot)).map(|(path, _)| *path).collect();
         let problem =
-            format!("{count} textures; only {MAX_TEXTURES} can be shown at once, without {}", names.join(", "));
+            format!("{count} textures, of which only {MAX_TEXTURES} can be shown; shown without {}", names.join(", "));
         reader.warnings.push(Warning::Other { code: "texture-count", place: reader.material.to_owned(), problem });
     }
 }
 
-/// Returns the value at a path of members.
+/// Returns the value at a path of member names separated by `/`.
 pub fn member<'a>(extensions: &'a Map<String, Value>, path: &str) -> Option<&'a Value> {
     let (extension, rest) = path.split_once('/')?;
     rest.split('/').try_fold(extensions.get(extension)?, |value, key| value.get(key))
 }
 
-/// Leaves `out` as it is if the member is missing or not as many numbers as that.
+/// Reads a number, or an array of numbers as long as `out`. Leaves `out` unchanged if the member is missing, or with a
+/// warning if it is anything else.
 pub fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32], reader: &mut TextureReader<'_>) {
     let Some(value) = member(extensions, path).filter(|value| !value.is_null()) else { return };
     let number = |value: &Value| value.as_f64().map(|value| value as f32).filter(|value| value.is_finite());
-    let single = std::slice::from_ref(value);
-    let list = if out.len() == 1 { single } else { value.as_array().map_or(&[][..], Vec::as_slice) };
+    let list = match out.len() {
+        1 => std::slice::from_ref(value),
+        _ => value.as_array().map_or(&[][..], Vec::as_slice),
+    };
     let numbers: Vec<f32> = list.iter().filter_map(number).collect();
     match numbers.len() == out.len() && list.len() == out.len() {
         true => out.copy_from_slice(&numbers),
@@ -193,7 +204,7 @@ pub fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32]
     }
 }
 
-/// Warns about a member below the material's `extensions`.
+/// Warns that a member below the material's `extensions` is ignored.
 pub fn ignore(reader: &mut TextureReader<'_>, path: &str, expected: &str, found: &Value) {
     let place = format!("{}.extensions.{path}", reader.material);
     let problem = format!("expected {expected}, found {found}; it is ignored");

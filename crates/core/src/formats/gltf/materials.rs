@@ -15,8 +15,7 @@ use super::accessor::get;
 use super::document::{Document, present};
 use super::lobes;
 use super::loosen::{cleaned, whole};
-use super::mtoon;
-use super::vrm::mtoon as mtoon_0;
+use super::{mtoon, vrm};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
@@ -91,11 +90,11 @@ fn read(
         lobes::read(others, &mut read, &mut reader)?;
         mtoon::read(others, &mut read, &mut reader)?;
     }
-    let vrm = document.root.extensions.as_ref().and_then(|extensions| extensions.others.get("VRM"));
-    if let Some(properties) = vrm.and_then(|vrm| vrm["materialProperties"].get(index)) {
+    let vrm_0 = document.root.extensions.as_ref().and_then(|extensions| extensions.others.get("VRM"));
+    if let Some(properties) = vrm_0.and_then(|vrm| vrm["materialProperties"].get(index)) {
         let place = format!("extensions.VRM.materialProperties[{index}]");
         let mut reader = TextureReader { root: &document.root, material: &place, warnings: reader.warnings };
-        mtoon_0::read_0(properties, &mut read, &mut reader)?;
+        vrm::mtoon::read_0(properties, &mut read, &mut reader)?;
     }
     Ok(read)
 }
@@ -117,11 +116,11 @@ fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnin
     }
 }
 
-/// Reads the textures of one material. The crate has KHR_texture_transform typed for colour textures, but not for normal and
-/// occlusion textures.
+/// Reads the textures of one material. The crate has a type for KHR_texture_transform of colour textures, but not of
+/// normal and occlusion textures.
 pub struct TextureReader<'a> {
     root: &'a Root,
-    /// Its place in the file.
+    /// The material's place in the file.
     pub material: &'a str,
     pub warnings: &'a mut Warnings,
 }
@@ -151,8 +150,8 @@ impl TextureReader<'_> {
         self.texture(index, uv_set, transform, place)
     }
 
-    /// Reads a texture of an extension that the crate has no type for.
-    pub fn lobe(&mut self, info: Option<&Value>, name: &str) -> Result<Option<TextureRef>, Problem> {
+    /// Reads a texture of an extension for which the crate has no type.
+    pub fn extension_texture(&mut self, info: Option<&Value>, name: &str) -> Result<Option<TextureRef>, Problem> {
         let Some(info) = info.filter(|info| !info.is_null()) else { return Ok(None) };
         let Some(index) = info.get("index").and_then(whole) else {
             let problem = Problem::new(format!("{}.{name}", self.material), "a texture's index", info);

@@ -30,7 +30,7 @@ pub fn meshes(
     meshes.map(|(index, mesh)| read_mesh(accessors, surfaces, index, mesh, warnings)).collect()
 }
 
-/// What primitives refer to.
+/// The materials and variants that primitives refer to.
 #[derive(Clone, Copy)]
 struct Surfaces<'a> {
     materials: &'a [Material],
@@ -204,7 +204,7 @@ fn read_primitive(
     Ok(geometry)
 }
 
-/// An index out of range stands for the default material.
+/// Warns about an index out of range and returns the default material instead.
 fn read_material(
     materials: &[Material],
     place: &str,

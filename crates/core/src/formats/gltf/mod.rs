@@ -80,7 +80,7 @@ pub(super) fn load(
     extensions::check(file, &document.root, &mut warnings)?;
     let conversion = files.conversion(file);
     for problem in conversion.into_iter().flat_map(|conversion| &conversion.warnings) {
-        // It names the place itself.
+        // The text names the place.
         warnings.push(Warning::Other { code: "conversion", place: String::new(), problem: problem.clone() });
     }
     build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
@@ -107,14 +107,14 @@ fn build(
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
     let instances = nodes::instances(&accessors, &skeleton, &meshes, &skins, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
-    let parts = vrm::Parts {
+    let context = vrm::Context {
         root,
         skeleton: &skeleton,
         instances: &instances,
         materials: &materials,
         humanoid: humanoid.as_ref(),
     };
-    let vrm::Read { avatar, animated } = vrm::read(&parts, &mut warnings);
+    let (avatar, animated) = vrm::read(&context, &mut warnings);
     let clips = animations::clips(&accessors, &skeleton, &materials, &animated, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
     let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::lobes::{ignore, member, read_numbers};
+use super::lobes::{ignore, read_numbers, read_textures};
 use super::materials::TextureReader;
 use crate::anim::{TextureSlot, ToonColor};
 use crate::asset::Warning;
@@ -10,14 +10,14 @@ use crate::formats::error::Problem;
 use crate::mesh::{Material, OutlineMode, Toon};
 
 pub const MTOON: &str = "VRMC_materials_mtoon";
-/// Below a material's `extensions`.
+/// Colours by path below a material's `extensions`.
 pub const COLORS: [(&str, ToonColor); 4] = [
     ("VRMC_materials_mtoon/shadeColorFactor", ToonColor::ShadeColor),
     ("VRMC_materials_mtoon/matcapFactor", ToonColor::MatcapColor),
     ("VRMC_materials_mtoon/parametricRimColorFactor", ToonColor::RimColor),
     ("VRMC_materials_mtoon/outlineColorFactor", ToonColor::OutlineColor),
 ];
-/// Below a material's `extensions`.
+/// Textures by path below a material's `extensions`.
 pub const TEXTURES: [(&str, TextureSlot); 5] = [
     ("VRMC_materials_mtoon/shadeMultiplyTexture", TextureSlot::ShadeMultiply),
     ("VRMC_materials_mtoon/shadingShiftTexture", TextureSlot::ShadingShift),
@@ -26,7 +26,7 @@ pub const TEXTURES: [(&str, TextureSlot); 5] = [
     ("VRMC_materials_mtoon/outlineWidthMultiplyTexture", TextureSlot::OutlineWidth),
 ];
 
-/// Reads the MToon of a material whose other members have been read. It takes the place of lobes and of KHR_materials_unlit.
+/// Adds MToon to a material whose other members have been read. It replaces lobes and KHR_materials_unlit.
 pub fn read(
     extensions: &Map<String, Value>,
     material: &mut Material,
@@ -70,23 +70,18 @@ pub fn read(
             OutlineMode::None
         }
     };
-    for (path, slot) in TEXTURES {
-        let texture = reader.lobe(member(extensions, path), &format!("extensions.{}", path.replace('/', ".")))?;
-        if let Some(place) = toon.texture_mut(slot) {
-            *place = texture;
-        }
-    }
     material.shade_as_toon(toon);
+    read_textures(extensions, &TEXTURES, material, reader)?;
     let speeds = ["uvAnimationScrollXSpeedFactor", "uvAnimationScrollYSpeedFactor", "uvAnimationRotationSpeedFactor"];
     if speeds.into_iter().any(|name| extensions[MTOON][name].as_f64().is_some_and(|speed| speed != 0.0)) {
-        warn_about_moving_textures(reader);
+        warn_about_uv_animation(reader);
     }
     Ok(())
 }
 
-/// The textures of a material that scrolls or turns them stand still.
-pub fn warn_about_moving_textures(reader: &mut TextureReader<'_>) {
+/// Warns that scrolling and rotating textures are not animated.
+pub fn warn_about_uv_animation(reader: &mut TextureReader<'_>) {
     let place = reader.material.to_owned();
-    let problem = "its textures move by themselves, which is not supported; they are shown as they start".to_owned();
+    let problem = "UV animation is not supported; the textures don't move".to_owned();
     reader.warnings.push(Warning::Other { code: "mtoon-uv-animation", place, problem });
 }

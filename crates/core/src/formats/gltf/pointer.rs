@@ -39,7 +39,7 @@ const TEXTURE_TRANSFORM: [(&str, OfTexture); 3] = [
     ("/extensions/KHR_texture_transform/rotation", MaterialProperty::UvRotation),
     ("/extensions/KHR_texture_transform/scale", MaterialProperty::UvScale),
 ];
-/// Before the paths of lobes.
+/// Prefix of the paths of lobes and MToon.
 const EXTENSIONS: &str = "extensions/";
 const LIGHT: [(&str, LightProperty); 5] = [
     ("color", LightProperty::Color),
@@ -177,11 +177,7 @@ impl Pointers<'_> {
             None => {
                 let transform = TEXTURE_TRANSFORM.iter().find_map(|(end, of)| Some((rest.strip_suffix(end)?, of)));
                 let (texture, of) = transform.ok_or(Unresolved::Unsupported)?;
-                let extended = || {
-                    let path = texture.strip_prefix(EXTENSIONS)?;
-                    find(&lobes::TEXTURES, path).or_else(|| find(&mtoon::TEXTURES, path))
-                };
-                let slot = find(&TEXTURES, texture).or_else(extended).ok_or(Unresolved::Unsupported)?;
+                let slot = find_texture(texture).ok_or(Unresolved::Unsupported)?;
                 if self.materials[material].texture(slot).is_none() {
                     return Err(Unresolved::Bad("the material has no such texture".to_owned()));
                 }
@@ -229,8 +225,8 @@ pub fn pointer_to(target: PropertyTarget, asset: &Asset) -> String {
         }
         PropertyTarget::Visibility(joint) => format!("/nodes/{}/{VISIBLE}", node(joint)),
         PropertyTarget::LookAt => format!("/extensions/{}/lookAt", vrm_extension(asset)),
-        PropertyTarget::Expression(number) => {
-            let Some(expression) = asset.avatar.expressions.get(number) else { return String::new() };
+        PropertyTarget::Expression(index) => {
+            let Some(expression) = asset.avatar.expressions.get(index) else { return String::new() };
             let extension = vrm_extension(asset);
             let kind = if expression.is_preset { "preset" } else { "custom" };
             let name = expression.name.replace('~', "~0").replace('/', "~1");
@@ -251,17 +247,27 @@ fn material_name(property: MaterialProperty) -> String {
         Toon(color) => format!("{EXTENSIONS}{}", name(&mtoon::COLORS, color)),
         UvOffset(slot) | UvRotation(slot) | UvScale(slot) => {
             let transform = TEXTURE_TRANSFORM.iter().find(|(_, of)| of(slot) == property).map_or("", |(end, _)| end);
-            match name(&TEXTURES, slot) {
-                "" => {
-                    let lobe = name(&lobes::TEXTURES, slot);
-                    let path = if lobe.is_empty() { name(&mtoon::TEXTURES, slot) } else { lobe };
-                    format!("{EXTENSIONS}{path}{transform}")
-                }
-                texture => format!("{texture}{transform}"),
-            }
+            texture_name(slot) + transform
         }
         _ => name(&MATERIAL, property).to_owned(),
     }
+}
+
+fn texture_name(slot: TextureSlot) -> String {
+    let (prefix, table) = match slot {
+        _ if slot >= TextureSlot::ShadeMultiply => (EXTENSIONS, &mtoon::TEXTURES[..]),
+        _ if slot >= TextureSlot::Specular => (EXTENSIONS, &lobes::TEXTURES[..]),
+        _ => ("", &TEXTURES[..]),
+    };
+    format!("{prefix}{}", name(table, slot))
+}
+
+fn find_texture(name: &str) -> Option<TextureSlot> {
+    let in_extensions = || {
+        let path = name.strip_prefix(EXTENSIONS)?;
+        find(&lobes::TEXTURES, path).or_else(|| find(&mtoon::TEXTURES, path))
+    };
+    find(&TEXTURES, name).or_else(in_extensions)
 }
 
 fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {

@@ -1,4 +1,4 @@
-//! Material variants (KHR_materials_variants): names for the whole file, and other materials for its primitives.
+//! Material variants (KHR_materials_variants): the file names them, and its primitives list a material for each.
 
 use std::collections::HashSet;
 
@@ -12,17 +12,19 @@ use crate::formats::error::Problem;
 use crate::mesh::Material;
 
 pub const NAME: &str = "KHR_materials_variants";
-/// Each may make a pipeline for each primitive.
+/// Each variant may need a pipeline for each primitive.
 const MAX_VARIANTS: usize = 1024;
+/// What an invalid mapping leads to.
+const LEFT_OUT: &str = "the primitive keeps its material";
 
-/// Returns the variants' names, each non-empty and unique, so that a name identifies its variant.
+/// Returns the variants' names, made unique and non-empty so that a name identifies its variant.
 pub fn names(root: &Root, warnings: &mut Warnings) -> Result<Vec<String>, Problem> {
     let Some(extension) = root.extensions.as_ref().and_then(|extensions| extensions.others.get(NAME)) else {
         return Ok(Vec::new());
     };
     let Some(variants) = extension.get("variants").and_then(Value::as_array) else {
         let place = format!("extensions.{NAME}.variants");
-        wrong(place, "an array of variants", extension).leave_out("variant", "the file has no variants", warnings)?;
+        invalid(place, "an array of variants", extension).leave_out("variant", "the file has no variants", warnings)?;
         return Ok(Vec::new());
     };
     if variants.len() > MAX_VARIANTS {
@@ -44,8 +46,8 @@ pub fn names(root: &Root, warnings: &mut Warnings) -> Result<Vec<String>, Proble
     Ok(names)
 }
 
-/// Returns pairs of variant and material: what a primitive has in the variants in which its material is another. A mapping that
-/// is invalid is left out.
+/// Returns pairs of variant and material for a primitive whose material depends on the variant. Invalid mappings are
+/// skipped with a warning.
 pub fn mappings(
     primitive: &Primitive,
     variants: usize,
@@ -57,20 +59,20 @@ pub fn mappings(
         return Ok(Vec::new());
     };
     let place = format!("{place}.extensions.{NAME}.mappings");
-    let (mut found, mut is_known) = (Vec::new(), vec![false; variants]);
+    let (mut found, mut is_mapped) = (Vec::new(), vec![false; variants]);
     let mappings = match extension.get("mappings").and_then(Value::as_array) {
         Some(mappings) => &mappings[..],
         None => {
-            wrong(place.clone(), "an array of mappings", extension).leave_out("variant", LEFT_OUT, warnings)?;
+            invalid(place.clone(), "an array of mappings", extension).leave_out("variant", LEFT_OUT, warnings)?;
             &[]
         }
     };
     for (at, mapping) in mappings.iter().enumerate() {
         match read(mapping, variants, materials, &format!("{place}[{at}]")) {
-            // Each variant at most once; the first counts.
-            Ok((material, of)) => {
-                for variant in of {
-                    if !std::mem::replace(&mut is_known[variant], true) {
+            // The first material of a variant counts.
+            Ok((material, in_variants)) => {
+                for variant in in_variants {
+                    if !std::mem::replace(&mut is_mapped[variant], true) {
                         found.push((variant, material));
                     }
                 }
@@ -81,31 +83,29 @@ pub fn mappings(
     Ok(found)
 }
 
-const LEFT_OUT: &str = "the primitive keeps its material";
-
 fn read(mapping: &Value, variants: usize, materials: &[Material], place: &str) -> Result<(usize, Vec<usize>), Problem> {
     let material = index(mapping.get("material"), &format!("{place}.material"))?;
     get(materials, material, &format_args!("{place}.material"), "materials")?;
     let list = mapping.get("variants").and_then(Value::as_array);
-    let list = list.ok_or_else(|| wrong(format!("{place}.variants"), "an array of variants", mapping))?;
-    let mut of = Vec::new();
+    let list = list.ok_or_else(|| invalid(format!("{place}.variants"), "an array of variants", mapping))?;
+    let mut in_variants = Vec::new();
     for (at, variant) in list.iter().enumerate() {
         let place = format!("{place}.variants[{at}]");
         let variant = index(Some(variant), &place)?;
         if variant >= variants {
             return Err(Problem::new(place, format!("an index into the {variants} variants"), variant));
         }
-        of.push(variant);
+        in_variants.push(variant);
     }
-    Ok((material, of))
+    Ok((material, in_variants))
 }
 
 fn index(value: Option<&Value>, place: &str) -> Result<usize, Problem> {
     let found = value.and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
-    found.ok_or_else(|| wrong(place.to_owned(), "an index", value.unwrap_or(&Value::Null)))
+    found.ok_or_else(|| invalid(place.to_owned(), "an index", value.unwrap_or(&Value::Null)))
 }
 
-fn wrong(place: String, expected: &str, found: &Value) -> Problem {
+fn invalid(place: String, expected: &str, found: &Value) -> Problem {
     let found: String = found.to_string().chars().take(40).collect();
     Problem::new(place, expected, found)
 }

@@ -240,7 +240,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Reads the indices of one corner of a face. The error says more about what was expected.
+    /// Reads the indices of one corner of a face. The error continues the description of what was expected.
     fn corner(&self, word: &[u8]) -> Result<Corner, &'static str> {
         let mut indices = word.split(|&byte| byte == b'/');
         let mut corner = [NONE; 3];
@@ -256,8 +256,8 @@ impl Reader<'_> {
     fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
         let first = self.obj.corners.len();
         for word in words {
-            let corner = self.corner(word).map_err(|more| {
-                let expected = format!("corners such as 1, 1/1, 1//1 or 1/1/1{more}");
+            let corner = self.corner(word).map_err(|details| {
+                let expected = format!("corners such as 1, 1/1, 1//1 or 1/1/1{details}");
                 Problem::new(place(line), expected, quoted(Some(word)))
             })?;
             self.allocate::<Corner>(line)?;

@@ -1,21 +1,21 @@
-//! `VRMC_node_constraint`, an extension of nodes.
+//! `VRMC_node_constraint`, a node extension.
 
 use glam::Vec3;
 use serde_json::Value;
 
 use super::{NODE_CONSTRAINT, Reader, number, text};
-use crate::avatar::{Constraint, ConstraintKind, in_order};
+use crate::avatar::{Constraint, ConstraintKind, sort_constraints};
 
-/// Further constraints are left out. Their order takes time.
+/// Further constraints are skipped: sorting them takes quadratic time or more.
 const MAX_CONSTRAINTS: usize = 512;
 
 pub fn read(reader: &mut Reader) -> Vec<Constraint> {
     let mut constraints = Vec::new();
-    for (node, value) in reader.parts.root.nodes.iter().enumerate() {
+    for (node, value) in reader.context.root.nodes.iter().enumerate() {
         let extension = value.extensions.as_ref().and_then(|all| all.others.get(NODE_CONSTRAINT));
         let Some(value) = extension.map(|extension| &extension["constraint"]) else { continue };
         let place = || format!("nodes[{node}].extensions.{NODE_CONSTRAINT}.constraint");
-        let Some(joint) = reader.parts.skeleton.joint_of_source(node) else { continue };
+        let Some(joint) = reader.context.skeleton.joint_of_source(node) else { continue };
         let Some((value, kind)) = kind(value) else {
             reader.ignore(place(), "expected roll, aim or rotation; it is left out".to_owned());
             continue;
@@ -30,10 +30,10 @@ pub fn read(reader: &mut Reader) -> Vec<Constraint> {
         let weight = number(value, "weight", 1.0).clamp(0.0, 1.0);
         constraints.push(Constraint { joint, source, weight, kind });
     }
-    let (sorted, cyclic) = in_order(reader.parts.skeleton, constraints);
+    let (sorted, cyclic) = sort_constraints(reader.context.skeleton, constraints);
     for constraint in cyclic {
-        let node = reader.parts.skeleton.source_index(constraint.joint);
-        let problem = "the constraint depends on itself by way of others; it is left out".to_owned();
+        let node = reader.context.skeleton.source_index(constraint.joint);
+        let problem = "the constraint depends on a cycle of constraints; it is left out".to_owned();
         reader.ignore(format!("nodes[{node}].extensions.{NODE_CONSTRAINT}"), problem);
     }
     sorted

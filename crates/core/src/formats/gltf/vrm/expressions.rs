@@ -5,15 +5,16 @@ use std::collections::{BTreeMap, HashMap};
 use glam::Vec4;
 use serde_json::Value;
 
-use super::{Read, Reader, index, mtoon, number, text};
+use super::{Reader, index, mtoon, number, text};
 use crate::anim::{JointIndex, MaterialProperty, PropertyTarget, TextureSlot, ToonColor};
 use crate::avatar::{Expression, MaterialBind, MorphBind, Override};
 
-/// Further expressions, and further parts of one, are left out.
+/// Further expressions are skipped.
 const MAX_EXPRESSIONS: usize = 256;
+/// Further binds of one kind in an expression are skipped.
 const MAX_BINDS: usize = 1024;
 
-/// Types of colours that only MToon has, in VRM 1.0 and 0.x.
+/// MToon's own colours, as VRM 1.0 and 0.x call them.
 const TOON_COLORS: [(&str, ToonColor); 7] = [
     ("shadeColor", ToonColor::ShadeColor),
     ("_ShadeColor", ToonColor::ShadeColor),
@@ -24,7 +25,7 @@ const TOON_COLORS: [(&str, ToonColor); 7] = [
     ("_OutlineColor", ToonColor::OutlineColor),
 ];
 
-/// VRM 0.x's preset names and those of 1.0.
+/// Preset names of VRM 0.x and their equivalents in 1.0.
 const PRESETS_0: [(&str, &str); 18] = [
     ("neutral", "neutral"),
     ("a", "aa"),
@@ -46,8 +47,8 @@ const PRESETS_0: [(&str, &str); 18] = [
     ("surprised", "surprised"),
 ];
 
-/// Calls `add` with place, name, whether it is a preset, and definition of each entry of `expressions`.
-fn each(
+/// Calls `add` for each entry of `expressions` with its place, name, whether it is a preset, and its definition.
+fn for_each_expression(
     reader: &mut Reader,
     extension: &str,
     value: &Value,
@@ -74,7 +75,7 @@ fn each(
 }
 
 pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
-    each(reader, "VRMC_vrm", vrm, &mut |reader, place, name, is_preset, value| {
+    for_each_expression(reader, "VRMC_vrm", vrm, &mut |reader, place, name, is_preset, value| {
         let mut expression = Expression::new(name, name, is_preset);
         expression.is_binary = value["isBinary"] == true;
         expression.overrides = ["overrideBlink", "overrideLookAt", "overrideMouth"].map(|key| match text(value, key) {
@@ -92,18 +93,18 @@ pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
         for (at, bind) in morphs.iter().enumerate() {
             let place = format!("{morphs_place}[{at}]");
             if let Some(joint) = reader.joint_at(&place, &bind["node"]) {
-                morph(reader, &place, &[joint], &bind["index"], number(bind, "weight", 1.0), &mut expression);
+                add_morph(reader, &place, &[joint], &bind["index"], number(bind, "weight", 1.0), &mut expression);
             }
         }
         for bind in colors {
             if let Some(material) = index(&bind["material"]) {
-                color(reader, material, text(bind, "type"), &bind["targetValue"], &mut expression);
+                add_color(reader, material, text(bind, "type"), &bind["targetValue"], &mut expression);
             }
         }
         for bind in transforms {
             if let Some(material) = index(&bind["material"]) {
                 let offset = pair(&bind["offset"], 0, [0.0, 0.0]);
-                texture_transform(reader, material, pair(&bind["scale"], 0, [1.0, 1.0]), offset, &mut expression);
+                add_texture_transform(reader, material, pair(&bind["scale"], 0, [1.0, 1.0]), offset, &mut expression);
             }
         }
         out.push(expression);
@@ -112,13 +113,13 @@ pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
 
 pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
     let mut joints_of_mesh: BTreeMap<usize, Vec<JointIndex>> = BTreeMap::new();
-    for instance in reader.parts.instances {
+    for instance in reader.context.instances {
         joints_of_mesh.entry(instance.mesh).or_default().push(instance.joint);
     }
-    let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
-    let materials = reader.parts.materials;
+    let mut materials_by_name: HashMap<&str, Vec<usize>> = HashMap::new();
+    let materials = reader.context.materials;
     for (at, material) in materials.iter().enumerate().filter(|(_, material)| !material.name.is_empty()) {
-        by_name.entry(&material.name).or_default().push(at);
+        materials_by_name.entry(&material.name).or_default().push(at);
     }
     let place = "extensions.VRM.blendShapeMaster.blendShapeGroups";
     let groups = reader.list(place, &vrm["blendShapeMaster"]["blendShapeGroups"], MAX_EXPRESSIONS);
@@ -128,7 +129,7 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
         let preset = PRESETS_0.iter().find(|(name, _)| *name == preset).map(|&(_, name)| name);
         let name = preset.unwrap_or(title);
         if name.is_empty() || out.iter().any(|other| other.name == name) {
-            let problem = format!("expected an expression with a name of its own, found “{name}”; it is left out");
+            let problem = format!("expected a unique name, found “{name}”; it is left out");
             reader.ignore(place, problem);
             continue;
         }
@@ -140,26 +141,28 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
             let joints =
                 index(&bind["mesh"]).and_then(|mesh| joints_of_mesh.get(&mesh)).map_or(&[][..], |joints| joints);
             let weight = number(bind, "weight", 100.0) / 100.0;
-            morph(reader, &format!("{binds_place}[{at}]"), joints, &bind["index"], weight, &mut expression);
+            add_morph(reader, &format!("{binds_place}[{at}]"), joints, &bind["index"], weight, &mut expression);
         }
         for bind in reader.list(&format!("{place}.materialValues"), &value["materialValues"], MAX_BINDS) {
-            material_value(reader, &by_name, bind, &mut expression);
+            add_material_value(reader, &materials_by_name, bind, &mut expression);
         }
         out.push(expression);
     }
 }
 
-/// The expressions that a .vrma animates: their names and nodes.
-pub fn read_animated(reader: &mut Reader, vrma: &Value, read: &mut Read) {
-    each(reader, "VRMC_vrm_animation", vrma, &mut |reader, place, name, is_preset, value| {
+/// Reads the expressions that a .vrma animates. Returns the node of each and its index in `out`.
+pub fn read_animated(reader: &mut Reader, vrma: &Value, out: &mut Vec<Expression>) -> Vec<(JointIndex, usize)> {
+    let mut nodes = Vec::new();
+    for_each_expression(reader, "VRMC_vrm_animation", vrma, &mut |reader, place, name, is_preset, value| {
         if let Some(joint) = reader.joint_at(place, &value["node"]) {
-            read.animated.expressions.push((joint, read.avatar.expressions.len()));
-            read.avatar.expressions.push(Expression::new(name, name, is_preset));
+            nodes.push((joint, out.len()));
+            out.push(Expression::new(name, name, is_preset));
         }
     });
+    nodes
 }
 
-fn morph(
+fn add_morph(
     reader: &mut Reader,
     place: &str,
     joints: &[JointIndex],
@@ -169,7 +172,7 @@ fn morph(
 ) {
     let before = expression.morphs.len();
     for &joint in joints.iter().take(MAX_BINDS) {
-        let range = reader.parts.skeleton.morph_range(joint);
+        let range = reader.context.skeleton.morph_range(joint);
         let target = index(target).filter(|&target| target < range.len());
         if let Some(target) = target.filter(|_| expression.morphs.len() < MAX_BINDS) {
             expression.morphs.push(MorphBind { index: range.start + target, weight });
@@ -180,17 +183,22 @@ fn morph(
     }
 }
 
-fn add(expression: &mut Expression, material: usize, property: MaterialProperty, rest: Vec4, target: Vec4) {
-    let target_property = PropertyTarget::Material(material, property);
+fn add_material_bind(
+    expression: &mut Expression,
+    material: usize,
+    property: MaterialProperty,
+    rest: Vec4,
+    value: Vec4,
+) {
+    let target = PropertyTarget::Material(material, property);
     // Several values of one property would add up.
-    if expression.materials.len() < MAX_BINDS && expression.materials.iter().all(|bind| bind.target != target_property)
-    {
-        expression.materials.push(MaterialBind { target: target_property, rest, delta: target - rest });
+    if expression.materials.len() < MAX_BINDS && expression.materials.iter().all(|bind| bind.target != target) {
+        expression.materials.push(MaterialBind { target, rest, delta: value - rest });
     }
 }
 
-fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mut Expression) {
-    let Some(material) = reader.parts.materials.get(at) else { return };
+fn add_color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mut Expression) {
+    let Some(material) = reader.context.materials.get(at) else { return };
     let component = |index: usize| target.get(index).and_then(Value::as_f64).map_or(1.0, |number| number as f32);
     let target = Vec4::from_array([0, 1, 2, 3].map(component));
     if !target.is_finite() {
@@ -199,29 +207,31 @@ fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mu
     let is_gamma = kind.starts_with('_') && kind != "_EmissionColor" && material.toon.is_some();
     let target = if is_gamma { mtoon::linear(target) } else { target };
     match kind {
-        "color" | "_Color" => add(expression, at, MaterialProperty::BaseColor, material.base_color, target),
+        "color" | "_Color" => {
+            add_material_bind(expression, at, MaterialProperty::BaseColor, material.base_color, target)
+        }
         "emissionColor" | "_EmissionColor" => {
             let rest = material.emissive.extend(0.0);
-            add(expression, at, MaterialProperty::Emissive, rest, target.truncate().extend(0.0));
+            add_material_bind(expression, at, MaterialProperty::Emissive, rest, target.truncate().extend(0.0));
         }
         _ => {
             let color = TOON_COLORS.iter().find(|(name, _)| *name == kind).map(|&(_, color)| color);
             if let (Some(mut toon), Some(color)) = (material.toon.as_deref().copied(), color) {
                 let rest = toon.color_mut(color).extend(0.0);
-                add(expression, at, MaterialProperty::Toon(color), rest, target.truncate().extend(0.0));
+                add_material_bind(expression, at, MaterialProperty::Toon(color), rest, target.truncate().extend(0.0));
             }
         }
     }
 }
 
-fn texture_transform(reader: &Reader, at: usize, scale: [f32; 2], offset: [f32; 2], expression: &mut Expression) {
-    let Some(material) = reader.parts.materials.get(at) else { return };
+fn add_texture_transform(reader: &Reader, at: usize, scale: [f32; 2], offset: [f32; 2], expression: &mut Expression) {
+    let Some(material) = reader.context.materials.get(at) else { return };
     for slot in TextureSlot::ALL {
         let Some(texture) = material.texture(slot) else { continue };
         let uvs = texture.uv_transform;
-        let wide = |[x, y]: [f32; 2]| Vec4::new(x, y, 0.0, 0.0);
-        add(expression, at, MaterialProperty::UvOffset(slot), wide(uvs.offset.to_array()), wide(offset));
-        add(expression, at, MaterialProperty::UvScale(slot), wide(uvs.scale.to_array()), wide(scale));
+        let vec4 = |[x, y]: [f32; 2]| Vec4::new(x, y, 0.0, 0.0);
+        add_material_bind(expression, at, MaterialProperty::UvOffset(slot), vec4(uvs.offset.to_array()), vec4(offset));
+        add_material_bind(expression, at, MaterialProperty::UvScale(slot), vec4(uvs.scale.to_array()), vec4(scale));
     }
 }
 
@@ -234,15 +244,21 @@ fn pair(value: &Value, start: usize, default: [f32; 2]) -> [f32; 2] {
     [component(0), component(1)]
 }
 
-/// VRM 0.x names materials, and has texture coordinates that start at the bottom.
-fn material_value(reader: &Reader, by_name: &HashMap<&str, Vec<usize>>, bind: &Value, expression: &mut Expression) {
+/// VRM 0.x identifies materials by name, and its V coordinates start at the bottom.
+fn add_material_value(
+    reader: &Reader,
+    materials_by_name: &HashMap<&str, Vec<usize>>,
+    bind: &Value,
+    expression: &mut Expression,
+) {
     let (name, property, value) = (text(bind, "materialName"), text(bind, "propertyName"), &bind["targetValue"]);
-    for &at in by_name.get(name).into_iter().flatten().take(MAX_BINDS - expression.materials.len().min(MAX_BINDS)) {
+    let left = MAX_BINDS.saturating_sub(expression.materials.len());
+    for &at in materials_by_name.get(name).into_iter().flatten().take(left) {
         if property == "_MainTex_ST" {
             let (scale, [x, y]) = (pair(value, 0, [1.0, 1.0]), pair(value, 2, [0.0, 0.0]));
-            texture_transform(reader, at, scale, [x, 1.0 - y - scale[1]], expression);
+            add_texture_transform(reader, at, scale, [x, 1.0 - y - scale[1]], expression);
         } else {
-            color(reader, at, property, value, expression);
+            add_color(reader, at, property, value, expression);
         }
     }
 }

@@ -16,7 +16,7 @@ pub fn read_1(reader: &mut Reader, vrm: &Value, avatar: &Avatar) -> Option<LookA
     look_at(reader, avatar, has_bones, offset, maps, false)
 }
 
-/// The curves of 0.x are not used: exporters write the default one, and 1.0 has none.
+/// Ignores the curves of 0.x: exporters write the default one, and 1.0 has none.
 pub fn read_0(reader: &mut Reader, vrm: &Value, avatar: &Avatar) -> Option<LookAt> {
     let value = vrm.get("firstPerson")?;
     let has_bones = text(value, "lookAtTypeName") != "BlendShape";
@@ -36,7 +36,7 @@ fn range_maps(value: &Value, names: [&str; 4], [input, output]: [&str; 2], has_b
     RangeMaps { inner, outer, down, up }
 }
 
-/// `None` without a head, or if nothing could turn.
+/// Returns `None` without a head, or without any eyes or expressions to move.
 fn look_at(
     reader: &Reader,
     avatar: &Avatar,
@@ -45,7 +45,7 @@ fn look_at(
     maps: RangeMaps,
     faces_minus_z: bool,
 ) -> Option<LookAt> {
-    let humanoid = reader.parts.humanoid?;
+    let humanoid = reader.context.humanoid?;
     let head = humanoid.joint(Slot::Head)?;
     let kind = if has_bones {
         let eyes = [Slot::LeftEye, Slot::RightEye].map(|slot| humanoid.joint(slot));

@@ -1,11 +1,11 @@
-//! `meta` and first-person flags, of both versions. They are shown, not applied.
+//! `meta` and first-person flags of both versions. They are shown to the user, not applied.
 
 use serde_json::Value;
 
 use super::{Reader, index, text};
 use crate::avatar::Avatar;
 
-/// Characters of a value that are kept.
+/// Longer values are truncated.
 const MAX_CHARS: usize = 500;
 const MAX_ENTRIES: usize = 64;
 const MAX_FLAGS: usize = 1024;
@@ -27,11 +27,11 @@ pub fn read(reader: &mut Reader, vrm: &Value, avatar: &mut Avatar) {
     let flags = reader.list("firstPerson.meshAnnotations", &vrm["firstPerson"]["meshAnnotations"], MAX_FLAGS);
     for value in flags {
         let mesh = index(&value["mesh"]);
-        // 1.0 names nodes, 0.x meshes.
+        // 1.0 refers to nodes, 0.x to meshes.
         let (joint, flag) = match reader.joint(&value["node"]) {
             Some(joint) => (Some(joint), text(value, "type")),
             None => {
-                let drawn = reader.parts.instances.iter().find(|instance| Some(instance.mesh) == mesh);
+                let drawn = reader.context.instances.iter().find(|instance| Some(instance.mesh) == mesh);
                 (drawn.map(|instance| instance.joint), text(value, "firstPersonFlag"))
             }
         };

@@ -1,6 +1,5 @@
-//! VRM 0.x and 1.0 besides the humanoid bones: `VRM`, `VRMC_vrm`, `VRMC_springBone`, `VRMC_node_constraint` and
-//! `VRMC_vrm_animation`. What a statement refers to and isn't there costs that statement, with a warning; the model
-//! still loads.
+//! VRM 0.x and 1.0 except for the humanoid bones: `VRM`, `VRMC_vrm`, `VRMC_springBone`, `VRMC_node_constraint` and
+//! `VRMC_vrm_animation`. An entry that refers to something missing is skipped with a warning; the model still loads.
 
 mod constraints;
 mod expressions;
@@ -23,11 +22,11 @@ use crate::mesh::Material;
 pub const NODE_CONSTRAINT: &str = "VRMC_node_constraint";
 /// Spring bones of VRM 1.0.
 pub const SPRING_BONE: &str = "VRMC_springBone";
-/// Colliders that hold tails inside, and planes.
+/// Colliders that keep tails inside, and planes.
 pub const EXTENDED_COLLIDER: &str = "VRMC_springBone_extended_collider";
 
-/// What the extensions refer to.
-pub struct Parts<'a> {
+/// The parts of the asset that the extensions refer to.
+pub struct Context<'a> {
     pub root: &'a Root,
     pub skeleton: &'a Skeleton,
     pub instances: &'a [MeshInstance],
@@ -35,22 +34,22 @@ pub struct Parts<'a> {
     pub humanoid: Option<&'a Humanoid>,
 }
 
-/// Nodes of a .vrma that stand for what its clips animate besides joints.
+/// Nodes of a .vrma whose channels animate something other than joints.
 #[derive(Default)]
 pub struct AnimatedNodes {
-    /// Their X translation is the weight of an expression, by number.
+    /// Nodes whose X translation is the weight of an expression, and its index.
     pub expressions: Vec<(JointIndex, usize)>,
-    /// Its rotation is the direction of the eyes.
+    /// The node whose rotation is the gaze direction.
     pub look_at: Option<JointIndex>,
 }
 
 impl AnimatedNodes {
-    /// Returns what keys of a joint animate besides, with its values.
+    /// Returns the property that a joint's keys animate, if any, and its values.
     pub fn property(&self, joint: JointIndex, keys: &Keys) -> Option<(PropertyTarget, Vec<f32>)> {
         match keys {
             Keys::Translation(values) => {
-                let &(_, number) = self.expressions.iter().find(|(node, _)| *node == joint)?;
-                Some((PropertyTarget::Expression(number), values.iter().map(|value| value.x).collect()))
+                let &(_, index) = self.expressions.iter().find(|(node, _)| *node == joint)?;
+                Some((PropertyTarget::Expression(index), values.iter().map(|value| value.x).collect()))
             }
             Keys::Rotation(values) if self.look_at == Some(joint) => {
                 let angles = |rotation: &Quat| {
@@ -64,54 +63,47 @@ impl AnimatedNodes {
     }
 }
 
-/// An avatar, and what stands for it in clips.
-#[derive(Default)]
-pub struct Read {
-    pub avatar: Avatar,
-    pub animated: AnimatedNodes,
-}
-
-/// Reads what the file says about its avatar. Empty for other files.
-pub fn read(parts: &Parts, warnings: &mut Warnings) -> Read {
-    let mut reader = Reader { parts, warnings };
-    let mut read = Read::default();
+/// Reads the avatar, and the nodes that animate it. Both are empty without VRM extensions.
+pub fn read(context: &Context, warnings: &mut Warnings) -> (Avatar, AnimatedNodes) {
+    let mut reader = Reader { context, warnings };
+    let (mut avatar, mut animated) = (Avatar::default(), AnimatedNodes::default());
     if let Some(vrm) = reader.extension("VRMC_vrm") {
-        expressions::read_1(&mut reader, vrm, &mut read.avatar.expressions);
-        read.avatar.look_at = look_at::read_1(&mut reader, vrm, &read.avatar);
-        meta::read(&mut reader, vrm, &mut read.avatar);
+        expressions::read_1(&mut reader, vrm, &mut avatar.expressions);
+        avatar.look_at = look_at::read_1(&mut reader, vrm, &avatar);
+        meta::read(&mut reader, vrm, &mut avatar);
     }
     if let Some(vrm) = reader.extension("VRM") {
-        expressions::read_0(&mut reader, vrm, &mut read.avatar.expressions);
-        read.avatar.look_at = look_at::read_0(&mut reader, vrm, &read.avatar);
-        meta::read(&mut reader, vrm, &mut read.avatar);
-        read.avatar.springs = springs::read_0(&mut reader, vrm);
+        expressions::read_0(&mut reader, vrm, &mut avatar.expressions);
+        avatar.look_at = look_at::read_0(&mut reader, vrm, &avatar);
+        meta::read(&mut reader, vrm, &mut avatar);
+        avatar.springs = springs::read_0(&mut reader, vrm);
     }
     if let Some(vrma) = reader.extension("VRMC_vrm_animation") {
-        expressions::read_animated(&mut reader, vrma, &mut read);
-        read.animated.look_at = reader.joint(&vrma["lookAt"]["node"]);
+        animated.expressions = expressions::read_animated(&mut reader, vrma, &mut avatar.expressions);
+        animated.look_at = reader.joint(&vrma["lookAt"]["node"]);
     }
     if let Some(springs) = reader.extension(SPRING_BONE) {
-        read.avatar.springs = springs::read_1(&mut reader, springs);
+        avatar.springs = springs::read_1(&mut reader, springs);
     }
-    read.avatar.constraints = constraints::read(&mut reader);
-    read
+    avatar.constraints = constraints::read(&mut reader);
+    (avatar, animated)
 }
 
 struct Reader<'a> {
-    parts: &'a Parts<'a>,
+    context: &'a Context<'a>,
     warnings: &'a mut Warnings,
 }
 
 impl<'a> Reader<'a> {
     fn extension(&self, name: &str) -> Option<&'a Value> {
-        self.parts.root.extensions.as_ref()?.others.get(name)
+        self.context.root.extensions.as_ref()?.others.get(name)
     }
 
     fn joint(&self, node: &Value) -> Option<JointIndex> {
-        self.parts.skeleton.joint_of_source(index(node)?)
+        self.context.skeleton.joint_of_source(index(node)?)
     }
 
-    /// Returns the joint of a node; warns if there is none.
+    /// Returns the joint of an entry's `node`; warns if there is none.
     fn joint_at(&mut self, place: &str, node: &Value) -> Option<JointIndex> {
         let joint = self.joint(node);
         if joint.is_none() {
@@ -120,7 +112,7 @@ impl<'a> Reader<'a> {
         joint
     }
 
-    /// Returns the elements of an array, at most `max`; warns about further ones.
+    /// Returns the elements of an array, at most `max` of them; warns if there are more.
     fn list<'v>(&mut self, place: &str, value: &'v Value, max: usize) -> &'v [Value] {
         let all = list(value);
         if all.len() > max {
@@ -145,18 +137,18 @@ fn text<'a>(value: &'a Value, key: &str) -> &'a str {
     value[key].as_str().unwrap_or_default()
 }
 
-/// Returns the elements of an array, none of anything else.
+/// Returns the elements of an array; empty for any other value.
 fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], |list| list)
 }
 
-/// Returns the member or a default, also if it is not a finite number.
+/// Returns a member, or the default if it is missing or not a finite number.
 fn number(value: &Value, key: &str, default: f32) -> f32 {
     let number = value[key].as_f64().map(|number| number as f32);
     number.filter(|number| number.is_finite()).unwrap_or(default)
 }
 
-/// Reads `[x, y, z]` or VRM 0.x's `{x, y, z}`; missing components are those of the default.
+/// Reads `[x, y, z]` or VRM 0.x's `{x, y, z}`; the default replaces missing components.
 fn vector(value: &Value, default: Vec3) -> Vec3 {
     let component = |index: usize, name: &str| {
         let number = value.get(index).or_else(|| value.get(name)).and_then(Value::as_f64);

@@ -1,24 +1,24 @@
-//! MToon of VRM 0.x: `materialProperties`, which are those of a shader in Unity. Colours but emission are in gamma
-//! space, and texture coordinates start at the bottom. The conversion is that of UniVRM, and but for emission of three-vrm.
+//! MToon of VRM 0.x: `materialProperties`, the properties of a Unity shader. Colours except emission are in gamma
+//! space, and V coordinates start at the bottom. Converted as in UniVRM and, except for emission, in three-vrm.
 
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::super::materials::TextureReader;
-use super::super::mtoon::warn_about_moving_textures;
+use super::super::mtoon::warn_about_uv_animation;
 use super::number;
 use crate::anim::TextureSlot;
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Material, OutlineMode, TextureRef, Toon};
 
-/// Converts a colour of VRM 0.x, whose alpha is linear.
+/// Converts a colour of VRM 0.x from gamma to linear space; its alpha is linear already.
 pub fn linear(color: Vec4) -> Vec4 {
     color.truncate().max(Vec3::ZERO).powf(2.2).extend(color.w)
 }
 
 struct Properties<'a> {
     value: &'a Value,
-    /// KHR_texture_transform of all textures but the matcap.
+    /// KHR_texture_transform of all textures except the matcap.
     transform: Value,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Properties<'a> {
         if let Some(transform) = transform {
             info["extensions"] = json!({ "KHR_texture_transform": transform });
         }
-        reader.lobe(Some(&info), &format!("textureProperties.{name}"))
+        reader.extension_texture(Some(&info), &format!("textureProperties.{name}"))
     }
 
     fn has_keyword(&self, name: &str) -> bool {
@@ -77,7 +77,7 @@ impl<'a> Properties<'a> {
             2 => OutlineMode::Screen,
             _ => OutlineMode::None,
         };
-        // Centimetres, or hundredths of half the height.
+        // From centimetres, or from hundredths of half the viewport's height.
         let unit = if outline_mode == OutlineMode::Screen { 0.005 } else { 0.01 };
         let is_mixed = self.number("_OutlineColorMode", 0.0) == 1.0;
         Toon {
@@ -98,20 +98,18 @@ impl<'a> Properties<'a> {
     }
 }
 
-/// Reads an element of `materialProperties`, which replaces what the glTF material says. Other shaders than MToon change
-/// nothing.
+/// Reads an element of `materialProperties`, which overrides the glTF material if its shader is MToon.
 pub fn read_0(value: &Value, material: &mut Material, reader: &mut TextureReader<'_>) -> Result<(), Problem> {
     if value["shader"] != "VRM/MToon" {
         return Ok(());
     }
     let properties = Properties::new(value);
-    let mut toon = properties.toon();
     let transform = Some(&properties.transform);
     material.base_color = properties.color("_Color", Vec4::ONE);
     material.base_color_texture = properties.texture("_MainTex", transform, reader)?;
     material.normal_texture = properties.texture("_BumpMap", transform, reader)?;
     material.normal_scale = properties.number("_BumpScale", 1.0);
-    // Unity keeps colours without an upper limit linear.
+    // Unity stores HDR colours in linear space.
     material.emissive = properties.vector("_EmissionColor", Vec4::W).truncate().max(Vec3::ZERO);
     material.emissive_strength = 1.0;
     material.emissive_texture = properties.texture("_EmissionMap", transform, reader)?;
@@ -123,20 +121,17 @@ pub fn read_0(value: &Value, material: &mut Material, reader: &mut TextureReader
         AlphaMode::Opaque
     };
     material.double_sided = properties.number("_CullMode", 2.0) == 0.0;
+    material.shade_as_toon(properties.toon());
     for (name, slot, transform) in [
         ("_ShadeTexture", TextureSlot::ShadeMultiply, transform),
         ("_SphereAdd", TextureSlot::Matcap, None),
         ("_RimTexture", TextureSlot::RimMultiply, transform),
         ("_OutlineWidthTexture", TextureSlot::OutlineWidth, transform),
     ] {
-        let texture = properties.texture(name, transform, reader)?;
-        if let Some(place) = toon.texture_mut(slot) {
-            *place = texture;
-        }
+        material.set_texture(slot, properties.texture(name, transform, reader)?);
     }
-    material.shade_as_toon(toon);
     if ["_UvAnimScrollX", "_UvAnimScrollY", "_UvAnimRotation"].iter().any(|name| properties.number(name, 0.0) != 0.0) {
-        warn_about_moving_textures(reader);
+        warn_about_uv_animation(reader);
     }
     Ok(())
 }

@@ -7,13 +7,14 @@ use super::{EXTENDED_COLLIDER, Reader, SPRING_BONE, index, list, number, vector}
 use crate::anim::JointIndex;
 use crate::avatar::{Collider, SpringJoint, Springs};
 
-/// Further ones are left out: each joint is tested against each of its colliders in every step.
+/// Further spring joints, colliders and groups are skipped.
 const MAX_JOINTS: usize = 4096;
 const MAX_COLLIDERS: usize = 1024;
-/// Groups of a file, and groups of colliders of a spring.
+/// Springs of a file.
 const MAX_GROUPS: usize = 512;
+/// Collider groups of a spring.
 const MAX_GROUPS_OF_SPRING: usize = 64;
-/// Pairs of spring joint and collider, which are tested in every step.
+/// Maximum number of pairs of spring joint and collider, all of which are tested in every step.
 const MAX_TESTS: usize = 1 << 16;
 
 const BONE_GROUPS: &str = "extensions.VRM.secondaryAnimation.boneGroups";
@@ -22,18 +23,18 @@ const DOWN: Vec3 = Vec3::NEG_Y;
 
 pub fn read_1(reader: &mut Reader, value: &Value) -> Springs {
     let place_of = |list: &str| format!("extensions.{SPRING_BONE}.{list}");
-    // The file's indices count colliders that are left out, too.
-    let (mut numbers, mut colliders) = (Vec::new(), Vec::new());
+    // The file's indices include colliders that are skipped.
+    let (mut indices, mut colliders) = (Vec::new(), Vec::new());
     for (at, value) in reader.list(&place_of("colliders"), &value["colliders"], MAX_COLLIDERS).iter().enumerate() {
         let joint = reader.joint_at(&place_of(&format!("colliders[{at}]")), &value["node"]);
-        numbers.push(joint.and_then(|joint| collider(joint, value)).map(|collider| {
+        indices.push(joint.and_then(|joint| collider(joint, value)).map(|collider| {
             colliders.push(collider);
             colliders.len() as u32 - 1
         }));
     }
     let group = |at: &Value| {
         let group = index(at).and_then(|at| value["colliderGroups"].get(at)).unwrap_or(&Value::Null);
-        list(&group["colliders"]).iter().take(MAX_COLLIDERS).filter_map(|at| *numbers.get(index(at)?)?)
+        list(&group["colliders"]).iter().take(MAX_COLLIDERS).filter_map(|at| *indices.get(index(at)?)?)
     };
     let mut joints = Vec::new();
     let mut left = MAX_JOINTS;
@@ -46,14 +47,15 @@ pub fn read_1(reader: &mut Reader, value: &Value) -> Springs {
             continue;
         }
         let groups = reader.list(&format!("{place}.colliderGroups"), &spring["colliderGroups"], MAX_GROUPS_OF_SPRING);
-        let colliders = affordable(reader, &place, distinct(groups.iter().flat_map(group)), chain.len(), &mut tests);
+        let colliders =
+            within_test_budget(reader, &place, distinct(groups.iter().flat_map(group)), chain.len(), &mut tests);
         let center = spring.get("center").and_then(|node| reader.joint(node));
         for (end, pair) in chain.windows(2).enumerate() {
             let place = |joint: usize| format!("{place}.joints[{joint}]");
             let joint = reader.joint_at(&place(end), &pair[0]["node"]);
             let child = reader.joint_at(&place(end + 1), &pair[1]["node"]);
             let (Some(joint), Some(child)) = (joint, child) else { continue };
-            match SpringJoint::tail(reader.parts.skeleton, joint, Some(child)) {
+            match SpringJoint::rest_tail(reader.context.skeleton, joint, Some(child)) {
                 Some(tail) => joints.push(spring_joint(&pair[0], "stiffness", joint, tail, center, &colliders)),
                 None => reader.ignore(place(end + 1), "it isn't below the joint before it; it is left out".to_owned()),
             }
@@ -62,10 +64,10 @@ pub fn read_1(reader: &mut Reader, value: &Value) -> Springs {
             break;
         }
     }
-    Springs::new(reader.parts.skeleton, joints, colliders)
+    Springs::new(reader.context.skeleton, joints, colliders)
 }
 
-/// Every joint below the bones of a group swings, towards its first child.
+/// Every joint below the bones of a group swings. Its first child is its tail.
 pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
     let value = &vrm["secondaryAnimation"];
     let mut colliders = Vec::new();
@@ -83,7 +85,7 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
         }
         groups.push(start..colliders.len() as u32);
     }
-    let skeleton = reader.parts.skeleton;
+    let skeleton = reader.context.skeleton;
     let mut first_child = vec![None; skeleton.len()];
     for joint in skeleton.joints().rev() {
         if let Some(parent) = skeleton.parent(joint) {
@@ -91,7 +93,6 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
         }
     }
     let mut joints: Vec<SpringJoint> = Vec::new();
-    // Each group looks at every joint.
     let mut tests = MAX_TESTS;
     for group in reader.list(BONE_GROUPS, &value["boneGroups"], MAX_GROUPS) {
         let of_group = |at: &Value| index(at).and_then(|at| groups.get(at)).cloned().into_iter().flatten();
@@ -107,9 +108,9 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
             is_below[joint.get()] |= skeleton.parent(joint).is_some_and(|parent| is_below[parent.get()]);
         }
         let count = is_below.iter().filter(|is_below| **is_below).count();
-        let colliders = affordable(reader, BONE_GROUPS, colliders, count, &mut tests);
+        let colliders = within_test_budget(reader, BONE_GROUPS, colliders, count, &mut tests);
         for joint in skeleton.joints() {
-            if let Some(tail) = SpringJoint::tail(skeleton, joint, first_child[joint.get()])
+            if let Some(tail) = SpringJoint::rest_tail(skeleton, joint, first_child[joint.get()])
                 && is_below[joint.get()]
                 && joints.len() < MAX_JOINTS
             {
@@ -120,15 +121,23 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
     Springs::new(skeleton, joints, colliders)
 }
 
-/// Leaves the colliders of a spring out if testing its joints against them exceeds what is left of [`MAX_TESTS`].
-fn affordable(reader: &mut Reader, place: &str, colliders: Vec<u32>, joints: usize, tests: &mut usize) -> Vec<u32> {
+/// Returns the colliders of a spring, or none, with a warning, if testing its joints against them exceeds what is left
+/// of [`MAX_TESTS`].
+fn within_test_budget(
+    reader: &mut Reader,
+    place: &str,
+    colliders: Vec<u32>,
+    joints: usize,
+    tests: &mut usize,
+) -> Vec<u32> {
     match tests.checked_sub(colliders.len() * joints) {
         Some(left) => {
             *tests = left;
             colliders
         }
         None => {
-            let problem = format!("more than {MAX_TESTS} pairs of joint and collider in all; it collides with nothing");
+            let problem =
+                format!("more than {MAX_TESTS} pairs of joint and collider in all; its collisions are ignored");
             reader.ignore(place.to_owned(), problem);
             Vec::new()
         }
@@ -142,7 +151,7 @@ fn distinct(indices: impl Iterator<Item = u32>) -> Vec<u32> {
     indices
 }
 
-/// `stiffness`: the name of that member; 0.x misspells it.
+/// `stiffness` is the name of that member, which 0.x misspells.
 fn spring_joint(
     value: &Value,
     stiffness: &str,
@@ -166,9 +175,9 @@ fn spring_joint(
 fn collider(joint: JointIndex, value: &Value) -> Option<Collider> {
     let extended = &value["extensions"][EXTENDED_COLLIDER]["shape"];
     let shape = if extended.is_object() { extended } else { &value["shape"] };
-    let collider = |shape: &Value, tail: &str, normal| {
+    let collider = |shape: &Value, tail_key: &str, normal| {
         let offset = vector(&shape["offset"], Vec3::ZERO);
-        let tail = shape.get(tail).map_or(offset, |tail| vector(tail, Vec3::ZERO));
+        let tail = shape.get(tail_key).map_or(offset, |tail| vector(tail, Vec3::ZERO));
         let inside = shape["inside"] == true;
         Some(Collider { joint, offset, tail, radius: number(shape, "radius", 0.0), inside, normal })
     };

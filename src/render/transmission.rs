@@ -1,33 +1,37 @@
-//! The picture of everything opaque that transmissive surfaces let through, with mip levels for rough ones.
+//! The transmission buffer: a copy of everything opaque, which transmissive surfaces refract. Rough ones read its mip
+//! levels.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
 use super::pipelines::pipeline_layout;
 use super::shaders::{self, Shader};
 
-/// Decodes what is copied, so that mip levels average light.
+/// sRGB, so that mip levels average linear light.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Makes such pictures.
-pub(super) struct BehindMaker {
+const LABEL: &str = "transmission";
+
+/// Creates and fills transmission buffers.
+pub(super) struct TransmissionPass {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     copy: wgpu::RenderPipeline,
     halve: wgpu::RenderPipeline,
 }
 
-pub(super) struct Behind {
+/// A texture as large as the image, with all its mip levels.
+pub(super) struct TransmissionBuffer {
     pub view: wgpu::TextureView,
-    /// Of each mip level: the texture it is made from, and where it goes.
+    /// The source and the target of each mip level.
     levels: Vec<(wgpu::BindGroup, wgpu::TextureView)>,
 }
 
-impl BehindMaker {
+impl TransmissionPass {
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = sampled_texture_layout(device, "behind");
-        let pipeline_layout = pipeline_layout(device, "behind", &[Some(&layout)]);
+        let layout = sampled_texture_layout(device, LABEL);
+        let pipeline_layout = pipeline_layout(device, LABEL, &[Some(&layout)]);
         let pipeline = |shader: &Shader, vertex, fragment, constants| {
             FullScreenPipeline {
-                label: "behind",
+                label: LABEL,
                 module: &shader.module(device),
                 layout: &pipeline_layout,
                 vertex,
@@ -39,7 +43,7 @@ impl BehindMaker {
         };
         Self {
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("behind"),
+                label: Some(LABEL),
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
@@ -50,10 +54,15 @@ impl BehindMaker {
         }
     }
 
-    /// Creates the textures. `picture` is gamma-encoded and has this size.
-    pub fn behind(&self, device: &wgpu::Device, picture: &wgpu::TextureView, [width, height]: [u32; 2]) -> Behind {
+    /// Creates a buffer for copies of `image`, which is gamma-encoded and has this size.
+    pub fn create_buffer(
+        &self,
+        device: &wgpu::Device,
+        image: &wgpu::TextureView,
+        [width, height]: [u32; 2],
+    ) -> TransmissionBuffer {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("behind"),
+            label: Some(LABEL),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: width.max(height).ilog2() + 1,
             sample_count: 1,
@@ -70,18 +79,18 @@ impl BehindMaker {
             })
         });
         let targets: Vec<wgpu::TextureView> = targets.collect();
-        let sources = [picture].into_iter().chain(&targets);
-        let groups = sources.map(|source| sampled_texture_group(device, "behind", &self.layout, source, &self.sampler));
+        let sources = [image].into_iter().chain(&targets);
+        let groups = sources.map(|source| sampled_texture_group(device, LABEL, &self.layout, source, &self.sampler));
         let levels = groups.zip(targets.iter().cloned()).collect();
-        Behind { view: texture.create_view(&Default::default()), levels }
+        TransmissionBuffer { view: texture.create_view(&Default::default()), levels }
     }
 
-    /// Copies the picture as it is at this point of the encoder, and makes its mip levels.
-    pub fn record(&self, behind: &Behind, encoder: &mut wgpu::CommandEncoder) {
+    /// Records copying the image into the buffer and making its mip levels.
+    pub fn record(&self, buffer: &TransmissionBuffer, encoder: &mut wgpu::CommandEncoder) {
         let pipelines = [&self.copy].into_iter().chain(std::iter::repeat(&self.halve));
-        for ((source, target), pipeline) in behind.levels.iter().zip(pipelines) {
+        for ((source, target), pipeline) in buffer.levels.iter().zip(pipelines) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("behind"),
+                label: Some(LABEL),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                     view: target,
                     depth_slice: None,

@@ -1,0 +1,30 @@
+//! Texts of controls that tests look for, so that each can change in one place. By subject; shared ones are here.
+
+mod clips;
+mod header;
+mod motion;
+mod properties;
+mod tabs;
+mod viewport;
+
+pub use clips::*;
+pub use header::*;
+pub use motion::*;
+pub use properties::*;
+pub use tabs::*;
+pub use viewport::*;
+
+/// Returns a name and its value, or a choice and one of its options, as a screen reader reads them.
+pub fn labelled(name: &str, value: &str) -> String {
+    format!("{name}: {value}")
+}
+
+/// Returns an option or a heading with the number of things it stands for.
+pub fn counted(what: &str, count: usize) -> String {
+    format!("{what} ({count})")
+}
+
+/// Returns the accessible name of the number field beside the slider `label`.
+pub fn value_of(label: &str) -> String {
+    format!("{label} value")
+}

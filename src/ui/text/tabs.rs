@@ -1,0 +1,264 @@
+//! The inspector's tabs except for Motion.
+
+// Scene tab
+/// Hint in the search field of the node tree.
+pub const SEARCH_NODES: &str = "Search nodes";
+/// Card of a joint whose mesh or light is not shown.
+pub const NODE_HIDDEN: &str = "Not shown: hidden by the file or the clip, or part of another scene.";
+/// Close button of the selected joint's card.
+pub const DESELECT_JOINT: &str = "Deselect joint";
+/// Button that starts renaming the selected joint.
+pub const RENAME: &str = "Rename";
+/// Accessible name of the field for the joint's new name.
+pub const JOINT_NAME: &str = "Joint name";
+/// Switch for the pose sliders and the rotation gizmo.
+pub const POSE_MANUALLY: &str = "Pose manually";
+/// How the three angles combine.
+pub const POSE_HINT: &str = "From the rest pose: about X, then Y, then Z. Or drag the rings in the viewport.";
+/// The pose sliders, in degrees. They apply in this order.
+pub const POSE_ANGLES: [&str; 3] = ["Rotation X", "Rotation Y", "Rotation Z"];
+/// Button that returns the selected joint to the clip.
+pub const RESET_JOINT: &str = "Reset joint";
+/// Switch between the joint's transforms and its skinning matrices.
+pub const MATRICES: &str = "Matrices";
+/// Switch for the skinning equation of a vertex.
+pub const VERTEX_PROBE: &str = "Vertex under the pointer";
+/// Shown while the probe is on and no vertex has been found.
+pub const VERTEX_HINT: &str = "Point at the mesh to see which joints move a vertex. Click to pin it.";
+/// Button that unpins the vertex, so that the probe follows the pointer again.
+pub const UNPIN_VERTEX: &str = "Unpin";
+
+/// Returns the note shown when the search matches no node.
+pub fn no_node_found(search: &str) -> String {
+    format!("No node matches “{search}”.")
+}
+
+/// Returns the name of a collapsed tree row's triangle.
+pub fn expand(name: &str) -> String {
+    format!("Expand {name}")
+}
+
+/// Returns the name of an expanded tree row's triangle.
+pub fn collapse(name: &str) -> String {
+    format!("Collapse {name}")
+}
+
+/// Returns the label of the button that returns all `count` manually posed joints to the clip.
+pub fn reset_all_joints(count: usize) -> String {
+    format!("Reset all {count}")
+}
+
+/// Returns the heading of a joint's transform relative to its parent; a root has none.
+pub fn local_transform(parent: Option<&str>) -> String {
+    parent.map_or_else(|| "Local, no parent".to_owned(), |parent| format!("Local, in {parent}"))
+}
+
+/// Returns the title of a vertex; `number` is the one in the file.
+pub fn vertex(number: usize) -> String {
+    format!("Vertex {number}")
+}
+
+/// Returns the accessible name of a joint's row in the skinning equation.
+pub fn joint_weight(joint: &str, weight: f32) -> String {
+    format!("{joint}, weight {weight:.4}")
+}
+
+/// A row of the skinning equation.
+#[derive(Debug, Clone, Copy)]
+pub enum FormulaRow {
+    /// `p`: the morphed bind position, in mesh space.
+    Bound,
+    /// Where one joint alone would move the vertex, in world space.
+    Alone,
+    /// `Alone` times the joint's weight, `w`.
+    Share,
+    /// `p'`: the result of linear skinning, in world space.
+    Sum,
+    /// The vertex as drawn, in world space. Shown unless the skinning method is linear.
+    Drawn,
+}
+
+impl FormulaRow {
+    /// What the row shows, and its tooltip.
+    pub fn name_and_meaning(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Bound => ("p", "position in the bind pose"),
+            Self::Alone => ("alone", "T · inv(B) · p"),
+            Self::Share => ("share", "w · T · inv(B) · p"),
+            Self::Sum => ("p'", "sum of the shares"),
+            Self::Drawn => ("drawn", "result of the current skinning method"),
+        }
+    }
+
+    /// The accessible name, which the numbers follow.
+    pub fn label(self) -> String {
+        let (name, meaning) = self.name_and_meaning();
+        format!("{name}, {meaning}:")
+    }
+}
+
+/// Row of a joint's transform: the translation.
+pub const POSITION: &str = "Position";
+/// Row of a joint's transform: the scale.
+pub const SCALE: &str = "Scale";
+/// A joint's inverse bind matrix.
+pub const INVERSE_BIND: &str = "inv(B)";
+/// A joint's world matrix.
+pub const WORLD_MATRIX: &str = "T";
+/// The product of the two, by which a joint moves the mesh.
+pub const SKINNING_MATRIX: &str = "T · inv(B)";
+
+// Display tab
+/// Section with the material variants of the file.
+pub const VARIANTS: &str = "MATERIAL VARIANT";
+/// Row for the file's own materials.
+pub const NO_VARIANT: &str = "The file's own materials";
+/// Skinning method: each vertex follows its strongest joint.
+pub const RIGID: &str = "Rigid";
+/// Skinning method: dual quaternions, abbreviated to fit.
+pub const DUAL_QUATERNION: &str = "Dual quat.";
+/// Switch that shows the three skinning methods side by side.
+pub const COMPARE_SKINNING: &str = "Compare all three";
+/// Switch in the Motion tab that shows the motion in its different rest poses side by side.
+pub const COMPARE_RESTS: &str = "Compare rest poses";
+/// Switch for the skeleton.
+pub const SKELETON: &str = "Skeleton";
+/// Switch that replaces the octahedral bones; turning it on also shows the skeleton.
+pub const SKELETON_BOXES: &str = "Skeleton as spheres and boxes";
+/// Switch that adds bones without influence on a mesh; turning it on also shows the skeleton.
+pub const CONTROL_BONES: &str = "Control bones";
+/// Switch that colours the mesh by the selected joint's influence.
+pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
+/// Shown while the weights are on and no joint is selected.
+pub const JOINT_WEIGHTS_HINT: &str = "Select a joint in the viewport or in the Scene tab to see its influence.";
+/// Below the scale of the weights, in the viewport.
+pub const WEIGHT_LEGEND: &str = "weight (grey: none)";
+/// Switch that computes normals for meshes without any.
+pub const SMOOTH_SURFACE: &str = "Smooth surface";
+/// Button that undoes all edits of the morph sliders.
+pub const RESET_MORPHS: &str = "Reset to clip";
+
+// Avatar, in the Display and Info tabs
+/// Switch for spring bones.
+pub const SPRINGS: &str = "Spring bones";
+/// Label of the choice of what the eyes look at.
+pub const EYES: &str = "Eyes look";
+/// Choice: the gaze that the clip animates.
+pub const LOOK_OFF: &str = "As animated";
+/// Choice: the eyes follow the camera.
+pub const LOOK_AT_CAMERA: &str = "At the camera";
+/// Choice: the eyes look at a fixed point.
+pub const LOOK_AT_POINT: &str = "At a point";
+/// Button that returns all expressions to the clip.
+pub const RESET_EXPRESSIONS: &str = "Reset expressions";
+
+/// Returns the name of a mesh's first-person flag in the Info tab.
+pub fn first_person(mesh: &str) -> String {
+    format!("First person: {mesh}")
+}
+
+/// Splits a camel-case key of VRM's metadata into words: `commercialUsage` becomes “Commercial usage”. Other text stays as it
+/// is.
+pub fn split_words(key: &str) -> String {
+    if !key.bytes().all(|byte| byte.is_ascii_alphabetic()) {
+        return key.to_owned();
+    }
+    let mut words = String::new();
+    let mut previous = ' ';
+    for letter in key.chars() {
+        if letter.is_uppercase() && previous.is_lowercase() {
+            words.push(' ');
+        }
+        match words.is_empty() {
+            true => words.push(letter.to_ascii_uppercase()),
+            false => words.push(letter.to_ascii_lowercase()),
+        }
+        previous = letter;
+    }
+    // VRM 0.x misspells it.
+    words.replace("ussage", "usage")
+}
+
+// Camera tab
+/// Button that looks at the model's front.
+pub const FRONT: &str = "Front";
+/// Button that looks at the model from its left.
+pub const SIDE: &str = "Side";
+/// Button that looks down on the model.
+pub const TOP: &str = "Top";
+/// Switch that moves the camera along with the character.
+pub const FOLLOW: &str = "Follow character";
+/// The Z axis, in the choice of the file's up axis.
+pub const UP_Z: &str = "Z";
+/// Exposure slider, in stops.
+pub const EXPOSURE: &str = "Exposure";
+/// The choice of tone mapping.
+pub const TONE_MAP: &str = "Tone mapping";
+/// Khronos PBR Neutral, in the choice of tone mapping.
+pub const TONE_NEUTRAL: &str = "Neutral";
+/// ACES, in the choice of tone mapping.
+pub const TONE_ACES: &str = "ACES";
+/// AgX, in the choice of tone mapping.
+pub const TONE_AGX: &str = "AgX";
+/// No tone mapping.
+pub const NO_TONE_MAP: &str = "Off";
+/// The choice of light from all around.
+pub const LIGHT: &str = "Light";
+/// A tent of large boxes, in the choice of light.
+pub const SOFT_LIGHT: &str = "Soft";
+/// A small strong lamp, in the choice of light.
+pub const HARD_LIGHT: &str = "Hard";
+/// Sky and sun, in the choice of light.
+pub const OUTDOOR_LIGHT: &str = "Outdoor";
+/// The same from all directions, in the choice of light.
+pub const WHITE_LIGHT: &str = "White";
+/// Switch that replaces the key light.
+pub const OWN_KEY_LIGHT: &str = "Custom key light";
+/// Slider of the custom key light.
+pub const KEY_STRENGTH: &str = "Key light strength";
+/// Slider of the custom key light.
+pub const KEY_AZIMUTH: &str = "Key light azimuth";
+/// Slider of the custom key light.
+pub const KEY_ELEVATION: &str = "Key light elevation";
+/// The light, in the choice of background.
+pub const ENVIRONMENT: &str = "Environment";
+/// The light out of focus, in the choice of background.
+pub const BLURRED: &str = "Blurred";
+/// The studio, in the choices of light and background.
+pub const STUDIO: &str = "Studio";
+/// A single colour, in the choice of background.
+pub const COLOR: &str = "Colour";
+/// A transparent background, in the choice of background.
+pub const NO_BACKGROUND: &str = "None";
+/// Preset of 1080 × 1080 pixels, in the choice of image size.
+pub const SQUARE: &str = "Square";
+/// Switch that saves images without the background.
+pub const TRANSPARENT_BACKGROUND: &str = "Transparent background";
+/// Button that saves an image.
+pub const SAVE_IMAGE: &str = "Save image (PNG)";
+/// Names the choice of a video's frame rate.
+pub const FRAME_RATE: &str = "Frame rate";
+/// Button that records a video.
+pub const RECORD: &str = "Record one loop";
+/// Title of the progress of a video that is being recorded.
+pub const RECORDING: &str = "Recording one loop";
+
+/// Returns a frame rate.
+pub fn frames_per_sec(rate: u32) -> String {
+    format!("{rate} fps")
+}
+
+/// Returns how many frames of a video have been drawn.
+pub fn frames_done(done: u32, count: u32) -> String {
+    format!("{done} of {count} frames")
+}
+
+// Info tab
+/// Row of the file report: the format of the file.
+pub const FORMAT: &str = "Format";
+/// Row of the file report: the number of nodes.
+pub const NODES: &str = "Nodes";
+/// OBJ models: button that saves a GLB in the rest pose.
+pub const SAVE_REST_POSE: &str = "Save in rest pose";
+/// OBJ models: button that saves a GLB in the current pose.
+pub const SAVE_CURRENT_POSE: &str = "Save in current pose";
