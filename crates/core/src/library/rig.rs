@@ -212,7 +212,7 @@ mod tests {
         let matrices = vec![Affine3A::IDENTITY; joints.len()];
         let skin = Skin::new("Skin".to_owned(), joints, matrices, skeleton.len()).expect("as many matrices");
         let influences =
-            Influences { stride: 4, joints: vec![1, 2, 0, 0].repeat(3), weights: vec![0.5, 0.5, 0.0, 0.0].repeat(3) };
+            Influences { stride: 4, joints: [1, 2, 0, 0].repeat(3), weights: [0.5, 0.5, 0.0, 0.0].repeat(3) };
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let geometry =
             Geometry { file_vertices: 3, positions, indices: vec![0, 1, 2], influences, ..Geometry::default() };
