@@ -2,14 +2,14 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, openInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
 /** Steps of a dragged slider. */
 const STEPS = 30;
 /** Where the controls of the chosen joint are; egui's panels are pixels to a page. */
-const POSE_MANUALLY = { x: 741, y: 118 };
-const FIRST_SLIDER = { x: 642, y: 216 };
+const POSE_MANUALLY = { x: 741, y: 360 };
+const FIRST_SLIDER = { x: 642, y: 458 };
 const KINDS = ["obj", "skel", "attach"];
 
 for (const renderer of BACK_ENDS) {
@@ -47,6 +47,7 @@ for (const renderer of BACK_ENDS) {
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
       // The “Pose manually” switch of the selected joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
+      await openInspector(page);
       // egui finds what is under the pointer in the previous frame.
       await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
       await untilStill(page);
