@@ -14,8 +14,9 @@ import { share } from "./shell/share.js";
 
 window.gaitway = gaitway;
 
-// Buttons for keyboards and screen readers, which the canvas doesn't serve, and the gallery's last card.
+// Buttons for keyboards and screen readers, which the canvas doesn't serve, and the gallery's first cards.
 for (const id of ["do-open", "gallery-own"]) button(id).addEventListener("click", () => showOpenDialog());
+button("gallery-borrow").addEventListener("click", () => showOpenDialog("motion"));
 button("do-play").addEventListener("click", async () => {
   const { play } = await gaitway.state();
   await gaitway.apply({ play: !play });

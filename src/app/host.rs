@@ -1,6 +1,7 @@
 //! What the frame loop leaves to the platform: file dialogs, links, recording, and change notifications.
 
 use super::Inbox;
+use crate::editor::ExportedFile;
 use crate::files::Role;
 use crate::state::ViewerState;
 
@@ -21,13 +22,8 @@ pub struct Video {
 
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.
 pub trait Host {
-    /// Lets the user choose files; returns false if the platform has no file dialog.
-    fn choose_files(&self, role: Role, inbox: &Inbox) -> bool;
-
-    /// Opens a path the user typed, on platforms without [`Host::choose_files`].
-    fn open_path(&self, path: &str, role: Role, inbox: &Inbox) {
-        let _ = (path, role, inbox);
-    }
+    /// Lets the user choose files, which are then opened.
+    fn choose_files(&self, role: Role, inbox: &Inbox);
 
     /// Whether there is a gallery of samples.
     fn has_gallery(&self) -> bool {
@@ -37,17 +33,8 @@ pub trait Host {
     /// Opens the gallery of samples. Called only if [`Host::has_gallery`] returns true.
     fn show_gallery(&self) {}
 
-    /// Saves a file for the user; returns false if that takes a path, which is then passed to [`Host::save_path`].
-    fn save_file(&self, name: &str, bytes: &[u8]) -> bool;
-
-    /// Writes a file to the path the user typed.
-    ///
-    /// # Errors
-    /// The message for the user if it cannot be written.
-    fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
-        let _ = (path, bytes);
-        Ok(())
-    }
+    /// Saves a file for the user. Sends [`Message::Saved`](super::Message::Saved), unless the user changes their mind.
+    fn save_file(&self, file: ExportedFile, inbox: &Inbox);
 
     /// Starts recording a video: asks for one frame after the other with [`App::video_frame`](super::App::video_frame), saves the
     /// file, and sends [`Message::Recorded`](super::Message::Recorded) at the end, whatever it is.
@@ -69,6 +56,32 @@ pub trait Host {
     fn share(&self, fragment: &str) -> bool {
         let _ = fragment;
         false
+    }
+
+    /// Opens a link, given the part after `#`, in a page of its own. Called only by views that are embedded in another page.
+    fn open_page(&self, fragment: &str) {
+        let _ = fragment;
+    }
+
+    /// Opens a web page.
+    fn open_url(&self, url: &str);
+
+    /// Whether there is a full screen to enter.
+    fn has_fullscreen(&self) -> bool {
+        true
+    }
+
+    /// Enters or leaves full screen.
+    fn toggle_fullscreen(&self);
+
+    /// Returns the theme of the panels that the user chose earlier.
+    fn theme(&self) -> egui::ThemePreference {
+        egui::ThemePreference::System
+    }
+
+    /// Remembers the theme of the panels that the user chooses.
+    fn set_theme(&self, theme: egui::ThemePreference) {
+        let _ = theme;
     }
 
     /// Returns the full link to share, given the part after `#`.

@@ -33,6 +33,8 @@ pub enum Message {
     Failed(String),
     /// A file written in the background is ready to save.
     Save(ExportedFile),
+    /// A file was saved under this name, with a remark for the user, or couldn't be.
+    Saved(Result<(String, Option<String>), String>),
     /// The recording has ended: the name of the saved video, `None` if it was cancelled, or why there is none.
     Recorded(Result<Option<String>, String>),
     /// A call from the script interface.

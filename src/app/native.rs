@@ -1,11 +1,11 @@
-//! The native window. Opens files from the command line, typed paths and dropped files; reads them in the background.
+//! The native window. Opens files from the command line, from the system's dialog and dropped ones; reads them in the background.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Loads, Message, Opening, native_options};
-use crate::editor::Contents;
+use crate::editor::{Contents, ExportedFile};
 use crate::files::{Disk, OpenError, Role, save_file};
 use crate::samples;
 use crate::state::ViewerState;
@@ -47,12 +47,21 @@ struct Loaded {
     files_read: Vec<PathBuf>,
 }
 
+/// What came of a file dialog.
+enum Answer {
+    Open(Vec<PathBuf>, Role),
+    /// The path and a remark, or why the file couldn't be written.
+    Saved(Result<(String, Option<String>), String>),
+}
+
 struct Window {
     context: egui::Context,
     /// Number of loads started. Only the latest is shown, whichever ends last.
     loads: Loads,
     loaded: Receiver<Loaded>,
     sender: Sender<Loaded>,
+    answered: Receiver<Answer>,
+    answer_sender: Sender<Answer>,
     /// Every file read so far, none of which is overwritten.
     files_read: RefCell<Vec<PathBuf>>,
 }
@@ -60,7 +69,9 @@ struct Window {
 impl Window {
     fn new(context: egui::Context, files_read: Vec<PathBuf>) -> Self {
         let (sender, loaded) = channel();
-        Self { context, loads: Loads::default(), loaded, sender, files_read: RefCell::new(files_read) }
+        let (answer_sender, answered) = channel();
+        let (loads, files_read) = (Loads::default(), RefCell::new(files_read));
+        Self { context, loads, loaded, sender, answered, answer_sender, files_read }
     }
 
     /// Reads files in the background; the result arrives in a later frame, unless something else is opened in the meantime.
@@ -78,23 +89,50 @@ impl Window {
             context.request_repaint();
         });
     }
+
+    /// Waits for a file dialog in the background; nothing happens if it is cancelled. The dialog itself has to be created on the
+    /// main thread, as macOS wants it.
+    fn when_answered(&self, answer: impl Future<Output = Option<Answer>> + Send + 'static) {
+        let (sender, context) = (self.answer_sender.clone(), self.context.clone());
+        std::thread::spawn(move || {
+            if let Some(answer) = pollster::block_on(answer) {
+                // Fails only if the window was closed in the meantime.
+                let _ = sender.send(answer);
+                context.request_repaint();
+            }
+        });
+    }
 }
 
 impl Host for Window {
-    fn choose_files(&self, _role: Role, _inbox: &Inbox) -> bool {
-        false
+    fn choose_files(&self, role: Role, _inbox: &Inbox) {
+        let title = if role == Role::Motion { "Borrow motion" } else { "Open" };
+        let files = rfd::AsyncFileDialog::new().set_title(title).pick_files();
+        self.when_answered(async move {
+            let paths = files.await?.iter().map(|file| file.path().to_owned()).collect();
+            Some(Answer::Open(paths, role))
+        });
     }
 
-    fn open_path(&self, path: &str, role: Role, inbox: &Inbox) {
-        self.open(vec![PathBuf::from(path)], role, inbox);
+    fn save_file(&self, file: ExportedFile, _inbox: &Inbox) {
+        let path = rfd::AsyncFileDialog::new().set_title("Save").set_file_name(&file.name).save_file();
+        let inputs = self.files_read.borrow().clone();
+        self.when_answered(async move { Some(Answer::Saved(written(file, path.await?.path(), &inputs))) });
     }
 
-    fn save_file(&self, _name: &str, _bytes: &[u8]) -> bool {
-        false
+    fn open_url(&self, url: &str) {
+        let opener = match std::env::consts::OS {
+            "windows" => "explorer",
+            "macos" => "open",
+            _ => "xdg-open",
+        };
+        // Without one, the link stays where it is.
+        let _ = std::process::Command::new(opener).arg(url).spawn();
     }
 
-    fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
-        save_file(Path::new(path), bytes, &self.files_read.borrow()).map_err(|error| error.to_string())
+    fn toggle_fullscreen(&self) {
+        let is_full = self.context.input(|input| input.viewport().fullscreen.unwrap_or_default());
+        self.context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
     }
 
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox) {
@@ -114,17 +152,32 @@ impl Host for Window {
     }
 
     fn before_frame(&self, inbox: &Inbox) {
+        while let Ok(answer) = self.answered.try_recv() {
+            match answer {
+                Answer::Open(paths, role) => self.open(paths, role, inbox),
+                Answer::Saved(saved) => inbox.send(Message::Saved(saved)),
+            }
+        }
         while let Ok(Loaded { number, contents, files_read }) = self.loaded.try_recv() {
             self.files_read.borrow_mut().extend(files_read);
             if !self.loads.is_latest(number) {
                 continue;
             }
             inbox.send(match contents {
-                Ok(contents) => Message::Opened { contents, state: None, is_change: false, reply: None },
+                Ok(contents) => {
+                    let contents = Box::new(Contents { is_by_hand: true, ..*contents });
+                    Message::Opened { contents, state: None, is_change: false, reply: None }
+                }
                 Err(error) => Message::OpenFailed(error),
             });
         }
     }
+}
+
+/// Writes a file to the path that the user chose, unless it was read from there. Returns what to tell the user.
+fn written(file: ExportedFile, path: &Path, inputs: &[PathBuf]) -> Result<(String, Option<String>), String> {
+    save_file(path, &file.bytes, inputs).map_err(|error| error.to_string())?;
+    Ok((path.display().to_string(), file.remark))
 }
 
 #[cfg(test)]
@@ -149,9 +202,9 @@ mod tests {
     fn a_file_that_was_opened_is_not_saved_over() {
         let path = std::env::temp_dir().join(format!("gaitway-opened-{}.bvh", std::process::id()));
         std::fs::write(&path, "HIERARCHY").expect("a file");
-        let window = Window::new(egui::Context::default(), vec![path.clone()]);
         let text = path.to_str().expect("a plain path");
-        let error = window.save_path(text, b"a picture").expect_err("it would be lost");
+        let picture = ExportedFile { name: "a.png".to_owned(), bytes: b"a picture".to_vec(), remark: None };
+        let error = written(picture, &path, std::slice::from_ref(&path)).expect_err("it would be lost");
         assert!(error.starts_with(text), "{error}");
         assert_eq!(std::fs::read(&path).expect("still there"), b"HIERARCHY");
         std::fs::remove_file(&path).expect("it was created");

@@ -53,6 +53,7 @@ impl App {
                     }
                 }
                 Event::ModelOpened => self.panels.on_model_opened(self.editor.library()),
+                Event::MotionsAdded => self.panels.on_motions_added(),
                 Event::MotionsRefused { lacks_skeleton } => {
                     let messages = &mut self.panels.messages;
                     (messages.motion_refused, messages.model_lacks_skeleton) = (true, lacks_skeleton);

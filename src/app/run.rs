@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::record::Recording;
+use super::save::saved;
 use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device};
@@ -12,8 +13,8 @@ use crate::editor::{Admit, Contents, Editor};
 use crate::files::{Role, set_largest_image, set_texture_formats};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::texture_formats;
-use crate::state::{Command, ViewerState, to_link};
-use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
+use crate::state::{Command, PageOptions, ViewerState, to_link};
+use crate::ui::{self, Output, Progress, Shown, UiAction, UiState};
 
 /// The app that eframe runs, in a window or a page: owns the editor, the viewport and the panels.
 pub struct App {
@@ -61,6 +62,8 @@ impl App {
         let inbox = Inbox::new(cc.egui_ctx.clone());
         let mut panels = UiState::default();
         panels.host.has_gallery = host.has_gallery();
+        panels.host.has_fullscreen = host.has_fullscreen();
+        cc.egui_ctx.set_theme(host.theme());
         let app = Self {
             editor: Editor::default(),
             viewport: Viewport::new(gpu, device::samples(&info)),
@@ -151,9 +154,9 @@ impl App {
             }
             Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),
-            Message::Save(file) => {
-                self.save_file(&file);
-            }
+            Message::Save(file) => self.host.save_file(file, &self.inbox),
+            Message::Saved(Ok((name, remark))) => self.toast(saved(&name, remark.as_deref())),
+            Message::Saved(Err(error)) => self.add_error(&error),
             Message::Recorded(saved_name) => self.end_recording(saved_name),
             Message::Commands(commands) => {
                 self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
@@ -229,6 +232,7 @@ impl App {
         let result = match action {
             UiAction::ShowModel(id) => self.editor.activate(id, admit),
             UiAction::CloseModel(id) => self.editor.close(id, admit),
+            UiAction::BorrowFrom(id) => self.editor.borrow_from(id, admit),
             UiAction::ShowMotionAlone(index) => self.editor.open_motion_alone(index, admit),
             UiAction::ShowRefusedAlone => self.editor.open_refused_alone(admit),
             UiAction::MapRefusedManually => {
@@ -247,18 +251,20 @@ impl App {
                 self.editor.redo();
                 Ok(())
             }
-            UiAction::OpenFiles => return self.choose(Role::Any, PathPurpose::Open),
+            UiAction::OpenFiles => return self.host.choose_files(Role::Any, &self.inbox),
             UiAction::ShowGallery => return self.host.show_gallery(),
-            UiAction::ChooseMotion => return self.choose(Role::Motion, PathPurpose::OpenMotion),
-            UiAction::UsePath(PathPurpose::Open, path) => return self.host.open_path(&path, Role::Any, &self.inbox),
-            UiAction::UsePath(PathPurpose::OpenMotion, path) => {
-                return self.host.open_path(&path, Role::Motion, &self.inbox);
-            }
-            UiAction::UsePath(PathPurpose::Save(what), path) => return self.save_to(what, &path),
+            UiAction::ChooseMotion => return self.host.choose_files(Role::Motion, &self.inbox),
             UiAction::Save(what) => return self.save(what),
             UiAction::Record(settings) => return self.start_recording(settings),
             UiAction::CancelRecording => return self.host.cancel_recording(),
             UiAction::ShareLink => return self.share(),
+            UiAction::OpenPage => return self.open_page(),
+            UiAction::OpenUrl(url) => return self.host.open_url(url),
+            UiAction::ToggleFullscreen => return self.host.toggle_fullscreen(),
+            UiAction::SetTheme(theme) => {
+                self.context.set_theme(theme);
+                return self.host.set_theme(theme);
+            }
         };
         self.show_events();
         if let Err(error) = result {
@@ -283,10 +289,11 @@ impl App {
         }
     }
 
-    fn choose(&mut self, role: Role, purpose: PathPurpose) {
-        if !self.host.choose_files(role, &self.inbox) {
-            self.panels.messages.path_prompt = Some(PathPrompt { purpose, path: String::new() });
-        }
+    /// Opens the view without the page that embeds it.
+    fn open_page(&self) {
+        let state = self.editor.shared_state();
+        let page = PageOptions { embed: false, ..state.page.clone() };
+        self.host.open_page(&to_link(&ViewerState { page, ..state }));
     }
 
     fn shown(&self) -> Shown<'_> {
@@ -329,6 +336,9 @@ impl App {
     /// Lays out the panels and the viewport, and applies the user's input. Returns whether there was any, the viewport's
     /// rectangle, and where to paint the scene.
     fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::ViewportSlot) {
+        if self.timing.frames == 1 {
+            self.panels.start(self.context.content_rect().width());
+        }
         let shown = Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, output);
         let slot = ui::viewport(ui, rect, shown, &mut self.panels, output);
@@ -375,6 +385,8 @@ impl eframe::App for App {
         if !dropped.is_empty() {
             self.host.open_dropped(dropped, &self.inbox);
         }
+        self.panels.host.can_undo = self.editor.can_undo();
+        self.panels.host.can_redo = self.editor.can_redo();
         self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
         self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
         self.expire_toast();

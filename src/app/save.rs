@@ -6,10 +6,10 @@ use super::Message;
 use crate::editor::ExportedFile;
 use crate::files::encode_png;
 use crate::render::read_pixels;
-use crate::ui::{PathPrompt, PathPurpose, Saved};
+use crate::ui::Saved;
 
 impl App {
-    /// Saves a file, or asks for its path if the platform needs one.
+    /// Saves a file.
     pub(super) fn save(&mut self, what: Saved) {
         // In the page, an image arrives in a later turn of the event loop.
         #[cfg(target_arch = "wasm32")]
@@ -24,34 +24,7 @@ impl App {
             return;
         }
         match self.file(what) {
-            Ok(file) => self.deliver(what, file),
-            Err(error) => self.add_error(&error),
-        }
-    }
-
-    fn deliver(&mut self, what: Saved, file: ExportedFile) {
-        if !self.save_file(&file) {
-            self.panels.messages.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
-        }
-    }
-
-    /// Saves a file if that takes no path; returns whether it did.
-    pub(super) fn save_file(&mut self, file: &ExportedFile) -> bool {
-        let is_saved = self.host.save_file(&file.name, &file.bytes);
-        if is_saved {
-            self.toast(saved(&file.name, file.remark.as_deref()));
-        }
-        is_saved
-    }
-
-    /// Writes a file to the path that the user typed.
-    pub(super) fn save_to(&mut self, what: Saved, path: &str) {
-        let saved_file = self.file(what).and_then(|file| {
-            self.host.save_path(path, &file.bytes)?;
-            Ok(file)
-        });
-        match saved_file {
-            Ok(file) => self.toast(saved(&format!("as {path}"), file.remark.as_deref())),
+            Ok(file) => self.host.save_file(file, &self.inbox),
             Err(error) => self.add_error(&error),
         }
     }

@@ -18,6 +18,8 @@ pub struct Contents {
     pub environment: Option<Environment>,
     /// The map is one of the user's local files.
     pub is_map_private: bool,
+    /// The user opened it, not a link or a script: settings that suit it may be chosen.
+    pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
 }

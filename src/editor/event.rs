@@ -16,6 +16,8 @@ pub enum Event {
     ViewOpened,
     /// Another model was opened and is active.
     ModelOpened,
+    /// Motions were added to the active model.
+    MotionsAdded,
     /// None of the opened motions fits the model. [`super::Editor::open_refused_alone`] and, for a model with a skeleton,
     /// [`super::Editor::map_refused_manually`] are the alternatives.
     MotionsRefused {

@@ -13,6 +13,7 @@ mod names;
 mod open;
 mod reduced_motion;
 mod steps;
+mod suit;
 
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
@@ -57,6 +58,8 @@ pub struct Editor {
     aspect: f32,
     /// The camera that stands in for the automatic one since an option has changed what that would frame.
     held_camera: Option<OrbitCamera>,
+    /// Whether the camera follows is chosen for each clip, since neither a view nor the user has said it.
+    suits_follow: bool,
     reduced_motion: reduced_motion::ReducedMotion,
     events: Vec<Event>,
     needs_redraw: bool,
@@ -84,6 +87,7 @@ impl Editor {
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
             held_camera: None,
+            suits_follow: false,
             reduced_motion: reduced_motion::ReducedMotion::default(),
             events: Vec::new(),
             needs_redraw: true,
@@ -137,6 +141,8 @@ impl Editor {
         let is_map_edit = affects_retargeting && !matches!(command, Command::Replace(_));
         let playing = if is_map_edit { self.retargeted_clip() } else { None };
         let reframes = matches!(command, Command::SetUp(_));
+        let is_other_clip = matches!(command, Command::SetClip(_)) && self.automatic_view().is_some();
+        self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
         let is_view = matches!(command, Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
         let view_before = if is_map_edit { self.automatic_view() } else { None };
@@ -145,6 +151,9 @@ impl Editor {
         self.record(command);
         if reframes {
             self.apply(Command::FrameAll);
+        }
+        if is_other_clip {
+            self.suit_automatic_follow();
         }
         if affects_retargeting {
             let problems = self.retarget();

@@ -2,7 +2,7 @@
 //! that succeed can be undone.
 
 use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
-use crate::library::{BorrowError, BorrowedClip, Library, Model, Motion, names_checksum};
+use crate::library::{BorrowError, BorrowedClip, Library, Model, ModelId, Motion, names_checksum};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
@@ -30,12 +30,13 @@ impl ClipIdentity {
 
 impl Editor {
     /// Adds motions, replacing those that are already loaded. Without a view, keeps the state and plays the first new clip. If
-    /// none of them fits the model, nothing changes.
+    /// none of them fits the model, nothing changes. `is_by_hand` is that of [`Contents`].
     pub(super) fn open_motions(
         &mut self,
         motions: Vec<Motion>,
         map: Option<MotionMap>,
         view: Option<ViewerState>,
+        is_by_hand: bool,
         admit: Admit<'_>,
     ) -> Result<(), String> {
         if let Some(view) = view {
@@ -43,6 +44,7 @@ impl Editor {
         }
         self.check_room(&motions)?;
         let before = self.snapshot();
+        let has_map = map.is_some();
         let problems = self.add_motions(motions.clone(), map);
         let clips = self.clips_of_last(motions.len());
         if clips == 0 && !motions.is_empty() {
@@ -59,10 +61,33 @@ impl Editor {
         self.remember(before);
         self.report(problems);
         self.choose_retargeted(motions.first().map(ClipIdentity::first_of));
+        self.events.push(Event::MotionsAdded);
+        let mut notice = added_from(clips, &motions);
+        if is_by_hand {
+            let playing = self.library.active().and_then(|model| active_clip(model, &self.state));
+            if playing.is_some_and(|clip| !has_map && self.suit_feet(clip)) {
+                notice += " Its feet would slide or hover, so they are held on the ground: Undo lets them go.";
+            }
+            self.suits_follow = true;
+            self.suit_follow();
+        }
         // The new clip may leave the camera's view.
         self.apply(Command::FrameAll);
-        self.notify_undoable(added_from(clips, &motions));
+        self.notify_undoable(notice);
         Ok(())
+    }
+
+    /// Borrows the clips of another open model.
+    ///
+    /// # Errors
+    /// The message for the user if none of them fits the active model.
+    pub fn borrow_from(&mut self, id: ModelId, admit: Admit<'_>) -> Result<(), String> {
+        let Some(model) = self.library.get(id) else { return Ok(()) };
+        let mut motion = Motion::new(model.source.clone(), model.asset.clone());
+        (motion.origin, motion.is_own) = (model.origin.clone(), model.is_own);
+        self.refused.clear();
+        (self.needs_redraw, self.is_changed) = (true, true);
+        self.open_motions(vec![motion], None, None, true, admit)
     }
 
     /// Checks that the library has room for these motions beside the loaded ones.

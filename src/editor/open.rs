@@ -53,7 +53,7 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, problems } = contents;
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems } = contents;
         let is_view = view.is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
         self.opened_map = map.as_ref().map(|opened| opened.name.clone());
@@ -61,9 +61,14 @@ impl Editor {
         self.refused.clear();
         let opened = match motions {
             motions if !models.is_empty() => {
-                self.open_models(models, Companions { motions, map: waiting, view }, admit)
+                let opened = self.open_models(models, Companions { motions, map: waiting, view }, admit);
+                if opened.is_ok() {
+                    self.suits_follow = is_by_hand;
+                    self.suit_automatic_follow();
+                }
+                opened
             }
-            Some(motions) => self.open_motions(motions, waiting, view, admit),
+            Some(motions) => self.open_motions(motions, waiting, view, is_by_hand, admit),
             None => map.map_or(Ok(()), |opened| self.open_map(&opened.map)),
         };
         self.opened_map = None;
@@ -159,7 +164,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.view_with_reduced_motion(view);
-        self.held_camera = None;
+        (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
@@ -358,6 +363,7 @@ impl Editor {
             Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
             _ => {}
         }
+        self.suit_automatic_follow();
         (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
     }

@@ -52,9 +52,9 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     // A character without a mesh is its skeleton, and errors are colours of bones.
     let show = state.display.show;
     let shows_all = show.skeleton || (show.error && source.is_some());
-    let boxes = show.boxes;
+    let (boxes, controls) = (show.boxes, show.controls);
     let visible = shows_all || shows_no_mesh(&scratch.model_scene, character);
-    let style = BoneStyle { plain: BONE, chosen, of_source: false, visible, boxes, size };
+    let style = BoneStyle { plain: BONE, chosen, of_source: false, visible, boxes, controls, size };
     write_bones(model, world_from_joint, &scratch.model_scene.joints.in_scene, style, bones);
     if let (Some(source), Some(on_stage)) = (source, characters.last()) {
         if show.error {
@@ -63,7 +63,7 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
         let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
         let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
         let visible = shows_all || shows_no_mesh(&scratch.source_scene, on_stage);
-        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, visible, boxes, size };
+        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, visible, boxes, controls, size };
         write_bones(source.model, &on_stage.world_from_joint, &scratch.source_scene.joints.in_scene, style, bones);
     }
     if let Some(joint) = chosen.filter(|joint| scratch.model_scene.joints.in_scene[joint.get()]) {
@@ -110,8 +110,10 @@ struct BoneStyle {
     chosen: Option<JointIndex>,
     of_source: bool,
     visible: bool,
-    /// Gives all bones the same thickness.
+    /// Spheres and boxes, which look thicker than bones of the same radius.
     boxes: bool,
+    /// Includes bones that move no mesh.
+    controls: bool,
     /// Size of the model, metres.
     size: f32,
 }
@@ -127,7 +129,7 @@ fn write_bones(
     let skeleton = &model.asset.skeleton;
     let position = |joint: usize| Vec3::from(world_from_joint[joint].translation);
     for bone in model.rig().bones() {
-        if !in_scene[bone.head.get()] {
+        if !in_scene[bone.head.get()] || !(bone.deforms || style.controls) {
             continue;
         }
         let head = position(bone.head.get());
@@ -145,7 +147,7 @@ fn write_bones(
             continue;
         }
         let color = if style.chosen == Some(bone.head) { CHOSEN } else { style.plain };
-        let radius = if style.boxes { 0.012 * size } else { (0.1 * length).clamp(0.002 * size, 0.02 * size) };
+        let radius = (0.1 * length).clamp(0.002 * size, if style.boxes { 0.012 } else { 0.02 } * size);
         bones.push(Bone {
             head,
             tail,

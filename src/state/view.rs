@@ -344,6 +344,8 @@ pub struct Show {
     pub error: bool,
     /// Draws the skeleton as spheres and boxes instead of octahedral bones.
     pub boxes: bool,
+    /// Includes bones that move no mesh in the skeleton.
+    pub controls: bool,
     /// Shades meshes without normals smooth instead of flat.
     pub smooth: bool,
 }
@@ -361,6 +363,7 @@ impl Default for Show {
             over: false,
             error: false,
             boxes: false,
+            controls: false,
             smooth: false,
         }
     }

@@ -42,7 +42,7 @@ struct SeenClip {
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let list = &mut local.clip_list;
-    header(ui, model, out);
+    header(ui, model);
     if shown.library.models().len() > 1 {
         models(ui, shown, model, list, out);
     }
@@ -151,13 +151,19 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
             let is_active = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, ROW_HEIGHT);
+                let lends = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
+                let buttons = if lends { 2.0 } else { 1.0 };
+                let size = egui::vec2(ui.available_width() - buttons * (CLEAR_SIZE + 2.0), ROW_HEIGHT);
                 let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", is_active)).inner;
                 if scrolls && is_active {
                     row.scroll_to_me(None);
                 }
                 if row.clicked() && !is_active {
                     out.actions.push(UiAction::ShowModel(model.id));
+                }
+                let borrow = text::borrow_from(name);
+                if lends && icon_button_sized(ui, Icon::Borrow, &borrow, false, CLEAR_SIZE).clicked() {
+                    out.actions.push(UiAction::BorrowFrom(model.id));
                 }
                 let close = text::close_model(name);
                 if icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
@@ -177,30 +183,11 @@ fn motion_heading(ui: &mut Ui, name: &str) {
     ui.add_space(1.0);
 }
 
-fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
+fn header(ui: &mut Ui, model: &Model) {
     let palette = style::palette(ui);
     let (name, place) = name_and_place(&model.source);
     ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
     ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
-    ui.add_space(8.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::Vec2::splat(6.0);
-        // All three buttons fit into the narrowest panel of a screen 800 pixels wide.
-        ui.spacing_mut().button_padding.x = 7.0;
-        let size = egui::vec2(0.0, 32.0);
-        let open = egui::Button::new(text::OPEN).min_size(size);
-        if ui.add(open).on_hover_text("Open a model. You can also drop files anywhere.").clicked() {
-            out.actions.push(UiAction::OpenFiles);
-        }
-        let motion = egui::Button::new(text::BORROW_MOTION).min_size(size);
-        if ui.add(motion).on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
-            out.actions.push(UiAction::ChooseMotion);
-        }
-        let share = egui::Button::new(text::SHARE).min_size(size);
-        if ui.add(share).on_hover_text("Share a link to this view and all its settings").clicked() {
-            out.actions.push(UiAction::ShareLink);
-        }
-    });
 }
 
 /// The names of files in a list; equal names are numbered.

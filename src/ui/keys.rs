@@ -3,7 +3,7 @@
 use egui::{Context, Key, Modifiers};
 
 use super::transport::range_here;
-use super::{Output, Shown, UiAction, UiState, motion, text, typing};
+use super::{Output, Sheet, Shown, UiAction, UiState, motion, text, typing};
 use crate::anim::LoopMode;
 use crate::state::{CameraChoice, Command, Show, choice_of_clip};
 
@@ -112,6 +112,12 @@ pub const KEY_TABLE: &[KeyHelp] = &[
             out.commands.push(Command::SetShow(show));
         },
     },
+    KeyHelp {
+        keys: "T  N",
+        does: "Show or hide the clips, the inspector",
+        pressed: &[Key::T, Key::N],
+        act: |_, local, which, _| local.layout.toggle(if which == 0 { Sheet::Clips } else { Sheet::Inspector }),
+    },
     KeyHelp { keys: "Ctrl O", does: "Open files", pressed: &[], act: |_, _, _, _| {} },
     KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo", pressed: &[], act: |_, _, _, _| {} },
     KeyHelp {
@@ -142,7 +148,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
 
 /// Handles keys unless a control has the keyboard, and shortcuts with modifiers unless the user is typing into a field.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let has_modal = local.messages.path_prompt.is_some() || local.host.recording.is_some() || local.motion.is_picking();
+    let has_modal = local.host.recording.is_some() || local.motion.is_picking();
     if has_modal || typing::is_typing(context) {
         return;
     }

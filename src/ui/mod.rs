@@ -3,6 +3,7 @@
 
 mod clips;
 mod feet;
+mod header;
 mod keys;
 mod motion;
 mod output;
@@ -21,14 +22,13 @@ use crate::library::{Library, Model};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
 pub use keys::{KEY_TABLE, KeyHelp};
-pub use output::{Output, PathPurpose, Saved, UiAction, VideoSettings};
+pub use output::{Output, Saved, UiAction, VideoSettings};
 pub use tabs::Tab;
 pub use viewport::awaited::title_and_hint;
 pub use viewport::help::Help;
 pub use viewport::labels::labels;
 pub use viewport::notices::{Messages, Progress, Toast};
 pub use viewport::overlays::overlays;
-pub use viewport::path_prompt::PathPrompt;
 pub use viewport::{ViewportSlot, ViewportState, viewport};
 
 use viewport::{overlays, sheet};
@@ -89,7 +89,7 @@ impl<'a> Shown<'a> {
 pub struct UiState {
     /// What the app reports; set by the app.
     pub host: HostState,
-    /// Progress, errors, toasts and the path prompt.
+    /// Progress, errors and toasts.
     pub messages: Messages,
     /// Which panels, sheet and tab are open.
     pub layout: Layout,
@@ -99,6 +99,8 @@ pub struct UiState {
     pub joint_card: tabs::JointCard,
     /// The list of keys and gestures.
     pub help: Help,
+    /// The box about Gaitway is open.
+    pub about_open: bool,
     /// Time stands still while the user holds the playhead or points at the rotation gizmo.
     pub holds_time: bool,
     clip_list: clips::ClipList,
@@ -114,6 +116,12 @@ pub struct UiState {
 pub struct HostState {
     /// The platform can show a gallery of samples.
     pub has_gallery: bool,
+    /// The platform can show Gaitway in full screen.
+    pub has_fullscreen: bool,
+    /// There is a step to undo.
+    pub can_undo: bool,
+    /// There is an undone step to redo.
+    pub can_redo: bool,
     /// The next undo takes back an edit of a joint map or of how motions are retargeted.
     pub can_undo_retargeting: bool,
     /// The next redo repeats such an edit.
@@ -142,17 +150,40 @@ pub struct Layout {
     pub sheet: Option<Sheet>,
     /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
     pub tab: Tab,
+    /// The screen has sheets instead of side panels.
+    is_narrow: bool,
     /// Where the open sheet is.
     sheet_rect: Option<Rect>,
 }
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { clips_open: true, inspector_open: true, sheet: None, tab: Tab::Scene, sheet_rect: None }
+        Self {
+            clips_open: true,
+            inspector_open: true,
+            sheet: None,
+            tab: Tab::Scene,
+            is_narrow: false,
+            sheet_rect: None,
+        }
     }
 }
 
 impl Layout {
+    /// Shows or hides a panel.
+    fn toggle(&mut self, panel: Sheet) {
+        match panel {
+            _ if self.is_narrow => self.sheet = if self.sheet == Some(panel) { None } else { Some(panel) },
+            Sheet::Clips => self.clips_open = !self.clips_open,
+            Sheet::Inspector => self.inspector_open = !self.inspector_open,
+        }
+    }
+
+    /// Opens the inspector at a tab.
+    fn show_tab(&mut self, tab: Tab) {
+        (self.tab, self.inspector_open, self.sheet) = (tab, true, Some(Sheet::Inspector));
+    }
+
     /// The tab that is shown. The Motion tab waits while there are no motions.
     fn open_tab(&self, library: &Library) -> Tab {
         if self.tab == Tab::Motion && library.motions().is_empty() { Tab::Scene } else { self.tab }
@@ -168,12 +199,20 @@ pub enum Sheet {
     Inspector,
 }
 
+/// On narrower screens, half of the screen is the viewport's only without the inspector.
+const ROOMY_WIDTH: f32 = 1400.0;
+
 impl UiState {
+    /// Closes the inspector of a screen that has no room for it beside the first picture, unless the view is about a joint in it.
+    pub fn start(&mut self, screen_width: f32) {
+        self.layout.inspector_open = screen_width >= ROOMY_WIDTH || self.joint_card.is_posing;
+    }
+
     /// Shows the pose sliders if the opened view selects a joint that it poses manually.
     pub fn on_view_opened(&mut self, state: &ViewerState) {
         self.joint_card.is_posing = state.selection.joint.is_some_and(|joint| state.edits.pose.contains_key(&joint));
         if self.joint_card.is_posing {
-            self.layout.tab = Tab::Scene;
+            (self.layout.tab, self.layout.inspector_open) = (Tab::Scene, true);
         }
     }
 
@@ -188,14 +227,17 @@ impl UiState {
 
     /// Shows the joint table of a motion that the user maps manually.
     pub fn on_map_started(&mut self) {
-        self.layout.tab = Tab::Motion;
-        (self.layout.inspector_open, self.layout.sheet) = (true, Some(Sheet::Inspector));
+        self.layout.show_tab(Tab::Motion);
+    }
+
+    /// Brings the Motion tab forward. On a narrow screen, the viewport stays in sight.
+    pub fn on_motions_added(&mut self) {
+        (self.layout.tab, self.layout.inspector_open) = (Tab::Motion, true);
     }
 
     /// Drops what was begun for a motion, whose index may now be another's.
     pub fn on_motions_changed(&mut self) {
         self.motion.other_motions();
-        self.messages.path_prompt.take_if(|prompt| matches!(prompt.purpose, PathPurpose::Save(_)));
     }
 }
 
@@ -206,6 +248,10 @@ const NARROW_WIDTH: f32 = 700.0;
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
     local.holds_time = false;
     let narrow = is_narrow(ui);
+    local.layout.is_narrow = narrow;
+    if !shown.state.page.embed {
+        header::show(ui, &shown, local, out);
+    }
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")
         .frame(bottom)

@@ -22,9 +22,9 @@ pub enum UiAction {
     ShowGallery,
     /// Choose files to borrow motion from, or a joint map.
     ChooseMotion,
-    /// Use the path that was typed into a prompt.
-    UsePath(PathPurpose, String),
-    /// Save a file, or ask for its path where the platform has no save dialog.
+    /// Borrow the clips of another open model.
+    BorrowFrom(ModelId),
+    /// Save a file.
     Save(Saved),
     /// Activate another of the open models.
     ShowModel(ModelId),
@@ -44,21 +44,18 @@ pub enum UiAction {
     CancelRecording,
     /// Share a link to this view.
     ShareLink,
+    /// Open this view in a page of its own, from a page that embeds it.
+    OpenPage,
+    /// Open a web page.
+    OpenUrl(&'static str),
+    /// Enter or leave full screen.
+    ToggleFullscreen,
+    /// Use light or dark panels, or those of the system's theme.
+    SetTheme(egui::ThemePreference),
     /// Undo the last step.
     Undo,
     /// Redo the last undone step.
     Redo,
-}
-
-/// What a typed path is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PathPurpose {
-    /// Open files of any kind.
-    Open,
-    /// Borrow motion from a file, or load a joint map.
-    OpenMotion,
-    /// Write this file.
-    Save(Saved),
 }
 
 /// A file that can be saved.

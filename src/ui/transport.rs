@@ -15,7 +15,13 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     let has_tracks = shown.state.display.show.source && !shown.state.page.embed;
     let gutter = if has_tracks { feet::gutter(ui, shown) } else { 0.0 };
     let range = shown.state.playhead.range;
-    let bar = Scrub { clip: shown.clip(), time_secs: shown.clip_time_secs(), range, gutter };
+    let bar = Scrub {
+        clip: shown.clip(),
+        time_secs: shown.clip_time_secs(),
+        frames_per_sec: shown.frames_per_sec(),
+        range,
+        gutter,
+    };
     let (scrubbed, is_held) = scrub::show(ui, &bar, clip_id, &mut local.key_marks);
     local.holds_time = is_held;
     match scrubbed {
@@ -75,9 +81,8 @@ fn times(ui: &mut Ui, shown: &Shown<'_>) {
         ui.add_space(5.0);
         let seconds = text::seconds(time_secs, duration_secs);
         ui.add(egui::Label::new(RichText::new(seconds).color(palette.text)).extend());
-        let frames = text::frames(frame, last);
-        ui.add(egui::Label::new(RichText::new(frames).small().color(palette.weak_text)).extend())
-            .on_hover_text(format!("{per_sec:.0} frames per second"));
+        let frames = text::frames(frame, last, per_sec);
+        ui.add(egui::Label::new(RichText::new(frames).small().color(palette.weak_text)).extend());
     });
 }
 

@@ -22,12 +22,13 @@ use crate::ui::title_and_hint;
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
 /// `{shown, document}`: which of `model`, `motion`, `light` and `map` it was, and the inspect document. Changes nothing on failure.
+/// `is_by_hand`: the user opened it, not a script.
 #[wasm_bindgen]
-pub async fn open(items: Array, role: Option<String>, is_private: bool) -> Result<String, JsError> {
+pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_hand: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let items = items_of(&items).map_err(error)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
-    let opened = load(&page, Request::Items { items, role, is_private }).await.map_err(error)?;
+    let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await.map_err(error)?;
     Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
 }
 
@@ -178,7 +179,7 @@ fn report(loaded: &[String], problems: &[String]) -> String {
 /// What to open.
 enum Request {
     /// Files; as much of the current state as fits is kept.
-    Items { items: Vec<Item>, role: Role, is_private: bool },
+    Items { items: Vec<Item>, role: Role, is_private: bool, is_by_hand: bool },
     /// A whole view, with its model or on the active one. For a link, the shell reports what is missing.
     View {
         state: Box<ViewerState>,
@@ -213,8 +214,9 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
     let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
-        Request::Items { items, role, is_private } => {
+        Request::Items { items, role, is_private, is_by_hand } => {
             let contents = open_items(items, role, &progress).await;
+            let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
             contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
         }
         Request::View { state, with_model, current_motions, environments, .. } => {

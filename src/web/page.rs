@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 
+use egui::ThemePreference;
 use futures_util::future::try_join;
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
@@ -10,7 +11,7 @@ use super::calls::with_app;
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
-use crate::editor::Contents;
+use crate::editor::{Contents, ExportedFile};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Model};
 use crate::samples;
@@ -213,9 +214,8 @@ struct PageHost {
 }
 
 impl Host for PageHost {
-    fn choose_files(&self, role: Role, _inbox: &Inbox) -> bool {
+    fn choose_files(&self, role: Role, _inbox: &Inbox) {
         self.shell.choose(if role == Role::Motion { "motion" } else { "any" });
-        true
     }
 
     fn has_gallery(&self) -> bool {
@@ -226,9 +226,9 @@ impl Host for PageHost {
         self.shell.gallery();
     }
 
-    fn save_file(&self, name: &str, bytes: &[u8]) -> bool {
-        self.shell.save(name, bytes);
-        true
+    fn save_file(&self, file: ExportedFile, inbox: &Inbox) {
+        self.shell.save(&file.name, &file.bytes);
+        inbox.send(Message::Saved(Ok((file.name, file.remark))));
     }
 
     fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {
@@ -252,6 +252,38 @@ impl Host for PageHost {
     fn share(&self, fragment: &str) -> bool {
         self.shell.share(fragment);
         true
+    }
+
+    fn open_page(&self, fragment: &str) {
+        self.shell.visit(&format!("#{fragment}"));
+    }
+
+    fn open_url(&self, url: &str) {
+        self.shell.visit(url);
+    }
+
+    fn has_fullscreen(&self) -> bool {
+        self.shell.has_fullscreen()
+    }
+
+    fn toggle_fullscreen(&self) {
+        self.shell.toggle_fullscreen();
+    }
+
+    fn theme(&self) -> ThemePreference {
+        match &*self.shell.theme() {
+            "light" => ThemePreference::Light,
+            "dark" => ThemePreference::Dark,
+            _ => ThemePreference::System,
+        }
+    }
+
+    fn set_theme(&self, theme: ThemePreference) {
+        self.shell.set_theme(match theme {
+            ThemePreference::Light => "light",
+            ThemePreference::Dark => "dark",
+            ThemePreference::System => "",
+        });
     }
 
     fn link(&self, fragment: &str) -> String {

@@ -51,6 +51,26 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn share(this: &Shell, link: &str);
 
+    /// Opens a URL, or the page with another part after `#`, in another tab.
+    #[wasm_bindgen(method)]
+    pub fn visit(this: &Shell, address: &str);
+
+    /// Whether the browser has a full screen.
+    #[wasm_bindgen(method, js_name = hasFullscreen)]
+    pub fn has_fullscreen(this: &Shell) -> bool;
+
+    /// Enters or leaves full screen.
+    #[wasm_bindgen(method, js_name = toggleFullscreen)]
+    pub fn toggle_fullscreen(this: &Shell);
+
+    /// Returns the theme that the user chose on an earlier visit: `light`, `dark` or nothing for the system's.
+    #[wasm_bindgen(method)]
+    pub fn theme(this: &Shell) -> String;
+
+    /// Remembers the theme that the user chooses, in the same words.
+    #[wasm_bindgen(method, js_name = setTheme)]
+    pub fn set_theme(this: &Shell, theme: &str);
+
     /// Shows a warning.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str);

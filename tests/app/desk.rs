@@ -9,9 +9,11 @@ use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::{App, Host, Inbox, Message, ScriptCall, Video, native_options};
+use gaitway::editor::ExportedFile;
 use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
 use gaitway::state::{Command, ViewerState};
+use gaitway::ui::text;
 
 use crate::adapter::or_skipped;
 use crate::data_folder::data_folder;
@@ -57,6 +59,8 @@ pub fn desk(first: &str) -> Option<Desk> {
     let mut desk = Desk { harness, inbox, video };
     desk.command(Command::TogglePlaying);
     assert!(!desk.state().playback.playing);
+    // A window of this size starts without it.
+    desk.press(text::SHOW_INSPECTOR);
     Some(desk)
 }
 
@@ -184,13 +188,15 @@ struct Window {
 }
 
 impl Host for Window {
-    fn choose_files(&self, _role: Role, _inbox: &Inbox) -> bool {
-        false
+    fn choose_files(&self, _role: Role, _inbox: &Inbox) {}
+
+    fn save_file(&self, file: ExportedFile, inbox: &Inbox) {
+        inbox.send(Message::Saved(Ok((file.name, file.remark))));
     }
 
-    fn save_file(&self, _name: &str, _bytes: &[u8]) -> bool {
-        false
-    }
+    fn open_url(&self, _url: &str) {}
+
+    fn toggle_fullscreen(&self) {}
 
     fn record(&self, video: Video, _inbox: &Inbox) -> Result<(), String> {
         *self.video.borrow_mut() = Some(video);

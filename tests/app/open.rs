@@ -76,12 +76,19 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     desk.redo();
     assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.shows("Added motion Walk again."));
-    assert!(!desk.shows(text::SEARCH_JOINTS), "the tab stays");
-    desk.press(Tab::Motion.label());
-    assert!(desk.shows(text::SEARCH_JOINTS));
+    assert!(desk.shows(text::SEARCH_JOINTS), "borrowing brought the tab forward");
+    desk.press(Tab::Scene.label());
     desk.undo();
     desk.redo();
-    assert!(desk.shows(text::SEARCH_JOINTS), "back in the tab that was open");
+    assert!(!desk.shows(text::SEARCH_JOINTS), "the tab that was open stays");
+}
+
+#[test]
+fn what_is_saved_is_told() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.press(text::EXPORT);
+    desk.press(text::SAVE_CLIP);
+    assert!(desk.shows("Saved Pilot-"), "{:?}", desk.problem());
 }
 
 /// Before the first edit of the map, the last step is the motion itself, and with it the tab.

@@ -8,7 +8,7 @@ use crate::desk::{Desk, desk};
 
 /// Starts recording the run of the mannequin at the given size.
 fn record(desk: &mut Desk, size: &str) -> Video {
-    desk.press(Tab::View.label());
+    desk.press(Tab::Camera.label());
     desk.scroll_and_press(size);
     desk.scroll_and_press(text::RECORD);
     desk.video.take().expect("a recording was started")

@@ -189,21 +189,22 @@ export async function picture(page) {
 }
 
 /**
- * Drops files on the middle of the page, as a user would.
+ * Drops files on the page, as a person would.
  * @param {Page | Frame} page
  * @param {{ name: string, url?: string, text?: string }[]} files
+ * @param {number} [across] Where, as a share of the page's width.
  */
-export function drop(page, files) {
-  return page.evaluate(async (files) => {
+export function drop(page, files, across = 0.5) {
+  return page.evaluate(async ({ files, across }) => {
     const transfer = new DataTransfer();
     for (const { name, url, text = "" } of files) {
       const content = url === undefined ? text : await (await fetch(url)).blob();
       transfer.items.add(new File([content], name));
     }
-    const where = { clientX: innerWidth / 2, clientY: innerHeight / 2, bubbles: true, cancelable: true, composed: true };
+    const where = { clientX: innerWidth * across, clientY: innerHeight / 2, bubbles: true, cancelable: true, composed: true };
     const target = document.elementFromPoint(where.clientX, where.clientY);
     for (const type of ["dragenter", "dragover", "drop"]) target?.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
-  }, files);
+  }, { files, across });
 }
 
 /**
@@ -315,4 +316,14 @@ const STILL_FRAMES = 45;
  */
 export async function untilStill(page) {
   await eventually(async () => (await framesDrawnDuring(page, STILL_FRAMES)) === 0, "the app should come to rest");
+}
+
+/**
+ * Opens the inspector, with which a screen of this size doesn't start.
+ * @param {Page} page
+ */
+export async function openInspector(page) {
+  await page.locator("canvas").focus();
+  await page.keyboard.press("n");
+  await untilStill(page);
 }

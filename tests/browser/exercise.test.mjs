@@ -2,14 +2,14 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, openInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
 /** Steps of a dragged slider. */
 const STEPS = 30;
-/** Position of the selected joint's controls; egui's panels have no DOM elements. */
-const POSE_MANUALLY = { x: 741, y: 118 };
-const FIRST_SLIDER = { x: 642, y: 216 };
+/** Where the controls of the chosen joint are; egui's panels are pixels to a page. */
+const POSE_MANUALLY = { x: 741, y: 360 };
+const FIRST_SLIDER = { x: 642, y: 458 };
 const KINDS = ["obj", "skel", "attach"];
 
 for (const renderer of BACK_ENDS) {
@@ -47,7 +47,8 @@ for (const renderer of BACK_ENDS) {
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
       // The selected joint's “Pose manually” switch, then the handle of the first slider.
       await apply(page, { joint: 5 });
-      // egui hit-tests the widgets of the previous frame.
+      await openInspector(page);
+      // egui finds what is under the pointer in the previous frame.
       await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
       await untilStill(page);
       await page.mouse.click(POSE_MANUALLY.x, POSE_MANUALLY.y);

@@ -109,7 +109,7 @@ for (const renderer of BACK_ENDS)
 
     for (const [name, viewport] of Object.entries({ DESKTOP, PHONE }))
       onFirstScreen(`the first screen shows the scenes under the moving character (${name.toLowerCase()})`, { viewport }, async (page) => {
-        assert.equal(await page.locator("#gallery-scenes li").count(), scenes.length + 1);
+        assert.equal(await page.locator("#gallery-scenes li").count(), scenes.length + 2);
         const [picture, cards] = [await page.locator("canvas").first().boundingBox(), await gallery(page).boundingBox()];
         assert.ok(picture !== null && cards !== null);
         assert.ok(picture.y + picture.height <= cards.y + 0.5, "the cards should be below the viewport");

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -77,6 +77,14 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         const dancing = await pose(page);
         assert.equal(dancing.meshes[0].positions.length, rest.meshes[0].positions.length);
         assert.ok(furthest(dancing, rest) > 0.1, `moved by ${furthest(dancing, rest)} m`);
+      });
+
+      onPage("a character dropped at the right lends its motion", model, async (page) => {
+        await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }], 0.9);
+        await whenBorrowed(page, 1);
+        const { model, motion } = await state(page);
+        assert.deepEqual([model, motion], [[site.data(XBOT)], ["Soldier.glb"]]);
+        assert.equal(await page.locator("#drop").isVisible(), false);
       });
 
       onPage("another character's clips are borrowed by role", model, async (page) => {
@@ -190,7 +198,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
-        const file = await savedBy(page, 344);
+        const file = await savedBy(page, 386);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
         const base64 = fs.readFileSync(await file.path()).toString("base64");
         const document = await page.evaluate(async (base64) => {
@@ -205,7 +213,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       onPage("the active map is saved as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });
-        const file = await savedBy(page, 200);
+        const file = await savedBy(page, 242);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
         const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
         assert.equal(saved.gaitway_map, 1);
@@ -224,7 +232,7 @@ async function savedBy(page, y) {
   await page.setViewportSize({ width: 1280, height: 800 });
   await untilStill(page);
   const download = page.waitForEvent("download");
-  for (const [x, at] of [[1237, 29], [1232, 93]]) {
+  for (const [x, at] of [[1237, 69], [1232, 135]]) {
     await page.mouse.click(x, at);
     await untilStill(page);
   }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, eventually, furthest, pose, startSite, state, stats, untilStill } from "./browser.mjs";
+import { BACK_ENDS, apply, eventually, furthest, openInspector, pose, startSite, state, stats, untilStill } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
@@ -11,17 +11,17 @@ const FOREARM = "mixamorig:LeftForeArm";
 
 /** @typedef {[x: number, y: number]} Place */
 
-// Positions of the controls at the end of the View tab in a 1280×800 window; the canvas has no DOM elements to query.
+// The canvas has no elements to ask for. Places at the end of the Camera tab, in a window of 1280×800.
 /** @type {Place} */
-const WIDTH = [1035, 510];
+const WIDTH = [1035, 501];
 /** @type {Place} */
-const HEIGHT = [1133, 510];
+const HEIGHT = [1133, 501];
 /** @type {Place} */
-const TRANSPARENT = [1244, 544];
+const TRANSPARENT = [1244, 535];
 /** @type {Place} */
-const SAVE_IMAGE = [1125, 580];
+const SAVE_IMAGE = [1125, 571];
 /** @type {Place} */
-const RECORD = [1125, 658];
+const RECORD = [1125, 649];
 
 /**
  * Plays a video in the page: seeks to the middle of each frame and compares it with the one before.
@@ -122,13 +122,13 @@ for (const renderer of BACK_ENDS)
     });
 
     /**
-     * Scrolls to the end of the View tab, where the positions above apply.
+     * Opens the end of the Camera tab. The canvas has no elements to ask for, so the places of its controls are known here.
      * @param {import("./browser.mjs").TestPage} page
      */
-    async function openViewTab(page) {
+    async function openCameraTab(page) {
       await page.setViewportSize({ width: 1280, height: 800 });
-      await untilStill(page);
-      await page.mouse.click(1183, 29);
+      await openInspector(page);
+      await page.mouse.click(1183, 69);
       await untilStill(page);
       await page.mouse.move(1130, 400);
       await page.mouse.wheel(0, 2400);
@@ -145,7 +145,7 @@ for (const renderer of BACK_ENDS)
     }
 
     onPage("images of any size are saved", async (page) => {
-      await openViewTab(page);
+      await openCameraTab(page);
       await press(page, TRANSPARENT);
       const picture = page.waitForEvent("download");
       await page.mouse.click(...SAVE_IMAGE);
@@ -173,7 +173,7 @@ for (const renderer of BACK_ENDS)
         name,
         async (page) => {
           await apply(page, { range: "0.1,0.5" });
-          await openViewTab(page);
+          await openCameraTab(page);
           for (const [field, pixels] of /** @type {const} */ ([[WIDTH, 320], [HEIGHT, 180]])) {
             // Its blinking caret never comes to rest.
             await page.mouse.click(...field);
@@ -204,7 +204,7 @@ for (const renderer of BACK_ENDS)
       const downloads = [];
       page.on("download", (download) => downloads.push(download.suggestedFilename()));
       await page.route("**/parts/video-*", (route) => route.abort());
-      await openViewTab(page);
+      await openCameraTab(page);
       await page.mouse.click(...RECORD);
       const said = (/** @type {string} */ id, /** @type {RegExp} */ text) => eventually(async () => text.test((await page.locator(id).textContent()) ?? ""), String(text));
       await said("#problem", /Couldn't record the video: .*can't be loaded/);

@@ -143,6 +143,7 @@ fn the_seeds_of_x_are_whole() {
 #[test]
 fn what_fuzzing_found_stays_fixed() {
     entries::map(br#"{"gaitway_map":1,"joints":{"a":{"source":0,"correction":[0,0,0,1e39]}}}"#);
+    entries::link(b"v=1&model=https://example.org/a.zip%23/b%23/c.glb");
 }
 
 #[test]

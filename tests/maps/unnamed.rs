@@ -101,6 +101,36 @@ fn bodies_with_useless_names_are_found_by_their_shape() {
     assert!(right as f64 >= 0.8 * total as f64, "{right} of {total}");
 }
 
+/// The persons of MIT's 6.837 assignment: their root is in the chest, and their arms end in elbows.
+#[test]
+fn a_body_may_hang_from_its_chest() {
+    let parts = [
+        (Slot::Hips, 2),
+        (Slot::Spine, 1),
+        (Slot::Chest, 0),
+        (Slot::Head, 3),
+        (Slot::RightUpperLeg, 5),
+        (Slot::RightLowerLeg, 6),
+        (Slot::RightFoot, 7),
+        (Slot::LeftUpperLeg, 9),
+        (Slot::LeftLowerLeg, 10),
+        (Slot::LeftFoot, 11),
+        (Slot::RightUpperArm, 13),
+        (Slot::RightLowerArm, 14),
+        (Slot::LeftUpperArm, 16),
+        (Slot::LeftLowerArm, 17),
+    ];
+    for model in 1..=4 {
+        let Some(asset) = open(&format!("mit6837/Model{model}.obj")) else { return };
+        let found = recognize(&asset);
+        for (slot, expected) in parts {
+            let joint = found.joint(slot).map(|joint| asset.skeleton.source_index(joint));
+            assert_eq!(joint, Some(expected), "Model{model}: {}", slot.name());
+        }
+        assert_eq!(found.joint(Slot::LeftHand), None, "Model{model}");
+    }
+}
+
 #[test]
 fn animals_with_useless_names_are_no_bodies() {
     for path in [

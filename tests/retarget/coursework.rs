@@ -1,10 +1,10 @@
 //! Scenes of the COSC422 coursework with its own numbers, and real files retargeted to themselves.
 
-use gaitway::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_joint};
+use gaitway::anim::{Clip, JointIndex, Pose, Property, SampleCursor, Skeleton, model_from_joint};
 use gaitway::asset::Asset;
 use gaitway::retarget::{
-    Body, JointMap, JointMapFile, MutedChannel, MutedProperty, ResolvedMap, Retargeted, Retargeting, RootPart, baking,
-    layer_clips, propose, recognize,
+    Body, Feet, JointMap, JointMapFile, MutedChannel, MutedProperty, ResolvedMap, Retargeted, Retargeting, RootPart,
+    baking, layer_clips, propose, recognize,
 };
 use glam::{Affine3A, Quat, Vec3};
 
@@ -185,4 +185,26 @@ fn size(asset: &Asset) -> f32 {
     let (low, high) =
         heights.fold((glam::Vec3A::INFINITY, glam::Vec3A::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
     (high - low).max_element()
+}
+
+/// The root of these persons is in the chest: the chest carries the hips along their path.
+#[test]
+fn hips_below_the_root_go_where_the_source_takes_them() {
+    let Some(folder) = data_folder() else { return };
+    let (model, motion) = (read(&folder, "mit6837/Model1.obj"), read(&folder, "bvh/cmu_01_01.bvh"));
+    let slots = [recognize(&model).humanoid(), recognize(&motion).humanoid()];
+    let proposed = propose(&model, &motion).to_map(&model, &motion).resolve(&model, &motion).unwrap();
+    for feet in [Feet::Off, Feet::Plant] {
+        let map = ResolvedMap { feet, ..proposed.clone() };
+        let bodies = [Body { asset: &model, slots: &slots[0] }, Body { asset: &motion, slots: &slots[1] }];
+        let pair = Retargeting::new(bodies[0], bodies[1], 0, &map).unwrap();
+        let done = pair.bake().unwrap();
+        let moved = done.clip.channels().iter().filter(|channel| channel.keys.property() == Property::Translation);
+        let moved: Vec<usize> = moved.map(|channel| model.skeleton.source_index(channel.joint)).collect();
+        assert_eq!(moved, [0], "the body comes apart");
+        let figures = pair.figures(&done);
+        assert!(figures.limb_direction_error_degrees_mean.unwrap() < 2.0, "{figures:?}");
+        let [ours, theirs] = [figures.foot_slide_metres_per_sec, figures.foot_slide_source_metres_per_sec];
+        assert!(ours.unwrap() < 1.5 * theirs.unwrap(), "{figures:?}");
+    }
 }

@@ -9,7 +9,7 @@ use gaitway::editor::{Contents, Editor, Event, Export, OpenedMap};
 use gaitway::files::{Held, Role, open_view, read_paths};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Environment, Library, Model, Motion};
-use gaitway::retarget::{JointMapFile, RootOptions, RootPart};
+use gaitway::retarget::{Feet, JointMapFile, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, EnvironmentChoice, Inspect, Lighting, MapEdit, OrbitCamera, RetargetEdits, Show,
@@ -624,4 +624,89 @@ fn an_empty_stage_awaits_a_model() {
     let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
     assert_eq!(listed, ["sample:walker"]);
     assert_eq!(editor.state().display.exposure, 1.0);
+}
+
+/// Opens a file as the user does, not a link or a script.
+fn open_by_hand(editor: &mut Editor, file: &str) -> Vec<Event> {
+    let contents = Contents { is_by_hand: true, ..contents(&[file]) };
+    editor.open(contents, None, &mut any).expect("fits");
+    editor.take_events()
+}
+
+/// The walker with a clip that moves it this far.
+fn runner(metres: f32) -> Contents {
+    let asset = Arc::try_unwrap(samples::load("walker").expect("is generated").asset).expect("nobody else has it");
+    let mut parts = asset.into_parts();
+    let hips = parts.skeleton.find("Hips").expect("it has hips");
+    let mut clip = ClipBuilder::new("Run", &parts.skeleton);
+    let keys = Keys::Translation(vec![Vec3::Y, Vec3::new(0.0, 1.0, metres)]);
+    clip.channel(hips, Interpolation::Linear, &[0.0, 3.0], keys).expect("two keys");
+    parts.clips = vec![clip.build()];
+    let model = Model::new("runner.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());
+    Contents { models: vec![model.into()], ..Contents::default() }
+}
+
+#[test]
+fn the_camera_follows_what_travels_far_unless_the_user_says_otherwise() {
+    let follows = |editor: &Editor| editor.state().camera_options.follow;
+    let opened = |contents: Contents| {
+        let mut editor = editor("sample:pilot");
+        editor.open(contents, None, &mut any).expect("fits");
+        editor
+    };
+    assert!(!follows(&opened(runner(8.0))), "a script gets what it says");
+    assert!(!follows(&opened(Contents { is_by_hand: true, ..runner(0.5) })), "it stays in view");
+    let mut editor = opened(Contents { is_by_hand: true, ..runner(8.0) });
+    assert!(follows(&editor));
+    assert_eq!(editor.state().camera, CameraChoice::Auto);
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    assert!(!follows(&editor), "nothing travels");
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(follows(&editor));
+    editor.apply(Command::SetFollow(false));
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(!follows(&editor), "the user's choice is kept");
+}
+
+#[test]
+fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
+    let mut editor = editor("sample:dwarf");
+    let told = open_by_hand(&mut editor, "sample:walk");
+    assert_eq!(editor.state().retarget.feet, Some(Feet::Plant));
+    let is_told =
+        |event: &Event| matches!(event, Event::Notice { text, undoable: true } if text.contains("held on the ground"));
+    assert!(told.iter().any(is_told), "{told:?}");
+    assert_eq!(editor.state().camera, CameraChoice::Auto, "it frames the clip as it is now");
+    assert!(editor.undo());
+    assert_eq!((editor.state().retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
+    assert!(editor.undo());
+    assert_eq!(motions(&editor).len(), 0);
+    // Where the feet stand as well as the source's, nothing is done.
+    let told = open_by_hand(&mut editor, "sample:mannequin");
+    assert!(!told.iter().any(is_told));
+    let told = open_by_hand(&mut editor, "sample:mannequin_run");
+    assert_eq!((editor.state().retarget.feet, told.iter().any(is_told)), (None, false));
+    // A script gets what it says.
+    open(&mut editor, "sample:dwarf");
+    editor.remove_motion(0);
+    open(&mut editor, "sample:walk");
+    assert_eq!(editor.state().retarget.feet, None);
+}
+
+#[test]
+fn an_open_model_lends_its_clips() {
+    let mut editor = editor("sample:pilot");
+    open(&mut editor, "sample:mannequin");
+    let pilot = id_of(&editor, "sample:pilot");
+    editor.borrow_from(pilot, &mut any).expect("both are people");
+    let events = editor.take_events();
+    assert!(events.contains(&Event::MotionsAdded), "{events:?}");
+    assert_eq!((active(&editor), motions(&editor)), ("sample:mannequin", vec!["sample:pilot"]));
+    assert_eq!(editor.state().sources.motion, ["sample:pilot"]);
+    assert_eq!(editor.library().active().expect("a model").borrowed_clips().count(), 6);
+    while editor.can_undo() && !motions(&editor).is_empty() {
+        editor.undo();
+    }
+    assert_eq!(active(&editor), "sample:mannequin");
 }

@@ -143,7 +143,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
             "display.show",
             with(&|state| {
                 let overlays = Show { skeleton: true, mesh: false, grid: false, ..Show::default() };
-                let overlays = Show { boxes: true, smooth: true, ..overlays };
+                let overlays = Show { boxes: true, controls: true, smooth: true, ..overlays };
                 state.display.show = Show { source: true, over: true, error: true, ..overlays };
             }),
         ),

@@ -84,6 +84,8 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 let ui = &mut ui;
                 let Bench { editor, frame, panels, commands, actions, viewport } = bench;
                 evaluate(editor.library(), editor.state(), panels.viewport.aspect, frame);
+                panels.host.can_undo = editor.can_undo();
+                panels.host.can_redo = editor.can_redo();
                 panels.host.can_undo_retargeting = editor.can_undo_retargeting();
                 panels.host.can_redo_retargeting = editor.can_redo_retargeting();
                 let mut output = Output::default();

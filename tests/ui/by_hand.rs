@@ -7,6 +7,7 @@ use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, painted, press, press_key, sample_bench};
+use crate::motion::reach;
 
 /// The left shin of the walker, as the file numbers it.
 const SHIN: usize = 15;
@@ -54,10 +55,10 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     harness.get_by_label(text::POSE_ANGLES[0]).set_value_accesskit(40.0);
     harness.run();
     assert!((harness.state().state().edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
-    assert_eq!(press(&mut harness, text::RESET_JOINT), [Command::SetPose { joint: SHIN, degrees: None }]);
+    assert_eq!(reach(&mut harness, text::RESET_JOINT), [Command::SetPose { joint: SHIN, degrees: None }]);
     harness.get_by_label(text::POSE_ANGLES[2]).set_value_accesskit(-20.0);
     harness.run();
-    assert_eq!(press(&mut harness, &text::reset_all_joints(1)), [Command::ClearPose]);
+    assert_eq!(reach(&mut harness, &text::reset_all_joints(1)), [Command::ClearPose]);
     assert!(harness.state().state().edits.pose.is_empty());
 }
 
@@ -135,7 +136,7 @@ fn modes_are_compared_by_a_switch() {
 #[test]
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let rate = text::labelled(text::FRAME_RATE, &text::frames_per_sec(60));
     for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();

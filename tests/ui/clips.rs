@@ -8,7 +8,7 @@ use gaitway::editor::Contents;
 use gaitway::library::{Model, Motion};
 use gaitway::mesh::{Geometry, Mesh};
 use gaitway::state::{ClipChoice, Command};
-use gaitway::ui::{UiAction, text};
+use gaitway::ui::text;
 
 use crate::bench::{Bench, WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -101,18 +101,6 @@ fn a_model_without_clips_is_told_what_it_lacks() {
 }
 
 #[test]
-fn the_buttons_of_the_header_stand_in_one_row() {
-    for size in [WIDE, [1920.0, 1080.0], [800.0, 600.0]] {
-        let harness = sample_bench(size);
-        let [open, motion, share] =
-            [text::OPEN, text::BORROW_MOTION, text::SHARE].map(|label| harness.get_by_label(label).rect());
-        assert!(open.top() == motion.top() && motion.top() == share.top(), "{open:?} {motion:?} {share:?} on {size:?}");
-        assert!(open.right() < motion.left() && motion.right() < share.left());
-        assert!(share.right() < harness.state().viewport.left(), "{share:?} on {size:?}");
-    }
-}
-
-#[test]
 fn few_clips_need_no_search() {
     assert!(sample_bench(WIDE).query_by_label(&text::search_clips(3)).is_none());
 }
@@ -160,12 +148,4 @@ fn a_name_that_is_cut_is_told_in_full_under_the_pointer() {
         harness.run_steps(60);
         assert_eq!(harness.query_all_by_label(name).count(), told, "{name}");
     }
-}
-
-#[test]
-fn open_and_share_are_asked_of_the_host() {
-    let mut harness = sample_bench(WIDE);
-    press(&mut harness, text::OPEN);
-    press(&mut harness, text::SHARE);
-    assert_eq!(harness.state().actions, [UiAction::OpenFiles, UiAction::ShareLink]);
 }

@@ -10,6 +10,7 @@ use gaitway::ui::text::FormulaRow;
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, press, sample_bench};
+use crate::motion::reach;
 
 /// A strip along X: its beginning follows joint 1, its end joint 2, the middle both.
 fn strip(size: [f32; 2]) -> Harness<'static, Bench> {
@@ -57,7 +58,7 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
     harness.run();
     let unscaled = text::labelled(text::SCALE, "1.000 1.000 1.000");
     assert_eq!(harness.query_all_by_label(&unscaled).count(), 2, "local and in the world");
-    press(&mut harness, text::MATRICES);
+    reach(&mut harness, text::MATRICES);
     let zero = "0.0000";
     let row = |numbers: [&str; 4]| format!(" {}", numbers.join(" "));
     let last = row([zero, zero, zero, "1.0000"]);
@@ -70,14 +71,14 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
         assert!(has(&harness, &label), "{label}");
     }
     assert!(!has(&harness, &unscaled), "the matrices say the same");
-    press(&mut harness, text::MATRICES);
+    reach(&mut harness, text::MATRICES);
     assert!(harness.query_by_label_contains(&format!("{}:", text::INVERSE_BIND)).is_none());
 }
 
 #[test]
 fn a_model_without_meshes_has_no_vertices_to_look_at() {
     let mut harness = strip(WIDE);
-    press(&mut harness, text::VERTEX_PROBE);
+    reach(&mut harness, text::VERTEX_PROBE);
     let mut library = Library::default();
     library.add(model_with_clips(2));
     harness.state_mut().editor = Editor::new(library, ViewerState::default());
@@ -92,7 +93,7 @@ fn a_vertex_shows_shares_that_add_up() {
         if size == NARROW {
             press(&mut harness, text::INSPECTOR);
         }
-        press(&mut harness, text::VERTEX_PROBE);
+        reach(&mut harness, text::VERTEX_PROBE);
         assert!(harness.query_by_label(text::VERTEX_HINT).is_some());
         // Turned by a quarter about Z, joint 2 alone would put (1, 1) at (0, 0).
         harness.state_mut().change(|state| {
@@ -119,8 +120,8 @@ fn a_vertex_shows_shares_that_add_up() {
         });
         harness.run();
         assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_some());
-        assert_eq!(press(&mut harness, &text::joint_weight("joint 2", 0.5)), [Command::SelectJoint(Some(2))]);
-        assert_eq!(press(&mut harness, text::UNPIN_VERTEX), [Command::SelectVertex(None)]);
+        assert_eq!(reach(&mut harness, &text::joint_weight("joint 2", 0.5)), [Command::SelectJoint(Some(2))]);
+        assert_eq!(reach(&mut harness, text::UNPIN_VERTEX), [Command::SelectVertex(None)]);
     }
 }
 
@@ -133,7 +134,7 @@ fn a_copy_has_the_number_of_its_vertex() {
         files.insert("m.obj", format!("{head}f 1/1 2/1 3/1\n{between}f 1/2 3/2 4/2\n").into_bytes());
         let asset = load(&files).expect("a small model");
         let mut harness = bench(WIDE, Model::new("m.obj".to_owned(), asset, Vec::new()));
-        press(&mut harness, text::VERTEX_PROBE);
+        reach(&mut harness, text::VERTEX_PROBE);
         harness.state_mut().change(|state| {
             state.selection.vertex = Some(VertexChoice { instance: 0, primitive: piece, vertex });
         });
@@ -145,7 +146,7 @@ fn a_copy_has_the_number_of_its_vertex() {
 #[test]
 fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
     let mut harness = strip(WIDE);
-    press(&mut harness, text::VERTEX_PROBE);
+    reach(&mut harness, text::VERTEX_PROBE);
     let middle = harness.state().viewport.center();
     let click = |harness: &mut Harness<'static, Bench>, at: egui::Pos2| {
         harness.state_mut().commands.clear();
@@ -155,8 +156,8 @@ fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
     assert!(matches!(kept[..], [Command::SelectVertex(Some(_))]), "{kept:?}");
     let aside = harness.state().viewport.right_center() - egui::vec2(12.0, 0.0);
     assert!(click(&mut harness, aside).contains(&Command::SelectVertex(None)));
-    // With the probe off, a click selects joints again.
-    press(&mut harness, text::VERTEX_PROBE);
+    // Switched off, a click is about joints again.
+    reach(&mut harness, text::VERTEX_PROBE);
     assert!(!click(&mut harness, middle).iter().any(|command| matches!(command, Command::SelectVertex(_))));
 }
 
@@ -187,14 +188,14 @@ fn a_joint_is_renamed_in_its_card() {
 #[test]
 fn the_model_can_be_saved_at_rest_and_as_it_stands() {
     let mut harness = strip(WIDE);
-    harness.state_mut().panels.layout.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::Info;
     harness.run();
     press(&mut harness, text::SAVE_REST_POSE);
     press(&mut harness, text::SAVE_CURRENT_POSE);
     let whole = |posed| UiAction::Save(Saved::File(Export::FullModel { posed }));
     assert_eq!(harness.state().actions, [whole(false), whole(true)]);
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.layout.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::Info;
     harness.run();
     assert!(!has(&harness, text::SAVE_CURRENT_POSE), "a glTF is one already");
 }

@@ -15,10 +15,12 @@ use gaitway::ui::{Tab, text};
 use glam::Vec3;
 
 use crate::bench::{WIDE, bench, bench_of, model_with_clips, press, sample_bench};
+use crate::motion::reach;
 
 #[test]
 fn the_tree_shows_all_joints_and_chooses_one() {
-    let mut harness = sample_bench(WIDE);
+    // Tall enough for the whole tree.
+    let mut harness = sample_bench([1280.0, 1600.0]);
     let commands = press(&mut harness, "LeftHand");
     let skeleton = &harness.state().library().active().unwrap().asset.skeleton;
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
@@ -65,7 +67,7 @@ fn display_sets_skinning_overlays_and_morphs() {
     harness.run();
     let morphs: Vec<_> = harness.state().state().edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
-    assert_eq!(press(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
+    assert_eq!(reach(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
 }
 
 #[test]
@@ -89,7 +91,7 @@ fn display_offers_the_material_variants_of_the_file() {
 fn view_sets_camera_and_background() {
     // Tall enough for the whole tab.
     let mut harness = sample_bench([1280.0, 1600.0]);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let angles = [(text::FRONT, 0.0, 0.0), (text::SIDE, 90.0, 0.0), (text::TOP, 0.0, 89.9)];
     for (label, yaw_degrees, pitch_degrees) in angles {
         let commands = press(&mut harness, label);
@@ -115,7 +117,7 @@ fn view_sets_the_light() {
     library.add_environment(Environment { origin: "beach.hdr".to_owned(), panorama: panorama.into(), is_own: true });
     // Tall enough for the whole tab.
     let mut harness = bench_of([1280.0, 1600.0], library);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let agx = text::labelled(text::TONE_MAP, text::TONE_AGX);
     assert_eq!(press(&mut harness, &agx), [Command::SetToneMap(ToneMap::Agx)]);
     let outdoor = EnvironmentChoice::Setup(LightSetup::Outdoor);
@@ -137,7 +139,7 @@ fn view_sets_the_light() {
 #[test]
 fn the_file_report_counts_and_groups() {
     let mut harness = bench(WIDE, model_with_clips(3));
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     for (name, value) in [(text::FORMAT, "GLB"), (text::CLIPS, "3"), (text::NODES, "1")] {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
@@ -211,7 +213,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     assert!(matches!(commands[..], [Command::SetLookAt(LookTarget::Point(_))]), "{commands:?}");
     harness.run();
     assert!(harness.query_by_label("Z").is_some());
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     for (name, value) in [("Commercial usage name", "Allow"), (&*text::first_person("Head"), "Third person only")] {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
@@ -222,12 +224,12 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     let mut harness = bench(WIDE, glowing());
     press(&mut harness, "Only");
     assert!(harness.query_by_label(text::NODE_HIDDEN).is_some());
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     assert!(harness.query_by_label(&text::counted("Glow", 2)).is_some());
     assert!(harness.query_by_label_contains("Nothing (").is_none());
     let color = text::labelled("Paint", text::BASE_COLOR);
     let visibility = text::labelled("Only", text::VISIBILITY);
-    let values = [(&color, "1.000  0.500  0  1.000"), (&visibility, text::HIDDEN)];
+    let values = [(&color, "1.000  0.500  0.000  1.000"), (&visibility, text::HIDDEN)];
     for (name, value) in values {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
@@ -239,8 +241,20 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
 #[test]
 fn the_chosen_segment_says_so() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let toggled = |label: &str| harness.get_by_label(label).accesskit_node().toggled();
     assert_eq!(toggled(text::STUDIO), Some(egui::accesskit::Toggled::True));
     assert_eq!(toggled(text::COLOR), Some(egui::accesskit::Toggled::False));
+}
+
+/// Wherever in the tree it is, and whether or not another joint was selected before.
+#[test]
+fn selecting_a_joint_moves_no_row() {
+    let mut harness = sample_bench(WIDE);
+    for joint in ["Hips", "Chest", "Neck", "Hips"] {
+        let before = harness.get_by_label(joint).rect();
+        press(&mut harness, joint);
+        let name = |label: &str| harness.query_all_by_label(label).map(|node| node.rect()).next();
+        assert_eq!(name(joint), Some(before), "{joint}");
+    }
 }

@@ -134,6 +134,7 @@ fn the_help_lists_every_key_and_closes() {
     assert!(press_key(&mut harness, Key::Space).is_empty(), "nothing plays behind the help");
     press(&mut harness, text::CLOSE_HELP);
     assert!(!harness.state().panels.help.is_open);
+    press(&mut harness, text::MENU);
     press(&mut harness, text::HELP);
     assert!(harness.state().panels.help.is_open, "the press that opens it does not close it");
     press_key(&mut harness, Key::Escape);

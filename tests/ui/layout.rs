@@ -1,7 +1,7 @@
 //! Layout on wide, narrow and embedded screens, and what lies over the viewport.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, Tab, UiAction, text};
+use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
 use crate::bench::{NARROW, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
 
@@ -99,9 +99,9 @@ fn everything_stays_on_the_screen() {
         if narrow {
             press(&mut harness, text::INSPECTOR);
         }
-        for tab in [Tab::Display.label(), Tab::File.label(), Tab::View.label(), Tab::Scene.label()] {
+        for tab in [Tab::Display.label(), Tab::Info.label(), Tab::Camera.label(), Tab::Scene.label()] {
             press(&mut harness, tab);
-            for node in [Tab::Scene.label(), Tab::View.label()] {
+            for node in [Tab::Scene.label(), Tab::Camera.label()] {
                 let rect = harness.get_by_label(node).rect();
                 assert!(screen.contains_rect(rect), "{node} at {rect:?} on {size:?} with {tab} open");
             }
@@ -119,8 +119,28 @@ fn embedded_there_is_only_picture_and_transport() {
     harness.run();
     assert_eq!(harness.state().viewport.width(), WIDE[0]);
     assert!(harness.query_by_label(text::PLAY).is_some());
-    for label in [text::REST_POSE, Tab::Scene.label(), text::HELP, text::OPEN] {
+    for label in [text::REST_POSE, Tab::Scene.label(), text::NAME, text::OPEN, text::OPEN_PAGE] {
         assert!(harness.query_by_label(label).is_none(), "{label}");
+    }
+    // Only a page can be left for another one.
+    harness.state_mut().panels.host.has_gallery = true;
+    harness.run();
+    press(&mut harness, text::OPEN_PAGE);
+    assert_eq!(harness.state().actions, [UiAction::OpenPage]);
+}
+
+/// The height that the samples take on the first screen, below the canvas.
+const GALLERY_HEIGHT: f32 = 120.0;
+
+#[test]
+fn the_first_screen_is_mostly_viewport() {
+    for (size, share) in [(WIDE, 0.5), (NARROW, 0.6)] {
+        let mut harness = sample_bench([size[0], size[1] - GALLERY_HEIGHT]);
+        harness.state_mut().panels.layout = Layout::default();
+        harness.state_mut().panels.start(size[0]);
+        harness.run();
+        let found = harness.state().viewport.area() / (size[0] * size[1]);
+        assert!(found >= share, "{found} of {size:?}");
     }
 }
 
@@ -147,17 +167,4 @@ fn nothing_repaints_by_itself() {
     let mut harness = sample_bench(WIDE);
     harness.run();
     assert_eq!(harness.run(), 1, "one step for the run itself and none after it");
-}
-
-#[test]
-fn a_path_can_be_typed_where_there_is_no_dialog() {
-    let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.messages.path_prompt =
-        Some(PathPrompt { purpose: PathPurpose::Open, path: String::new() });
-    harness.run();
-    harness.get_by_label(text::PATH).type_text("models/fox.glb");
-    harness.run();
-    assert!(press(&mut harness, text::PROMPT_OPEN).is_empty());
-    assert_eq!(harness.state().actions, [UiAction::UsePath(PathPurpose::Open, "models/fox.glb".to_owned())]);
-    assert_eq!(harness.state().panels.messages.path_prompt, None);
 }

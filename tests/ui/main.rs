@@ -7,6 +7,7 @@ mod by_hand;
 mod call_sites;
 mod clips;
 mod exercise;
+mod header;
 mod inspector;
 mod keys;
 mod layout;

@@ -99,7 +99,7 @@ fn an_empty_stage_says_what_it_waits_for_and_keeps_the_offer() {
         if size == NARROW {
             press(&mut harness, text::INSPECTOR);
         }
-        for tab in [Tab::Scene, Tab::Display, Tab::File, Tab::View] {
+        for tab in [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera] {
             press(&mut harness, tab.label());
         }
     }

@@ -108,5 +108,5 @@ fn time_is_told_in_seconds_and_frames() {
     });
     harness.run();
     assert!(harness.query_by_label(&text::seconds(0.5, 1.07)).is_some());
-    assert!(harness.query_by_label(&text::frames(15.0, 32.0)).is_some());
+    assert!(harness.query_by_label(&text::frames(15.0, 32.0, 30.0)).is_some());
 }

@@ -1,11 +1,13 @@
 // Dropped files, folders and links, taken before the canvas sees them.
-import { byId, dialog } from "./dom.js";
+import { byId, dialog, isDialogOpen } from "./dom.js";
 import { EMPTY_FOLDER } from "./open-dialog.js";
 import { openByHand } from "./opening.js";
-import { refuse } from "./session.js";
+import { panel } from "./panels.js";
+import { refuse, session } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
+/** @typedef {import("./types.d.ts").Role} Role */
 
 const MAX_FILES = 4096;
 /** Without drag events for this long, the drag has left the page. */
@@ -14,14 +16,27 @@ const SHEET_TIMEOUT_MS = 1000;
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
 
-/**
- * Shows or hides the sheet that says where to drop.
- * @param {boolean} isShown
- */
-function showSheet(isShown) {
+function hideSheet() {
   clearTimeout(timer);
-  byId("drop").hidden = !isShown;
-  if (isShown) timer = setTimeout(() => showSheet(false), SHEET_TIMEOUT_MS);
+  byId("drop").hidden = true;
+}
+
+/**
+ * Shows where to drop: on a model, files are either opened or lend it their motion. Returns which of the two it is here.
+ * @param {DragEvent} event
+ * @returns {Role}
+ */
+function showSheet({ clientX, clientY }) {
+  clearTimeout(timer);
+  timer = setTimeout(hideSheet, SHEET_TIMEOUT_MS);
+  const [open, borrow] = [byId("drop-open"), byId("drop-borrow")];
+  borrow.hidden = session.app === null || panel() !== null || isDialogOpen() || JSON.parse(session.app.summary()).isEmpty;
+  byId("drop").hidden = false;
+  const { left, top } = borrow.getBoundingClientRect();
+  const isBorrowed = !borrow.hidden && clientX >= left && clientY >= top;
+  borrow.classList.toggle("chosen", isBorrowed);
+  open.classList.toggle("chosen", !isBorrowed);
+  return isBorrowed ? "motion" : undefined;
 }
 
 /** @param {DragEvent} event */
@@ -32,14 +47,15 @@ function onDrag(event) {
   event.stopPropagation();
   if (event.type === "dragenter" || event.type === "dragover") {
     transfer.dropEffect = "copy";
-    showSheet(true);
+    showSheet(event);
   } else if (event.type === "dragleave") {
-    if (event.relatedTarget === null) showSheet(false);
+    if (event.relatedTarget === null) hideSheet();
   } else {
-    showSheet(false);
+    const as = showSheet(event);
+    hideSheet();
     dialog("open").close();
     dialog("bring").close();
-    droppedItems(transfer).then((items) => openByHand(items), refuse);
+    droppedItems(transfer).then((items) => openByHand(items, { as }), refuse);
   }
 }
 

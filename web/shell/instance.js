@@ -1,5 +1,6 @@
-// Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with
-// the same files and view.
+// Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
+// same files and view.
+import { hasFullscreen, setTheme, theme, toggleFullscreen } from "./appearance.js";
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
@@ -17,7 +18,7 @@ import { arePrivate } from "./privacy.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { cancelRecording, download, record } from "./recording.js";
 import { session } from "./session.js";
-import { share } from "./share.js";
+import { addressOf, share } from "./share.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -184,6 +185,11 @@ function callsFor(bindings) {
     record: (name, width, height, framesPerSec, frameCount, isTransparent) => record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }),
     cancelRecording,
     share,
+    visit: (address) => void open(address.startsWith("#") ? addressOf(address.slice(1)) : address, "_blank", "noopener"),
+    hasFullscreen,
+    toggleFullscreen,
+    theme,
+    setTheme,
     progress: showProgress,
     changed: (link) => isCurrent() && viewChanged(link),
     warn: (message) => {

@@ -32,9 +32,10 @@ export async function read(items) {
  * @param {Item[]} items
  * @param {Role} as
  * @param {boolean} isPrivate The local files among them are the user's own.
+ * @param {boolean} [isByHand] The user opens them, not a link or a script.
  * @returns {Promise<{ shown: "model" | "motion" | "light" | "map", document: InspectDocument }>}
  */
-export async function load(items, as, isPrivate) {
+export async function load(items, as, isPrivate, isByHand = false) {
   // A link has URLs in full; other files have to be held.
   const isLocal = items.some((item) => typeof item !== "string");
   const isPrivateNow = isLocal && isPrivate;
@@ -42,7 +43,7 @@ export async function load(items, as, isPrivate) {
   if (isLocal) hold(items);
   try {
     const app = await running();
-    const { shown, document } = JSON.parse(await unlessStopped(app, (async () => await app.open(await read(items), as, isPrivateNow))()));
+    const { shown, document } = JSON.parse(await unlessStopped(app, (async () => await app.open(await read(items), as, isPrivateNow, isByHand))()));
     forgetRejected();
     return { shown, document };
   } catch (error) {

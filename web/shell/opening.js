@@ -16,17 +16,17 @@ import { running } from "./session.js";
 /** @typedef {import("./types.d.ts").Role} Role */
 
 /**
- * Opens what a script or the user gives. `isPrivate`: local files among the items are the user's own, and an embedding
- * page learns nothing about them.
+ * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
+ * one learns nothing. `isByHand`: the user opens them, not a script.
  * @param {Openable | Openable[] | FileList} items
- * @param {{ as?: Role, isPrivate?: boolean }} [options]
+ * @param {{ as?: Role, isPrivate?: boolean, isByHand?: boolean }} [options]
  * @returns {Promise<InspectDocument>}
  */
-export async function open(items, { as, isPrivate = true } = {}) {
+export async function open(items, { as, isPrivate = true, isByHand = false } = {}) {
   const wanted = withCompanions(toItems(items));
   await running();
   try {
-    const { shown, document } = await load(wanted, as, isPrivate);
+    const { shown, document } = await load(wanted, as, isPrivate, isByHand);
     forgetProblem();
     await completeLink(wanted, true);
     // In place of the app's notice, which says less.
@@ -47,7 +47,7 @@ export async function open(items, { as, isPrivate = true } = {}) {
 export async function openByHand(items, options) {
   if (items.length === 0) return;
   try {
-    await open(items, options);
+    await open(items, { ...options, isByHand: true });
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);

@@ -9,22 +9,30 @@ import { session } from "./session.js";
 const MAX_COMPANIONS = 4;
 
 /**
+ * Returns the address of the page with a link that others can open.
+ * @param {string} link
+ */
+export function addressOf(link) {
+  const page = new URL(location.href);
+  // The back end is a matter of this machine.
+  page.searchParams.delete("renderer");
+  page.hash = "";
+  return `${page.href}#${shareableLink(link)}`;
+}
+
+/**
  * Shows the dialog for a link and copies it.
  * @param {string} link
  */
 export function share(link) {
   if (session.app === null) return;
-  const page = new URL(location.href);
-  // The back end is specific to this machine.
-  page.searchParams.delete("renderer");
-  page.hash = "";
-  const address = `${page.href}#${shareableLink(link)}`;
+  const address = addressOf(link);
   const local = localFiles(link);
   byId("share-local").hidden = local.length === 0;
   showList("share-files", local.map(({ role, name }) => `${name} (${role})${companionList(companionsOf(name))}`));
   field("share-link").value = address;
-  field("share-frame").value = frameHtml(`${page.href}#${embeddedLink(shareableLink(link))}`);
-  // A phone that scans the code is unlikely to have the files, and there is no room for both.
+  field("share-frame").value = frameHtml(addressOf(embeddedLink(link)));
+  // A phone that scans the code hardly has the files, and there is no room for both.
   byId("share-code", HTMLDetailsElement).open = local.length === 0;
   showCode(address);
   byId("share-said").textContent = "";
@@ -101,3 +109,6 @@ async function copy(id, done, failed) {
 button("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "Couldn't copy the link. It is selected: copy it with the keyboard."));
 button("share-copy-frame").addEventListener("click", () => copy("share-frame", "Embed code copied.", "Couldn't copy the embed code. It is selected: copy it with the keyboard."));
 byId("share-code-toggle").addEventListener("click", () => requestAnimationFrame(() => byId("share-code").scrollIntoView({ block: "center" })));
+// The system's own sheet, where there is one.
+button("share-native").hidden = !("share" in navigator);
+button("share-native").addEventListener("click", () => navigator.share({ title: document.title, url: field("share-link").value }).catch(() => {}));

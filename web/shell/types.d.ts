@@ -36,6 +36,11 @@ export interface ShellCalls {
   record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean): Promise<string | undefined>;
   cancelRecording(): void;
   share(link: string): void;
+  visit(address: string): void;
+  hasFullscreen(): boolean;
+  toggleFullscreen(): void;
+  theme(): string;
+  setTheme(theme: string): void;
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
   warn(message: string): void;
@@ -56,7 +61,7 @@ export interface Bindings {
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;
-  open(items: ReadItem[], role: Role, isPrivate: boolean): Promise<string>;
+  open(items: ReadItem[], role: Role, isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
   refuse(problem: string): void;

@@ -136,7 +136,7 @@ pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Opt
 /// Returns a source with the current separator: a model inside an archive is `ARCHIVE#!/MEMBER`, but an early version wrote
 /// `ARCHIVE#/MEMBER`.
 pub fn with_current_member(text: &str) -> String {
-    match text.split_once("#/") {
+    match text.split_once("#/").filter(|_| !text.contains(MEMBER_SEPARATOR)) {
         Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
             format!("{file}{MEMBER_SEPARATOR}{member}")
         }
@@ -348,7 +348,7 @@ pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {
 
 /// Returns the words of `show`, each with its flag and the flag's value if the word is present. The mesh and its shadow are on
 /// by default, so their words hide them.
-fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 14] {
+fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 15] {
     [
         ("no-mesh", &mut show.mesh, false),
         ("skeleton", &mut show.skeleton, true),
@@ -363,6 +363,7 @@ fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static st
         ("over", &mut show.over, true),
         ("error", &mut show.error, true),
         ("boxes", &mut show.boxes, true),
+        ("controls", &mut show.controls, true),
         ("smooth", &mut show.smooth, true),
     ]
 }

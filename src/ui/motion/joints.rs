@@ -34,8 +34,8 @@ pub(super) struct TableView {
     lines: Option<Rc<Lines>>,
     /// The joint last scrolled to.
     scrolled_to: Option<usize>,
-    /// A joint was just selected here: scroll its details into view, but no further than needed.
-    reveal: bool,
+    /// Number and top of the row that was just pressed: it stays there while the details of another one close above it.
+    pressed: Option<(usize, f32)>,
 }
 
 /// Whether the table can be ordered by parts of the body.
@@ -234,12 +234,17 @@ impl Table<'_, '_> {
         let is_chosen = *chosen == Some(row.number);
         let indents = if *by_body || !search.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
         let many = lines.len() > MANY_ROWS;
+        let top = ui.cursor().top();
+        if let Some((_, pressed_top)) = tab.table.pressed.take_if(|(number, _)| *number == row.number && is_chosen) {
+            ui.scroll_with_delta_animation(vec2(0.0, pressed_top - top), egui::style::ScrollAnimation::none());
+            ui.ctx().request_repaint();
+        }
         match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
                 // Already visible: it was just pressed.
                 tab.table.scrolled_to = joint;
-                tab.table.reveal = joint.is_some();
+                tab.table.pressed = joint.map(|joint| (joint, top));
                 self.out.commands.push(Command::SelectJoint(joint));
             }
             Some(Pressed::Source) => tab.picking = Some(Picking::new(self.pairing.index, row.number)),
@@ -247,10 +252,7 @@ impl Table<'_, '_> {
         }
         if let Some(texts) = detail.as_ref().filter(|_| is_chosen) {
             let about = detail::About { shown: self.shown, pairing: self.pairing, map: self.map, row, texts };
-            let opened = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response;
-            if std::mem::take(&mut tab.table.reveal) {
-                opened.scroll_to_me(None);
-            }
+            ui.scope(|ui| detail::show(ui, &about, tab, self.out));
         }
     }
 }

@@ -1,9 +1,9 @@
-//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility, expressions and single
+//! What clips animate besides joints, in the Info tab: materials, lights, cameras, visibility, expressions and single
 //! morph weights.
 
 use egui::Ui;
 
-use super::report::{fact, short};
+use super::report::{aligned, fact};
 use crate::anim::{PropertyChannel, PropertyTarget};
 use crate::library::Model;
 use crate::state::title;
@@ -39,7 +39,7 @@ fn value(shown: &Shown<'_>, model: &Model, channel: &PropertyChannel) -> Option<
     match channel.target {
         PropertyTarget::MorphWeight(joint, target) => {
             let range = model.asset.skeleton.morph_range(joint);
-            Some(short(*frame.pose().morph_weights.get(range)?.get(target)?))
+            Some(aligned(&[*frame.pose().morph_weights.get(range)?.get(target)?]).concat())
         }
         PropertyTarget::Visibility(_) => {
             let is_visible = frame.properties().get(channel.target)?.x != 0.0;
@@ -47,7 +47,7 @@ fn value(shown: &Shown<'_>, model: &Model, channel: &PropertyChannel) -> Option<
         }
         target => {
             let numbers = frame.properties().get(target)?.to_array();
-            Some(numbers[..target.width()].iter().map(|&number| short(number)).collect::<Vec<_>>().join("  "))
+            Some(aligned(&numbers[..target.width()]).join("  "))
         }
     }
 }

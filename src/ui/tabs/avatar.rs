@@ -1,4 +1,4 @@
-//! Avatars: expressions, gaze and spring bones in the Display tab, licence and authors in the File tab.
+//! Avatars: expressions, gaze and spring bones in the Display tab, licence and authors in the Info tab.
 
 use egui::Ui;
 

@@ -129,6 +129,11 @@ fn special_overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         let boxes = !show.boxes;
         out.commands.push(Command::SetShow(Show { boxes, skeleton: show.skeleton || boxes, ..show }));
     }
+    let has_controls = shown.library.active().is_some_and(|model| model.rig().has_controls());
+    if has_controls && controls::switch(ui, text::CONTROL_BONES, show.controls) {
+        let controls = !show.controls;
+        out.commands.push(Command::SetShow(Show { controls, skeleton: show.skeleton || controls, ..show }));
+    }
     let lacks_normals = |geometry: &Geometry| geometry.normals.is_empty() && geometry.topology == Topology::Triangles;
     let any_lacks_normals =
         |model: &Model| model.asset.meshes.iter().flat_map(|mesh| &mesh.primitives).any(lacks_normals);

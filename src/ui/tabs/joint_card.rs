@@ -4,7 +4,7 @@ use egui::{RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::formula;
-use super::report::short;
+use super::report::aligned;
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
@@ -164,10 +164,10 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
         ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, font, palette.weak_text);
         let font = egui::FontId::monospace(12.0);
         let width = (rect.width() - 60.0) / 3.0;
-        let texts = numbers.to_array().map(|number| match unit {
-            "°" => formula::fixed(number, 1) + "°",
-            _ => short(number),
-        });
+        let texts = match unit {
+            "°" => numbers.to_array().map(|number| formula::fixed(number, 1) + "°").into(),
+            _ => aligned(&numbers.to_array()),
+        };
         for (column, text) in texts.iter().enumerate() {
             let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
             ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);

@@ -26,9 +26,9 @@ pub enum Tab {
     /// Skinning method, overlays, expressions and morph targets.
     Display,
     /// Contents, licence, parts, extensions and warnings of the file.
-    File,
+    Info,
     /// Camera, light, background, up axis, images and videos.
-    View,
+    Camera,
     /// Joint map and retargeting options. Hidden while there are no motions.
     Motion,
 }
@@ -39,8 +39,8 @@ impl Tab {
         match self {
             Self::Scene => "Scene",
             Self::Display => "Display",
-            Self::File => "File",
-            Self::View => "View",
+            Self::Info => "Info",
+            Self::Camera => "Camera",
             Self::Motion => "Motion",
         }
     }
@@ -48,18 +48,18 @@ impl Tab {
 
 /// Shows the tab bar and the open tab.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let tabs = [Tab::Scene, Tab::Display, Tab::File, Tab::View, Tab::Motion].map(|tab| (tab, tab.label()));
+    let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
-    if let Some(tab) = controls::segmented(ui, Some(local.layout.open_tab(shown.library)), &tabs[..count]) {
+    if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count]) {
         local.layout.tab = tab;
     }
-    ui.add_space(4.0);
+    ui.add_space(6.0);
     match local.layout.open_tab(shown.library) {
         // Has a scroll area of its own.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
-        Tab::File => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
+        Tab::Info => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
         Tab::Motion => motion::show(ui, shown, local, out),
-        Tab::View => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
+        Tab::Camera => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }
 }

@@ -1,9 +1,10 @@
-//! The File tab: the contents of the file, and its problems.
+//! The Info tab: the contents of the file, and its problems.
 
 use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
+use super::formula::fixed;
 use super::{animated, avatar};
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
@@ -163,7 +164,7 @@ fn size_text(size: [f32; 3]) -> String {
     let [x, y, z] = size.map(|length| match largest {
         100.0..1e6 => format!("{length:.1}"),
         0.01..100.0 => format!("{length:.3}"),
-        _ => short(length),
+        _ => format!("{length:.1e}"),
     });
     format!("{x} × {y} × {z} m")
 }
@@ -181,25 +182,28 @@ fn grouped(number: usize) -> String {
     text
 }
 
-/// Formats a number with about three decimals, or with an exponent where those would show nothing.
-pub fn short(number: f32) -> String {
-    let size = number.abs();
-    if size == 0.0 || !number.is_finite() {
-        format!("{}", number + 0.0)
-    } else if !(0.0005..1e6).contains(&size) {
-        format!("{number:.1e}")
-    } else if size < 0.01 {
-        format!("{number:.4}")
-    } else if size >= 100.0 {
-        format!("{number:.1}")
-    } else {
-        format!("{number:.3}")
-    }
+/// Formats numbers with the same decimals, as many as suit the largest, so that they stand below each other in columns.
+pub fn aligned(numbers: &[f32]) -> Vec<String> {
+    let decimals = match numbers.iter().map(|number| number.abs()).fold(0.0, f32::max) {
+        100.0.. => 1,
+        0.00005..0.01 => 4,
+        _ => 3,
+    };
+    numbers.iter().map(|&number| fixed(number, decimals)).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::size_text;
+    use super::{aligned, size_text};
+
+    #[test]
+    fn numbers_have_the_same_decimals_and_no_exponents() {
+        assert_eq!(aligned(&[1.0, -2.2e-6, 0.25]), ["1.000", "0.000", "0.250"]);
+        assert_eq!(aligned(&[-2.2e-6, 0.0, 1e-7]), ["0.000", "0.000", "0.000"]);
+        assert_eq!(aligned(&[0.0012, -0.0001, 0.0]), ["0.0012", "-0.0001", "0.0000"]);
+        assert_eq!(aligned(&[154.72, -0.04, 3.0]), ["154.7", "0.0", "3.0"]);
+        assert_eq!(aligned(&[f32::NAN, 1.0]), ["NaN", "1.000"]);
+    }
 
     #[test]
     fn the_lengths_of_a_size_have_the_same_decimals() {

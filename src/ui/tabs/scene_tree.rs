@@ -1,4 +1,4 @@
-//! The Scene tab: every node of the file as a tree, and above it the selected joint and vertex.
+//! The Scene tab: every node of the file as a tree, and below it the selected joint and vertex.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,9 @@ use crate::state::{Command, ViewerState, title};
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
 const ROW_HEIGHT: f32 = 26.0;
-const MIN_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
+const MIN_TREE_HEIGHT: f32 = 6.0 * ROW_HEIGHT;
+/// Share of the tab's height. Always the same, so that selecting a joint moves no row.
+const TREE_SHARE: f32 = 0.4;
 
 /// What the tree remembers about one model. Joints are numbered as in the file.
 #[derive(Debug, Default)]
@@ -23,8 +25,6 @@ pub struct SceneTree {
     collapsed: HashSet<usize>,
     /// The joint that the tree last scrolled to.
     scrolled_to: Option<usize>,
-    /// The joint that it scrolls to in the next pass.
-    scroll_next: Option<usize>,
 }
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -34,23 +34,19 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    let height = ui.available_height();
-    // Everything scrolls together when the cards leave too little room for the tree.
-    ScrollArea::vertical().id_salt("scene").auto_shrink([false, false]).show(ui, |ui| {
-        let top = ui.cursor().top();
-        ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
-        ui.add_space(4.0);
-        cards(ui, shown, model, selected, local, out);
-        ui.add_space(6.0);
+    let height = (TREE_SHARE * ui.available_height()).max(MIN_TREE_HEIGHT);
+    // Everything scrolls together when there is too little room for the cards.
+    controls::scrolled(ui, "scene", |ui| {
         clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);
         ui.add_space(2.0);
-        let left = (top + height - ui.cursor().top()).max(MIN_TREE_HEIGHT);
-        ui.allocate_ui(vec2(ui.available_width(), left), |ui| local.scene_tree.show(ui, shown, model, out));
+        ui.allocate_ui(vec2(ui.available_width(), height), |ui| local.scene_tree.show(ui, shown, model, out));
+        ui.add_space(6.0);
+        cards(ui, shown, model, selected, local, out);
     });
 }
 
 /// The selected joint and vertex. The vertex comes first while it is shown, because its rows select joints; while it is only
-/// a switch, the joint comes first.
+/// a switch, it comes last.
 fn cards(
     ui: &mut Ui,
     shown: &Shown<'_>,
@@ -59,16 +55,14 @@ fn cards(
     local: &mut UiState,
     out: &mut Output,
 ) {
-    let Some(joint) = selected else {
-        vertex(ui, shown, model, local, out);
-        controls::hint(ui, "Select a joint here or in the viewport to see its transforms.");
-        return;
-    };
     let vertex_first = local.vertex_probe.is_on(shown);
     if vertex_first {
         vertex(ui, shown, model, local, out);
     }
-    controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, &mut local.joint_card, out));
+    match selected {
+        Some(joint) => controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, &mut local.joint_card, out)),
+        None => controls::hint(ui, "Select a joint here or in the viewport to see its transforms."),
+    }
     if !vertex_first {
         vertex(ui, shown, model, local, out);
     }
@@ -120,7 +114,7 @@ impl SceneTree {
                 };
                 match tree_row(ui, row, &line) {
                     Some(Pressed::Row) => {
-                        (self.scrolled_to, self.scroll_next) = (Some(number), Some(number));
+                        self.scrolled_to = Some(number);
                         out.commands.push(Command::SelectJoint((!line.is_selected).then_some(number)));
                     }
                     Some(Pressed::Triangle) if line.is_collapsed => _ = self.collapsed.remove(&number),
@@ -163,17 +157,11 @@ impl SceneTree {
             .collect()
     }
 
-    /// The scroll offset that shows a newly selected joint, one pass after the selection: by then its card has its height,
-    /// and egui does not clamp the offset to the tree's old range.
+    /// The scroll offset that shows a newly selected joint.
     fn scroll_offset(&mut self, ui: &Ui, shown: &Shown<'_>, asset: &Asset, rows: &[Row]) -> Option<f32> {
         const ROWS_ABOVE: f32 = 4.0;
         let selected = shown.state.selection.joint;
         if self.scrolled_to == selected {
-            return None;
-        }
-        if self.scroll_next != selected {
-            self.scroll_next = selected;
-            ui.ctx().request_repaint();
             return None;
         }
         self.scrolled_to = selected;

@@ -1,4 +1,4 @@
-//! The View tab: camera, light, background, up axis, images and videos.
+//! The Camera tab: camera, light, background, up axis, images and videos.
 
 use egui::{RichText, Ui};
 
@@ -23,6 +23,19 @@ pub struct PictureSettings {
 impl Default for PictureSettings {
     fn default() -> Self {
         Self { size: [1920, 1080], transparent: false, frames_per_sec: 30 }
+    }
+}
+
+impl PictureSettings {
+    /// An image with these settings.
+    pub fn image(&self) -> Saved {
+        Saved::Picture { size: self.size, transparent: self.transparent }
+    }
+
+    /// A video with these settings.
+    pub fn video(&self) -> VideoSettings {
+        let Self { size, transparent, frames_per_sec } = *self;
+        VideoSettings { size, frames_per_sec, transparent }
     }
 }
 
@@ -74,9 +87,8 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
         ui.add_enabled(enabled, button)
     };
-    let PictureSettings { size, transparent, .. } = *settings;
     if wide(ui, true, text::SAVE_IMAGE).clicked() {
-        out.actions.push(UiAction::Save(Saved::Picture { size, transparent }));
+        out.actions.push(UiAction::Save(settings.image()));
     }
     ui.add_space(4.0);
     let rates = [24, 30, 60].map(|rate| (rate, text::frames_per_sec(rate)));
@@ -86,8 +98,7 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     }
     let record = wide(ui, shown.is_animated(), text::RECORD);
     if record.on_hover_text("Renders the played range once, frame by frame, as MP4 or WebM.").clicked() {
-        let frames_per_sec = settings.frames_per_sec;
-        out.actions.push(UiAction::Record(VideoSettings { size, frames_per_sec, transparent }));
+        out.actions.push(UiAction::Record(settings.video()));
     }
 }
 

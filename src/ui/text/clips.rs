@@ -1,19 +1,13 @@
 //! The clips panel and the transport.
 
 // Clips
-/// Button that opens files.
-pub const OPEN: &str = "Open…";
-/// Button that borrows motion from another file, or loads a joint map.
-pub const BORROW_MOTION: &str = "Motion…";
-/// Button that shares a link to the view.
-pub const SHARE: &str = "Share…";
 /// Heading of the clip list.
 pub const CLIPS_SECTION: &str = "CLIPS";
 /// Row of the clip list for no clip. The transport shows it in place of the time.
 pub const REST_POSE: &str = "Rest pose";
 /// Shown for a model without clips.
 pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
-    “Motion…” to take another model's clips.";
+    “Borrow motion…” to take another model's clips.";
 /// Shown for a model without clips that cannot borrow any.
 pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so it can't borrow any. Skin its mesh to a skeleton and export it \
     again; for an .obj of the exercise, open its .skel and .attach as well.";
@@ -93,9 +87,14 @@ pub fn seconds(time_secs: f64, duration_secs: f64) -> String {
     format!("{time_secs:.2} / {duration_secs:.2} s")
 }
 
-/// Returns the numbers of the current and the last frame, counted from 0.
-pub fn frames(frame: f64, last: f64) -> String {
-    format!("Frame {frame:.0} / {last:.0}")
+/// Returns the numbers of the current and the last frame, counted from 0, and their rate.
+pub fn frames(frame: f64, last: f64, per_sec: f64) -> String {
+    format!("Frame {frame:.0} / {last:.0} at {} fps", (10.0 * per_sec).round() / 10.0)
+}
+
+/// Returns the time and the frame under the pointer.
+pub fn time_and_frame(secs: f64, per_sec: f64) -> String {
+    format!("{secs:.2} s · frame {:.0}", (secs * per_sec + 1e-4).floor())
 }
 
 /// Returns the accessible name of a foot's contact track.

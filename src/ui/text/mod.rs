@@ -1,12 +1,14 @@
 //! Texts of controls that tests look for, so that each can change in one place. By subject; shared ones are here.
 
 mod clips;
+mod header;
 mod motion;
 mod properties;
 mod tabs;
 mod viewport;
 
 pub use clips::*;
+pub use header::*;
 pub use motion::*;
 pub use properties::*;
 pub use tabs::*;

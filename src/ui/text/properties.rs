@@ -1,4 +1,4 @@
-//! Properties that clips animate besides joints, in the File tab.
+//! Properties that clips animate besides joints, in the Info tab.
 
 use std::borrow::Cow;
 

@@ -125,16 +125,20 @@ pub const COMPARE_RESTS: &str = "Compare rest poses";
 pub const SKELETON: &str = "Skeleton";
 /// Switch that replaces the octahedral bones; turning it on also shows the skeleton.
 pub const SKELETON_BOXES: &str = "Skeleton as spheres and boxes";
+/// Switch that adds bones without influence on a mesh; turning it on also shows the skeleton.
+pub const CONTROL_BONES: &str = "Control bones";
 /// Switch that colours the mesh by the selected joint's influence.
 pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
 /// Shown while the weights are on and no joint is selected.
 pub const JOINT_WEIGHTS_HINT: &str = "Select a joint in the viewport or in the Scene tab to see its influence.";
+/// Below the scale of the weights, in the viewport.
+pub const WEIGHT_LEGEND: &str = "weight (grey: none)";
 /// Switch that computes normals for meshes without any.
 pub const SMOOTH_SURFACE: &str = "Smooth surface";
 /// Button that undoes all edits of the morph sliders.
 pub const RESET_MORPHS: &str = "Reset to clip";
 
-// Avatar, in the Display and File tabs
+// Avatar, in the Display and Info tabs
 /// Switch for spring bones.
 pub const SPRINGS: &str = "Spring bones";
 /// Label of the choice of what the eyes look at.
@@ -148,7 +152,7 @@ pub const LOOK_AT_POINT: &str = "At a point";
 /// Button that returns all expressions to the clip.
 pub const RESET_EXPRESSIONS: &str = "Reset expressions";
 
-/// Returns the name of a mesh's first-person flag in the File tab.
+/// Returns the name of a mesh's first-person flag in the Info tab.
 pub fn first_person(mesh: &str) -> String {
     format!("First person: {mesh}")
 }
@@ -175,7 +179,7 @@ pub fn split_words(key: &str) -> String {
     words.replace("ussage", "usage")
 }
 
-// View tab
+// Camera tab
 /// Button that looks at the model's front.
 pub const FRONT: &str = "Front";
 /// Button that looks at the model from its left.
@@ -249,7 +253,7 @@ pub fn frames_done(done: u32, count: u32) -> String {
     format!("{done} of {count} frames")
 }
 
-// File tab
+// Info tab
 /// Row of the file report: the format of the file.
 pub const FORMAT: &str = "Format";
 /// Row of the file report: the number of nodes.

@@ -3,7 +3,7 @@
 // Viewport and layout
 /// Accessible name of the 3D view.
 pub const VIEWPORT: &str = "Viewport";
-/// Narrow screens: button that opens the clips sheet. Also the number of clips in the File tab.
+/// Narrow screens: button that opens the clips sheet. Also the number of clips in the Info tab.
 pub const CLIPS: &str = "Clips";
 /// Narrow screens: button that opens the inspector sheet.
 pub const INSPECTOR: &str = "Inspector";
@@ -17,18 +17,12 @@ pub const HIDE_INSPECTOR: &str = "Hide inspector";
 pub const SHOW_INSPECTOR: &str = "Show inspector";
 /// Close button of a sheet.
 pub const CLOSE_SHEET: &str = "Close panel";
-/// Viewport button that opens files while the clips panel is closed.
-pub const OPEN_FILES: &str = "Open files";
-/// Button that opens the gallery of samples.
-pub const SAMPLES: &str = "Samples";
 /// What [`FRAME_ALL_KEY`] does, in the help.
 pub const FRAME_ALL: &str = "Fit everything in view";
 /// Button that fits everything into the viewport, with its key.
 pub const FRAME_ALL_KEY: &str = "Fit everything in view (F)";
 
 // Help
-/// Button that opens and closes the help, with its key.
-pub const HELP: &str = "Keys (?)";
 /// Title of the help.
 pub const HELP_TITLE: &str = "Keys and gestures";
 /// Close button of the help.
@@ -53,13 +47,7 @@ pub const SHOW_REFUSED_ALONE: &str = "Show its skeleton";
 pub const MAP_REFUSED_MANUALLY: &str = "Map joints manually";
 /// Button on a toast that reports an undoable step.
 pub const UNDO: &str = "Undo";
-/// Accessible name of the path prompt's text field.
-pub const PATH: &str = "Path";
-/// Path prompt: button that opens the path.
-pub const PROMPT_OPEN: &str = "Open";
-/// Path prompt: button that saves to the path.
-pub const PROMPT_SAVE: &str = "Save";
-/// Button that closes the path prompt, or ends a recording.
+/// Button that closes a list, or ends a recording.
 pub const CANCEL: &str = "Cancel";
 
 /// Returns the label of the progress bar while a file loads.

@@ -1,6 +1,7 @@
 //! The viewport: what pointer and fingers do there, what is painted over the scene, and what floats above everything for a
 //! while. Whoever draws the scene fills in its pixels.
 
+mod about;
 pub mod awaited;
 mod buttons;
 mod camera;
@@ -11,7 +12,6 @@ pub mod labels;
 pub mod notices;
 pub mod overlays;
 pub mod panes;
-pub mod path_prompt;
 mod recording;
 pub mod sheet;
 
@@ -83,9 +83,7 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
         hover::show(ui, painter, &response, shown, local, out);
     }
     keys::listen(ui.ctx(), shown, local, out);
-    if !shown.state.page.embed {
-        buttons::show(ui, rect, local, out);
-    }
+    buttons::show(ui, rect, shown, local, out);
 }
 
 /// Marks a transparent background.

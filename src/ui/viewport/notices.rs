@@ -2,7 +2,6 @@
 
 use egui::{Align, Align2, Area, Color32, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2};
 
-use super::path_prompt::PathPrompt;
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::{Output, Shown, UiAction, style, text};
 
@@ -21,8 +20,6 @@ pub struct Messages {
     pub progress: Option<Progress>,
     /// The latest one; a new toast replaces it.
     pub toast: Option<Toast>,
-    /// Open until the user answers or cancels it.
-    pub path_prompt: Option<PathPrompt>,
 }
 
 /// A load under way.

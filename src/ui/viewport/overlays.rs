@@ -2,7 +2,7 @@
 
 use egui::{Align2, Context, Id, Order, Rect, Stroke, Ui, vec2};
 
-use super::{awaited, path_prompt, recording, sheet};
+use super::{about, awaited, recording, sheet};
 use crate::ui::{Output, Shown, UiState, is_narrow, motion, style};
 
 /// Call last; `viewport` is the viewport's rectangle.
@@ -15,7 +15,7 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
     awaited::show(ui, viewport, &shown, out);
     local.messages.show(ui, viewport, &shown, out);
     local.help.show(ui.ctx());
-    path_prompt::show(ui.ctx(), local, out);
+    about::show(ui.ctx(), &mut local.about_open, out);
     recording::show(ui.ctx(), local, out);
     motion::banner(ui.ctx(), viewport, &shown, local);
     motion::picker(ui.ctx(), &shown, local, out);

@@ -84,10 +84,29 @@ pub fn segmented_about<T: Copy + PartialEq>(
     chosen: Option<T>,
     choices: &[(T, &str)],
 ) -> Option<T> {
+    segments(ui, about, chosen, choices, false)
+}
+
+/// The tabs of a panel, of which one is open, above a line; returns the one that was pressed.
+pub fn tabs<T: Copy + PartialEq>(ui: &mut Ui, open: T, tabs: &[(T, &str)]) -> Option<T> {
+    segments(ui, "", Some(open), tabs, true)
+}
+
+fn segments<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    about: &str,
+    chosen: Option<T>,
+    choices: &[(T, &str)],
+    are_tabs: bool,
+) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
     let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
-    ui.painter().rect_filled(bar, style::CORNER, palette.surface);
+    if are_tabs {
+        ui.painter().hline(bar.x_range(), bar.bottom() + 3.0, Stroke::new(1.0, palette.line));
+    } else {
+        ui.painter().rect_filled(bar, style::CORNER, palette.surface);
+    }
     let width = bar.width() / choices.len().max(1) as f32;
     for (index, (value, label)) in choices.iter().enumerate() {
         let cell = Rect::from_min_size(bar.min + vec2(index as f32 * width, 0.0), vec2(width, bar.height()));

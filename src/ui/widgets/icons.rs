@@ -2,7 +2,7 @@
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-use self::Mark::{Arc, Arrow, Bar, Dot, Fill, Line, Outline, Ring};
+use self::Mark::{Arc, Arrow, Bar, Dot, Fill, Line, Outline};
 use super::style;
 use crate::ui::text;
 
@@ -20,8 +20,8 @@ pub enum Icon {
     Clips,
     Sliders,
     Open,
-    Samples,
-    Help,
+    Share,
+    Borrow,
     Close,
     MarkIn,
     MarkOut,
@@ -90,8 +90,6 @@ enum Mark {
     Outline((f32, f32), (f32, f32)),
     /// A filled circle: centre and radius.
     Dot((f32, f32), f32),
-    /// A circle: centre and radius.
-    Ring((f32, f32), f32),
     /// Part of a circle: centre, radius, and two angles in degrees, clockwise from the right.
     Arc((f32, f32), f32, (f32, f32)),
     /// An arrow head: tip and direction.
@@ -128,18 +126,12 @@ const SLIDERS: &[Mark] = &[
 const FOLDER: &[(f32, f32)] =
     &[(0.06, 0.86), (0.06, 0.16), (0.38, 0.16), (0.5, 0.3), (0.94, 0.3), (0.94, 0.86), (0.06, 0.86), (0.06, 0.7)];
 const OPEN: &[Mark] = &[Line(FOLDER)];
-const SAMPLES: &[Mark] = &[
-    Outline((0.06, 0.06), (0.42, 0.42)),
-    Outline((0.58, 0.06), (0.94, 0.42)),
-    Outline((0.06, 0.58), (0.42, 0.94)),
-    Outline((0.58, 0.58), (0.94, 0.94)),
+const SHARE: &[Mark] = &[
+    Line(&[(0.3, 0.4), (0.12, 0.4), (0.12, 0.95), (0.88, 0.95), (0.88, 0.4), (0.7, 0.4)]),
+    Line(&[(0.5, 0.65), (0.5, 0.2)]),
+    Arrow((0.5, 0.02), (0.0, -1.0)),
 ];
-const HELP: &[Mark] = &[
-    Ring((0.5, 0.5), 0.47),
-    Arc((0.5, 0.4), 0.16, (-180.0, 90.0)),
-    Line(&[(0.5, 0.56), (0.5, 0.64)]),
-    Dot((0.5, 0.77), 0.065),
-];
+const BORROW: &[Mark] = &[Dot((0.16, 0.5), 0.14), Line(&[(0.3, 0.5), (0.75, 0.5)]), Arrow((0.98, 0.5), (1.0, 0.0))];
 const CLOSE: &[Mark] = &[Line(&[(0.15, 0.15), (0.85, 0.85)]), Line(&[(0.85, 0.15), (0.15, 0.85)])];
 const MARK_IN: &[Mark] = &[Line(&[(0.7, 0.08), (0.35, 0.08), (0.35, 0.92), (0.7, 0.92)])];
 const MARK_OUT: &[Mark] = &[Line(&[(0.3, 0.08), (0.65, 0.08), (0.65, 0.92), (0.3, 0.92)])];
@@ -169,8 +161,8 @@ impl Icon {
             Self::Clips => CLIPS,
             Self::Sliders => SLIDERS,
             Self::Open => OPEN,
-            Self::Samples => SAMPLES,
-            Self::Help => HELP,
+            Self::Share => SHARE,
+            Self::Borrow => BORROW,
             Self::Close => CLOSE,
             Self::MarkIn => MARK_IN,
             Self::MarkOut => MARK_OUT,
@@ -198,7 +190,6 @@ pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
                 Shape::rect_stroke(rect, unit * 0.14, thin, egui::StrokeKind::Middle)
             }
             Dot(center, radius) => Shape::circle_filled(at(center), unit * radius, color),
-            Ring(center, radius) => Shape::circle_stroke(at(center), unit * radius, thin),
             Arc(center, radius, degrees) => arc(at(center), unit * radius, degrees, thin),
             Arrow(tip, (x, y)) => arrow_head(at(tip), vec2(x, y), unit * 0.3, color),
         };

@@ -1,6 +1,6 @@
 //! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
 
-use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, FontId, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::style;
 use crate::anim::{Clip, TimeRange};
@@ -11,6 +11,7 @@ pub struct Scrub<'a> {
     /// `None` for the rest pose, which has nothing to scrub.
     pub clip: Option<&'a Clip>,
     pub time_secs: f64,
+    pub frames_per_sec: f64,
     pub range: Option<TimeRange>,
     /// Space left free at the left, for the names of what is shown below at the same scale.
     pub gutter: f32,
@@ -25,6 +26,9 @@ pub enum Scrubbed {
 
 /// Minimum distance between marks in points.
 const MARK_SPACING: f32 = 6.0;
+/// Minimum distance between times in points.
+const TIME_SPACING: f32 = 64.0;
+const FONT: FontId = FontId::proportional(10.5);
 
 /// Positions of a clip's keys at the resolution of the bar, cached between frames.
 #[derive(Debug, Default)]
@@ -33,6 +37,8 @@ pub struct KeyMarks {
     computed_for: Option<(ModelId, usize, u32, u32, usize)>,
     /// From 0 (start) to 1 (end). Of keys closer than [`MARK_SPACING`], only the first has a mark.
     positions: Vec<f32>,
+    /// Times at regular distances, with their positions.
+    times: Vec<(f32, String)>,
 }
 
 impl KeyMarks {
@@ -45,10 +51,12 @@ impl KeyMarks {
         }
         self.computed_for = Some(key);
         self.positions.clear();
+        self.times.clear();
         let duration = clip.duration_secs();
         if duration <= 0.0 {
             return;
         }
+        self.times = times(f64::from(duration), f64::from(width));
         let slots = width.max(1.0) as usize;
         let mut first_key = vec![None; slots + 1];
         for time in clip.key_times_secs() {
@@ -67,8 +75,22 @@ impl KeyMarks {
     }
 }
 
-/// Height of the bar: handles, rail and marks.
-const HEIGHT: f32 = 42.0;
+/// Times from 0 on, as many as fit into a width in points, 1, 2 or 5 of a power of ten apart.
+fn times(duration_secs: f64, width: f64) -> Vec<(f32, String)> {
+    let least = duration_secs * f64::from(TIME_SPACING) / width.max(1.0);
+    let power = 10f64.powf(least.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|&step| step >= least);
+    let step = step.unwrap_or(10.0 * power);
+    let decimals = (-step.log10().floor()).max(0.0) as usize;
+    let count = (duration_secs / step + 1e-6) as usize;
+    (0..=count)
+        .map(|at| at as f64 * step)
+        .map(|secs| ((secs / duration_secs) as f32, format!("{secs:.decimals$} s")))
+        .collect()
+}
+
+/// Height of the bar: handles, rail, marks and times.
+const HEIGHT: f32 = 50.0;
 /// Space for the handles at either end of the rail.
 pub const MARGIN: f32 = 9.0;
 
@@ -129,7 +151,7 @@ pub fn show(
     }
     marks.refresh(clip, clip_id, rail.width());
     paint_rail(ui, &bar, range, scrub.time_secs, marks);
-    paint_playhead(ui, &bar, scrub.time_secs, &seek, is_held);
+    paint_playhead(ui, &bar, scrub, &seek, is_held);
     (scrubbed, is_held)
 }
 
@@ -164,11 +186,18 @@ fn paint_rail(ui: &Ui, bar: &Bar, range: TimeRange, time_secs: f64, marks: &KeyM
         let x = rail.left() + position * rail.width();
         painter.vline(x, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
     }
+    for (position, time) in &marks.times {
+        let at = pos2(rail.left() + position * rail.width(), rail.bottom() + 12.0);
+        let galley = painter.layout_no_wrap(time.clone(), FONT, palette.weak_text);
+        // Within the bar at either end.
+        let x = (at.x - 0.5 * galley.size().x).clamp(bar.rect.left(), bar.rect.right() - galley.size().x);
+        painter.galley(pos2(x, at.y), galley, palette.weak_text);
+    }
 }
 
-fn paint_playhead(ui: &Ui, bar: &Bar, time_secs: f64, seek: &Response, is_held: bool) {
+fn paint_playhead(ui: &Ui, bar: &Bar, scrub: &Scrub<'_>, seek: &Response, is_held: bool) {
     let (palette, painter, rail) = (style::palette(ui), ui.painter(), bar.rail);
-    let center = pos2(bar.x_of(time_secs), rail.center().y);
+    let center = pos2(bar.x_of(scrub.time_secs), rail.center().y);
     let radius = if is_held || seek.hovered() { 8.0 } else { 7.0 };
     painter.circle(center, radius, palette.accent, Stroke::new(2.0, palette.panel));
     if seek.has_focus() {
@@ -178,6 +207,13 @@ fn paint_playhead(ui: &Ui, bar: &Bar, time_secs: f64, seek: &Response, is_held: 
     if let Some(pointer) = pointer {
         let x = pointer.x.clamp(rail.left(), rail.right());
         painter.vline(x, rail.top() - 3.0..=rail.bottom() + 3.0, Stroke::new(1.0, palette.weak_text));
+        let time = text::time_and_frame(bar.secs_at(x), scrub.frames_per_sec);
+        let galley = painter.layout_no_wrap(time, FONT, palette.text);
+        let half = 0.5 * galley.size().x + 4.0;
+        let x = x.clamp(rail.left() + half, (rail.right() - half).max(rail.left() + half));
+        let label = Rect::from_center_size(pos2(x, bar.rect.top() + 8.0), galley.size() + vec2(8.0, 2.0));
+        painter.rect_filled(label, 4.0, palette.pressed);
+        painter.galley(label.center() - 0.5 * galley.size(), galley, palette.text);
     }
 }
 
@@ -190,7 +226,7 @@ fn flag(painter: &egui::Painter, x: f32, top: f32, side: f32, bottom: f32, color
 
 #[cfg(test)]
 mod tests {
-    use super::{KeyMarks, MARK_SPACING};
+    use super::{KeyMarks, MARK_SPACING, times};
     use crate::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
     use crate::library::ModelId;
 
@@ -206,5 +242,19 @@ mod tests {
         assert!(marks.positions.len() > 40, "{}", marks.positions.len());
         let gaps = marks.positions.windows(2).map(|pair| (pair[1] - pair[0]) * width);
         gaps.for_each(|gap| assert!((MARK_SPACING - 0.01..2.0 * MARK_SPACING).contains(&gap), "{gap}"));
+    }
+
+    #[test]
+    fn times_are_round_and_apart() {
+        let told =
+            |duration_secs, width| times(duration_secs, width).into_iter().map(|(_, time)| time).collect::<Vec<_>>();
+        assert_eq!(told(1.07, 640.0), ["0.0 s", "0.2 s", "0.4 s", "0.6 s", "0.8 s", "1.0 s"]);
+        assert_eq!(told(90.0, 400.0), ["0 s", "20 s", "40 s", "60 s", "80 s"]);
+        assert_eq!(told(0.04, 300.0), ["0.00 s", "0.01 s", "0.02 s", "0.03 s", "0.04 s"]);
+        for (duration_secs, width) in [(0.033, 300.0), (1.0, 300.0), (7.3, 900.0), (3600.0, 372.0)] {
+            let positions: Vec<f32> = times(duration_secs, width).into_iter().map(|(position, _)| position).collect();
+            assert!(positions.len() > 1, "{duration_secs}");
+            assert!(positions.windows(2).all(|pair| (pair[1] - pair[0]) * width as f32 >= 63.9), "{duration_secs}");
+        }
     }
 }

@@ -108,6 +108,8 @@ fn undo_works_while_a_button_has_the_focus() {
 #[test]
 fn a_rotation_offset_is_dragged_and_reset() {
     let (mut harness, neck) = neck_details();
+    harness.get_by_label(&text::rotation_offset_about("Y")).scroll_to_me();
+    harness.run();
     let from = harness.get_by_label(&text::rotation_offset_about("Y")).rect().center();
     let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
     assert!(!commands.is_empty());
@@ -115,7 +117,7 @@ fn a_rotation_offset_is_dragged_and_reset() {
     let (axis, angle) = turned.to_axis_angle();
     assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
     assert!(says(&harness, &format!("· {}", text::HAS_OFFSET)));
-    let reset = press(&mut harness, text::RESET_OFFSET);
+    let reset = reach(&mut harness, text::RESET_OFFSET);
     assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
     // The drag was one step, the reset another.
     press(&mut harness, text::UNDO_KEY);

@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use gaitway::editor::Export;
 use gaitway::state::{ClipChoice, Command};
-use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
+use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use super::{motion_tab, reach};
 use crate::bench::{WIDE, motion_bench, press, sample_bench};
@@ -45,16 +45,6 @@ fn files_are_requested_from_the_host() {
         UiAction::RemoveMotion(0),
     ];
     assert_eq!(harness.state().actions, expected);
-}
-
-#[test]
-fn a_path_to_save_to_can_be_typed() {
-    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    let purpose = PathPurpose::Save(Saved::File(Export::Map { motion: 0 }));
-    harness.state_mut().panels.messages.path_prompt = Some(PathPrompt { purpose, path: "map.json".to_owned() });
-    harness.run();
-    press(&mut harness, text::PROMPT_SAVE);
-    assert_eq!(harness.state().actions, [UiAction::UsePath(purpose, "map.json".to_owned())]);
 }
 
 /// The tab shows the motion whose clip plays.

@@ -110,10 +110,16 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     assert!(harness.query_by_label(&text::source_of("Neck")).is_some());
     assert_eq!(press(&mut harness, &text::edit_joint("Neck")), [Command::SelectJoint(None)]);
     assert!(harness.query_by_label(&text::source_of("Neck")).is_none());
-    // Details that open near the bottom are scrolled into view.
-    reach(&mut harness, &text::edit_joint("LeftHand"));
-    let inside = harness.get_by_label(&text::ignore_channels(text::CHANNELS[2])).rect();
-    assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
+    // The row that is pressed stays where it is, also while details close above it.
+    let top = |harness: &Harness<'_, Bench>| harness.get_by_label(&text::edit_joint("LeftHand")).rect().top();
+    press(&mut harness, &text::edit_joint("Neck"));
+    reach(&mut harness, &text::edit_joint("LeftUpperArm"));
+    harness.get_by_label(&text::edit_joint("LeftHand")).scroll_to_me();
+    harness.run();
+    let before = top(&harness);
+    press(&mut harness, &text::edit_joint("LeftHand"));
+    assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some());
+    assert!((top(&harness) - before).abs() < 1.0, "{before} became {}", top(&harness));
     // Selected as by a click in the viewport; the table scrolls to it.
     harness.state_mut().change(|state| {
         state.selection.joint = Some(toes);

@@ -23,7 +23,7 @@ pub struct BorrowedClip {
     pub motion: usize,
     /// Index into the motion's clips.
     pub source_clip: usize,
-    /// Title of a clip without a name: its file, and its number there if the file has several.
+    /// What it is called if its file gives it no name of its own; see [`file_title`].
     pub(super) file_title: String,
     /// The root-motion joint, which carries the character. `None` if nothing is translated.
     pub root: Option<JointIndex>,
@@ -159,7 +159,8 @@ pub(super) fn borrow(
     clips.map(borrow).collect()
 }
 
-fn file_title(source: &str, clip: usize, count: usize) -> String {
+/// Names a clip after its file, with its number there if the file has several.
+pub(super) fn file_title(source: &str, clip: usize, count: usize) -> String {
     let stem = file_stem(source.strip_prefix("sample:").unwrap_or(source));
     if count > 1 { format!("{stem} {clip}") } else { stem.to_owned() }
 }

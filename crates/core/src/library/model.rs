@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use glam::{Affine3A, Vec3};
 
 use super::ImageData;
-use super::borrowed::BorrowedClip;
+use super::borrowed::{BorrowedClip, file_title};
 use super::extent::Extent;
 use super::rig::Rig;
 use crate::anim::{Clip, Joint, JointIndex, PropertyValues, SampleCursor, Skeleton, model_from_joint};
@@ -61,7 +61,7 @@ impl Model {
     /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
         let asset = asset.into();
-        let clip_titles = unique_titles(&asset.clips, &[]);
+        let clip_titles = unique_titles(&source, &asset.clips, &[]);
         let rig = Rig::new(&asset);
         let extent = Extent::new(&asset, &rig);
         Self {
@@ -134,7 +134,7 @@ impl Model {
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;
         self.borrowed_revision += 1;
-        self.clip_titles = unique_titles(&self.asset.clips, &self.borrowed);
+        self.clip_titles = unique_titles(&self.source, &self.asset.clips, &self.borrowed);
         let own = self.asset.clips.len();
         if let Ok(mut swept) = self.swept.lock() {
             swept.retain(|key, _| key.clip.is_none_or(|clip| clip < own));
@@ -307,14 +307,22 @@ impl Model {
     }
 }
 
-/// Titles by index: each clip's name, otherwise its number in its own file.
-fn unique_titles(own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<String> {
-    let own = own.iter().enumerate().map(|(index, clip)| (clip, format!("Clip {index}")));
+/// The name of every clip that Mixamo exports, alone or within a longer one such as `Armature|mixamo.com|Layer0`.
+const MIXAMO_CLIP: &str = "mixamo.com";
+
+/// Titles by index: each clip's name, otherwise its number in its own file. Mixamo's clips are called as their file is.
+fn unique_titles(source: &str, own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<String> {
+    let title = |index: usize, clip: &Clip| match clip.name().trim() {
+        "" => format!("Clip {index}"),
+        _ => file_title(source, index, own.len()),
+    };
+    let own = own.iter().enumerate().map(|(index, clip)| (clip, title(index, clip)));
     let borrowed = borrowed.iter().map(|borrowed| (&borrowed.clip, borrowed.file_title.clone()));
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let mut titles = Vec::new();
     for (clip, unnamed) in own.chain(borrowed) {
-        let base = if clip.name().trim().is_empty() { unnamed } else { clip.name().to_owned() };
+        let is_named = !clip.name().trim().is_empty() && !clip.name().contains(MIXAMO_CLIP);
+        let base = if is_named { clip.name().to_owned() } else { unnamed };
         let mut title = base.clone();
         loop {
             let count = seen.entry(title.clone()).or_insert(0);

@@ -20,6 +20,8 @@ pub struct RigBone {
     pub head: JointIndex,
     /// The joint it ends at, a child of `head`.
     pub tail: Option<JointIndex>,
+    /// It leads to something that moves a mesh. Others are controls, as of an inverse kinematics rig.
+    pub deforms: bool,
 }
 
 impl Rig {
@@ -40,16 +42,18 @@ impl Rig {
             }
         }
         fill_gaps(asset, &mut real);
+        let deforming = deforming(asset, &real);
         let mut has_child = vec![false; skeleton.len()];
         let mut bones = Vec::new();
         for joint in skeleton.joints().filter(|joint| real[joint.get()]) {
             if let Some(parent) = skeleton.parent(joint).filter(|parent| real[parent.get()]) {
                 has_child[parent.get()] = true;
-                bones.push(RigBone { head: parent, tail: Some(joint) });
+                let deforms = deforming[parent.get()] && deforming[joint.get()];
+                bones.push(RigBone { head: parent, tail: Some(joint), deforms });
             }
         }
         for joint in skeleton.joints().filter(|joint| real[joint.get()] && !has_child[joint.get()]) {
-            bones.push(RigBone { head: joint, tail: None });
+            bones.push(RigBone { head: joint, tail: None, deforms: deforming[joint.get()] });
         }
         let roots = asset.clips.iter().map(|clip| root_of_clip(asset, clip, &in_skin)).collect();
         Self { real, bones, roots, skin_joints }
@@ -63,6 +67,11 @@ impl Rig {
     /// Returns the bones between real joints, then one without a tail for each end of a chain.
     pub fn bones(&self) -> &[RigBone] {
         &self.bones
+    }
+
+    /// Whether some bones move no mesh.
+    pub fn has_controls(&self) -> bool {
+        self.bones.iter().any(|bone| !bone.deforms)
     }
 
     /// Number of distinct joints in the skins.
@@ -119,7 +128,39 @@ fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     }
 }
 
-/// Finds the root-motion joint of a clip for this asset.
+/// Marks real joints that move a mesh themselves or through a joint below, and the ends of limbs. Without a skin, all of them.
+fn deforming(asset: &Asset, real: &[bool]) -> Vec<bool> {
+    let skeleton = &asset.skeleton;
+    let mut moves_mesh = vec![false; skeleton.len()];
+    for instance in &asset.instances {
+        let Some(skin) = instance.skin.and_then(|skin| asset.skins.get(skin)) else {
+            moves_mesh[instance.joint.get()] = true;
+            continue;
+        };
+        for primitive in asset.meshes.get(instance.mesh).into_iter().flat_map(|mesh| &mesh.primitives) {
+            let influences = &primitive.influences;
+            for (&joint, _) in influences.joints.iter().zip(&influences.weights).filter(|(_, weight)| **weight > 0.0) {
+                moves_mesh[skin.joints()[usize::from(joint)].get()] = true;
+            }
+        }
+    }
+    if asset.skins.is_empty() {
+        return real.to_vec();
+    }
+    let (mut above, mut has_child) = (moves_mesh.clone(), vec![false; skeleton.len()]);
+    for joint in skeleton.joints().rev().filter(|joint| real[joint.get()]) {
+        if let Some(parent) = skeleton.parent(joint) {
+            has_child[parent.get()] = true;
+            above[parent.get()] |= above[joint.get()];
+        }
+    }
+    let is_end = |joint: JointIndex| {
+        !has_child[joint.get()] && skeleton.parent(joint).is_some_and(|parent| moves_mesh[parent.get()])
+    };
+    skeleton.joints().map(|joint| real[joint.get()] && (above[joint.get()] || is_end(joint))).collect()
+}
+
+/// Finds the joint whose travel is the character's in a clip for this asset.
 pub(super) fn root_of(asset: &Asset, clip: &Clip) -> Option<JointIndex> {
     root_of_clip(asset, clip, &skin_flags(asset))
 }
@@ -149,4 +190,46 @@ fn root_of_clip(asset: &Asset, clip: &Clip, in_skin: &[bool]) -> Option<JointInd
             asset.skeleton.joints().find(|joint| in_skin[joint.get()])
         })
         .or_else(|| translated().min())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Affine3A, Vec3};
+
+    use super::Rig;
+    use crate::anim::{Joint, JointIndex, Skeleton};
+    use crate::asset::{Asset, AssetParts, MeshInstance};
+    use crate::mesh::{Geometry, Influences, Mesh, Skin};
+
+    /// A body of two joints with an end, and beside it a target with its pole, all in the skin.
+    #[test]
+    fn bones_that_move_no_mesh_are_controls() {
+        let names = ["Root", "Hips", "Head", "Head_End", "IK", "Pole"];
+        let parents = [None, Some(0), Some(1), Some(2), Some(0), Some(4)];
+        let joint = |(name, parent): (&str, Option<usize>)| Joint { name: name.to_owned(), parent, ..Joint::default() };
+        let skeleton = Skeleton::new(names.into_iter().zip(parents).map(joint).collect()).expect("parents come first");
+        let joints: Vec<JointIndex> = skeleton.joints().collect();
+        let matrices = vec![Affine3A::IDENTITY; joints.len()];
+        let skin = Skin::new("Skin".to_owned(), joints, matrices, skeleton.len()).expect("as many matrices");
+        let influences =
+            Influences { stride: 4, joints: [1, 2, 0, 0].repeat(3), weights: [0.5, 0.5, 0.0, 0.0].repeat(3) };
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let geometry =
+            Geometry { file_vertices: 3, positions, indices: vec![0, 1, 2], influences, ..Geometry::default() };
+        let parts = AssetParts {
+            skeleton,
+            meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
+            skins: vec![skin],
+            instances: vec![MeshInstance::new(JointIndex(0), 0, Some(0))],
+            ..AssetParts::default()
+        };
+        let rig = Rig::new(&Asset::new(parts).expect("indices in range"));
+        let names_of = |deforms: bool| {
+            let ends = rig.bones().iter().filter(|bone| bone.deforms == deforms);
+            ends.map(|bone| bone.tail.map_or("", |tail| names[tail.get()])).collect::<Vec<_>>()
+        };
+        assert_eq!(names_of(true), ["Hips", "Head", "Head_End", ""]);
+        assert_eq!(names_of(false), ["IK", "Pole", ""]);
+        assert!(rig.has_controls());
+    }
 }

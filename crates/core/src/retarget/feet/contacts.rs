@@ -17,6 +17,10 @@ const MIN_TREADMILL_SPEED: f64 = 0.07;
 /// How far velocities of feet may be from the moving ground's, as a share of its speed.
 const TREADMILL_SPREAD: f64 = 0.3;
 
+/// Length of the sum of the feet's velocities as a share of the sum of their lengths, 1 if all point the same way. Feet that are
+/// not lifted on their way back have almost 0.
+const MIN_AGREEMENT: f64 = 0.8;
+
 /// Height of the source from its lowest to its highest mapped joint at the aligned rest, in source units.
 pub fn source_height(map: &ResolvedMap, alignment: &Alignment) -> f64 {
     let heights = map.pairs.iter().map(|pair| alignment.source.position(pair.source).y);
@@ -29,20 +33,27 @@ pub fn source_height(map: &ResolvedMap, alignment: &Alignment) -> f64 {
 pub struct SourceContacts {
     /// Whether a foot is in contact with the ground, by foot and time.
     pub touching: Vec<Vec<bool>>,
-    /// Of the ground, in source units per second: not zero under a figure that walks or runs in place.
-    pub ground_velocity: DVec3,
+    pub ground: Ground,
+}
+
+/// How the ground moves below a figure that walks or runs in place, in source units.
+#[derive(Debug)]
+pub struct Ground {
+    /// How far it has moved, by time.
+    pub travel: Vec<DVec3>,
+    /// Its mean speed per second; 0 if it stands still.
+    pub speed: f64,
 }
 
 /// Finds the contacts of feet. `positions` are those of the toes or ankles, by foot and time, in a frame with +Y up; `hips` is the
 /// path of the hips, and `body_height` is in the same unit.
 pub fn source_contacts(times: &[f32], positions: &[Vec<DVec3>], hips: &[DVec3], body_height: f64) -> SourceContacts {
-    let ground_velocity = treadmill_velocity(times, positions, hips, body_height);
+    let ground = moving_ground(times, positions, hips, body_height);
     let on_ground = |positions: &Vec<DVec3>| {
-        let travel = |&time: &f32| ground_velocity * f64::from(time);
-        let relative: Vec<DVec3> = positions.iter().zip(times).map(|(at, time)| *at - travel(time)).collect();
-        contacts(times, &relative, body_height, TREADMILL_SPREAD * ground_velocity.length())
+        let relative: Vec<DVec3> = positions.iter().zip(&ground.travel).map(|(at, travel)| *at - *travel).collect();
+        contacts(times, &relative, body_height, TREADMILL_SPREAD * ground.speed)
     };
-    SourceContacts { touching: positions.iter().map(on_ground).collect(), ground_velocity }
+    SourceContacts { touching: positions.iter().map(on_ground).collect(), ground }
 }
 
 /// Whether the foot is in contact at each time. `slack` is added to the speed that a foot in contact may have.
@@ -78,27 +89,72 @@ fn low_height(mut heights: Vec<f64>) -> f64 {
     if at < heights.len() { *heights.select_nth_unstable_by(at, f64::total_cmp).1 } else { f64::INFINITY }
 }
 
-/// Velocity at which the ground passes below a figure that walks or runs in place: the median of its feet's while they are low.
-/// Zero if the hips travel, the feet are slow, or their velocities have little in common.
-fn treadmill_velocity(times: &[f32], positions: &[Vec<DVec3>], hips: &[DVec3], body_height: f64) -> DVec3 {
-    let mut low = Vec::new();
+/// The ground below a figure that walks or runs in place moves like its feet while they are low: at their median velocity or,
+/// if only their directions agree, at that of whichever foot is low. It stands still if the hips travel, the feet are slow, or
+/// their velocities have little in common.
+fn moving_ground(times: &[f32], positions: &[Vec<DVec3>], hips: &[DVec3], body_height: f64) -> Ground {
+    let low = low_velocities(times, positions, body_height);
+    let all: Vec<DVec3> = low.iter().flatten().copied().collect();
+    let travel = match (hips, times) {
+        ([first, .., last], [from, .., to]) => {
+            ((*last - *first) * HORIZONTAL).length() / f64::from(to - from).max(1e-9)
+        }
+        _ => f64::INFINITY,
+    };
+    let is_treadmill =
+        |speed: f64, slowest: f64| slowest > MIN_TREADMILL_SPEED * body_height && travel < TREADMILL_SPREAD * speed;
+    let middle = DVec3::new(median(all.iter().map(|low| low.x)), 0.0, median(all.iter().map(|low| low.z)));
+    let speed = middle.length();
+    let spread = median(all.iter().map(|low| (*low - middle).length()));
+    if spread < TREADMILL_SPREAD * speed && is_treadmill(speed, speed) {
+        return Ground { travel: times.iter().map(|&time| middle * f64::from(time)).collect(), speed };
+    }
+    // Feet that stand for a quarter of the time stand on ground that stands.
+    let mut speeds: Vec<f64> = all.iter().map(|low| low.length()).collect();
+    speeds.sort_unstable_by(f64::total_cmp);
+    let slowest = speeds.get(speeds.len() / 4).copied().unwrap_or(0.0);
+    let sum = all.iter().sum::<DVec3>().length();
+    let speed = sum / all.len().max(1) as f64;
+    if sum <= MIN_AGREEMENT * speeds.iter().sum::<f64>() || !is_treadmill(speed, slowest) {
+        return Ground { travel: vec![DVec3::ZERO; times.len()], speed: 0.0 };
+    }
+    let known = times.iter().zip(&low).filter(|(_, low)| !low.is_empty());
+    let known = known.map(|(&time, low)| (time, low.iter().sum::<DVec3>() / low.len() as f64));
+    Ground { travel: integrated(times, &known.collect::<Vec<_>>()), speed }
+}
+
+/// Horizontal velocities of the feet that are low, by time.
+fn low_velocities(times: &[f32], positions: &[Vec<DVec3>], body_height: f64) -> Vec<Vec<DVec3>> {
+    let mut low = vec![Vec::new(); times.len()];
     for positions in positions {
         let ground = low_height(positions.iter().map(|position| position.y).collect());
-        let is_low = |at: &usize| positions[*at].y - ground < HEIGHT[0] * body_height;
-        low.extend((0..positions.len()).filter(is_low).map(|at| velocity(times, positions, at) * HORIZONTAL));
+        for (at, low) in low.iter_mut().enumerate() {
+            if positions[at].y - ground < HEIGHT[0] * body_height {
+                low.push(velocity(times, positions, at) * HORIZONTAL);
+            }
+        }
     }
-    let ([first, .., last], [from, .., to]) = (hips, times) else { return DVec3::ZERO };
-    if low.is_empty() {
-        return DVec3::ZERO;
+    low
+}
+
+/// Integrates velocities that are known at some times, in between linear and beyond them constant.
+fn integrated(times: &[f32], known: &[(f32, DVec3)]) -> Vec<DVec3> {
+    let velocity = |time: f32| match known.partition_point(|(known, _)| *known <= time) {
+        0 => known.first().map_or(DVec3::ZERO, |first| first.1),
+        next if next == known.len() => known[next - 1].1,
+        next => {
+            let [(from, before), (to, after)] = [known[next - 1], known[next]];
+            before.lerp(after, f64::from((time - from) / (to - from)))
+        }
+    };
+    let mut travel = DVec3::ZERO;
+    let mut travels = Vec::with_capacity(times.len());
+    for (at, &time) in times.iter().enumerate() {
+        let before = times[at.saturating_sub(1)];
+        travel += velocity(before).midpoint(velocity(time)) * f64::from(time - before);
+        travels.push(travel);
     }
-    let middle = DVec3::new(median(low.iter().map(|low| low.x)), 0.0, median(low.iter().map(|low| low.z)));
-    let speed = middle.length();
-    let spread = median(low.iter().map(|low| (*low - middle).length()));
-    let travel = ((*last - *first) * HORIZONTAL).length() / f64::from(to - from).max(1e-9);
-    let is_treadmill = speed > MIN_TREADMILL_SPEED * body_height
-        && spread < TREADMILL_SPREAD * speed
-        && travel < TREADMILL_SPREAD * speed;
-    if is_treadmill { middle } else { DVec3::ZERO }
+    travels
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
@@ -130,6 +186,40 @@ mod tests {
         for frame in [36, 45, 54] {
             assert!(!found[frame], "in the air at frame {frame}");
         }
+    }
+
+    /// A second of steps in place: each foot is on the ground for half of it, and may go back meanwhile.
+    fn uneven_steps(goes_back: bool) -> SourceContacts {
+        let times: Vec<f32> = (0..=60).map(|frame| frame as f32 / 60.0).collect();
+        let foot = |phase: f32| {
+            let at = |time: &f32| {
+                let part = f64::from((time + phase).fract());
+                let (stance, swing) = ((part / 0.5).min(1.0), ((part - 0.5) / 0.5).max(0.0));
+                // It starts slowly and ends fast.
+                let back = if goes_back { 0.8 * (stance.powi(2) - swing) } else { 0.0 };
+                DVec3::new(0.0, 0.3 * (std::f64::consts::PI * swing).sin().max(0.0).sqrt(), -back)
+            };
+            times.iter().map(at).collect::<Vec<DVec3>>()
+        };
+        let hips = vec![DVec3::Y; times.len()];
+        source_contacts(&times, &[foot(0.0), foot(0.5)], &hips, 1.8)
+    }
+
+    #[test]
+    fn the_ground_moves_with_feet_of_uneven_speed() {
+        let SourceContacts { touching, ground } = uneven_steps(true);
+        // 0.8 m in each half of a second.
+        assert!((ground.speed - 1.6).abs() < 0.3, "{}", ground.speed);
+        let travelled = ground.travel[60].z - ground.travel[0].z;
+        assert!((travelled + 1.6).abs() < 0.3, "{travelled}");
+        for (foot, frames) in [(0, [10, 20, 25]), (1, [40, 50, 55])] {
+            assert!(frames.iter().all(|&frame| touching[foot][frame]), "{:?}", touching[foot]);
+        }
+    }
+
+    #[test]
+    fn the_ground_stands_below_feet_that_step_on_the_spot() {
+        assert_eq!(uneven_steps(false).ground.speed, 0.0);
     }
 
     #[test]

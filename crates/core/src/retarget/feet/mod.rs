@@ -1,5 +1,6 @@
 //! Foot contacts, and feet planted where they touch the ground.
 
+mod body;
 mod contacts;
 mod leg;
 mod limit;

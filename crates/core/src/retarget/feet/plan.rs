@@ -53,35 +53,58 @@ pub struct Stage<'a> {
 #[derive(Debug)]
 pub struct Plan {
     pub leg: Leg,
-    pub moves: Vec<DVec3>,
+    pub moves: Vec<FootMove>,
+}
+
+/// Where a foot should go while the body stays where it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FootMove {
+    pub by: DVec3,
+    /// How firmly it is held there: 1 in contact, 0 where it goes with the body.
+    pub hold: f64,
+    /// Minimum of `by.y`, which keeps the sole out of the ground.
+    pub lift: f64,
+}
+
+impl FootMove {
+    /// How far the leg must move the foot once the body has moved by `shift`.
+    pub fn after(self, shift: DVec3) -> DVec3 {
+        let by = self.by - self.hold * shift;
+        DVec3 { y: by.y.max(self.lift - shift.y), ..by }
+    }
 }
 
 /// Moves a foot so that, during each contact, its toes stay in one place on the ground.
 pub fn plan(stage: Stage, leg: &LegContacts, contacts: &[Range<usize>]) -> Plan {
-    let mut moves = vec![DVec3::ZERO; stage.times.len()];
+    let mut moves = vec![FootMove::default(); stage.times.len()];
     for (index, contact) in contacts.iter().enumerate() {
-        moves[contact.clone()].copy_from_slice(&contact_offsets(stage, leg, contact.clone()));
+        let offsets = contact_offsets(stage, leg, contact.clone());
+        for (at, by) in contact.clone().zip(offsets) {
+            moves[at] = FootMove { by, hold: 1.0, lift: 0.0 };
+        }
         let after = contacts.get(index + 1).map_or(moves.len(), |next| next.start);
         let before = index.checked_sub(1).map_or(0, |before| contacts[before].end);
         ease(stage.times, &mut moves, contact.start, before..contact.start);
         ease(stage.times, &mut moves, contact.end - 1, contact.end..after);
     }
-    for (by, pose) in moves.iter_mut().zip(stage.poses) {
+    for (foot, pose) in moves.iter_mut().zip(stage.poses) {
         let depth = stage.ground - leg.sole.lowest(pose);
-        by.y = by.y.max(depth.min(MAX_LIFT * stage.height));
+        foot.lift = depth.min(MAX_LIFT * stage.height);
     }
     Plan { leg: leg.leg, moves }
 }
 
 /// Fades the move at one end of a contact out over the gap beside it. A gap shorter than one transition is crossed in a single
 /// blend: the weights from both sides add up to 1.
-fn ease(times: &[f32], moves: &mut [DVec3], end: usize, gap: Range<usize>) {
+fn ease(times: &[f32], moves: &mut [FootMove], end: usize, gap: Range<usize>) {
     let secs = |at: usize| (f64::from(times[at]) - f64::from(times[end])).abs();
     let across = if gap.start > end { gap.end } else { gap.start.wrapping_sub(1) };
     let ease_secs = if across < times.len() { secs(across).min(EASE_SECS) } else { EASE_SECS };
-    let by = moves[end];
+    let by = moves[end].by;
     for at in gap {
-        moves[at] += by * smooth(1.0 - secs(at) / ease_secs.max(1e-9));
+        let share = smooth(1.0 - secs(at) / ease_secs.max(1e-9));
+        moves[at].by += by * share;
+        moves[at].hold += share;
     }
 }
 

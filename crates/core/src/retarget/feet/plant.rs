@@ -8,7 +8,8 @@ use std::ops::Range;
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use super::contacts::{SourceContacts, source_contacts, source_height};
+use super::body::{body_shifts, near};
+use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
 use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
 use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
@@ -30,7 +31,7 @@ const MAX_DROP: f64 = 0.1;
 const MAX_STEP_SECS: f32 = 1.0 / 30.0;
 
 /// How far planting may turn a thigh or shin, and how fast: at 60 frames per second, by about 4° per frame.
-const MAX_TURN_DEGREES: f64 = 60.0;
+const MAX_TURN_DEGREES: f64 = 45.0;
 const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
 
 /// How far a foot may end from where it begins, as a share of the hips' height, in a clip that repeats in place.
@@ -79,32 +80,34 @@ pub fn planted_channels(
     let mut scratch = Scratch::default();
     let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
     let soles = Soles::new(transfer);
-    let (mut legs, ground_velocity) = legs_in_contact(transfer, &soles, &times);
+    let (mut legs, source_ground) = legs_in_contact(transfer, &soles, &times);
     let lowered_metres = hover(transfer, &legs, &poses, soles.ground)?;
     lower(transfer, &legs, &mut poses, lowered_metres);
     let contacts = legs.iter().map(|leg| ranges(&leg.touching).len()).sum();
-    let travel = ground_travel(transfer, &times, ground_velocity);
+    let travel = ground_travel(transfer, &times, &source_ground);
     let height = transfer.hips.map_or_else(|| leg_length(transfer, &legs), |hips| hips.height);
     let mut samples = Samples { times, poses, travel };
     let own = 0..samples.times.len();
     let own = if is_cycle(&legs, &samples, height) { samples.repeat(&mut legs) } else { own };
     let Samples { times, poses, travel } = &samples;
-    let is_moving = ground_velocity != DVec3::ZERO;
+    let is_moving = source_ground.speed > 0.0;
     let stage = Stage { times, poses, ground: soles.ground, travel, is_moving, height };
     let plans: Vec<Plan> = legs.iter().map(|leg| plan(stage, leg, &ranges(&leg.touching))).collect();
-    let drops = drops(stage, &plans);
-    let rotations = leg_rotations(transfer, stage, &plans, &drops, own.clone());
-    let hips = transfer.hips_pair().map(|pair| pair.target);
-    let hips = hips.filter(|_| lowered_metres != 0.0 || drops.iter().any(|&drop| drop > 0.0));
-    let translation = hips.map(|hips| lowered_hips(transfer, stage, hips, &drops, own.clone()));
+    let hips = transfer.hips_carrier();
+    let shifts = if hips.is_some() { body_shifts(times, &plans) } else { vec![DVec3::ZERO; times.len()] };
+    let drops = drops(stage, &plans, &shifts);
+    let rotations = leg_rotations(transfer, stage, &plans, &shifts, &drops, own.clone());
+    let moves: Vec<DVec3> = shifts.iter().zip(&drops).map(|(shift, drop)| shift - DVec3::Y * drop).collect();
+    let hips = hips.filter(|_| lowered_metres != 0.0 || moves.iter().any(|&by| by != DVec3::ZERO));
+    let translation = hips.map(|hips| moved_hips(transfer, stage, hips, &moves, own.clone()));
     let mut channels = kept_channels(clip, resampled, hips, &rotations);
     channels.extend(translation);
     for (joint, keys) in rotations {
         let keys = keys.into_iter().map(DQuat::as_quat).collect();
         channels.push(NewChannel::resampled(joint, times[own.clone()].to_vec(), Keys::Rotation(keys)));
     }
-    let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * ground_velocity.length();
-    Some((channels, Planting { contacts, ground_metres_per_sec: (speed > 0.0).then_some(speed), lowered_metres }))
+    let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * source_ground.speed;
+    Some((channels, Planting { contacts, ground_metres_per_sec: is_moving.then_some(speed), lowered_metres }))
 }
 
 /// The channels of the clip that planting leaves alone.
@@ -130,11 +133,11 @@ fn kept_channels(
     kept.collect()
 }
 
-/// The hips' translation, lowered with the poses and then for the legs to reach.
-fn lowered_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, drops: &[f64], own: Range<usize>) -> NewChannel {
+/// The hips' translation, lowered with the poses and then moved for the feet.
+fn moved_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, moves: &[DVec3], own: Range<usize>) -> NewChannel {
     let translation = |at: usize| {
         let pose = &stage.poses[at];
-        let position = pose.position(hips) - DVec3::Y * drops[at];
+        let position = pose.position(hips) + moves[at];
         pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
     };
     let translations = own.clone().map(translation).collect();
@@ -215,8 +218,8 @@ fn dense_times(clip: &Clip) -> Vec<f32> {
     times
 }
 
-/// Legs of which hip, knee and ankle are mapped, and the velocity of the ground below the source.
-fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<LegContacts>, DVec3) {
+/// Legs of which hip, knee and ankle are mapped, and how the ground moves below the source.
+fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<LegContacts>, Ground) {
     let sides = [
         [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
         [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
@@ -234,10 +237,10 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
     }
     let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
     let height = source_height(transfer.map, transfer.alignment);
-    let SourceContacts { touching, ground_velocity } = source_contacts(times, &positions, &hips, height);
+    let SourceContacts { touching, ground } = source_contacts(times, &positions, &hips, height);
     let legs = legs.into_iter().zip(touching);
     let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching });
-    (legs.collect(), ground_velocity)
+    (legs.collect(), ground)
 }
 
 /// Ranges in which all are true.
@@ -273,7 +276,7 @@ fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground:
 
 /// Lowers the hips and their descendants, and shins and feet that are parented elsewhere.
 fn lower(transfer: &Transfer, legs: &[LegContacts], poses: &mut [WorldPose], by: f64) {
-    let Some(hips) = transfer.hips_pair().map(|pair| pair.target) else { return };
+    let Some(hips) = transfer.hips_carrier() else { return };
     let skeleton = transfer.target_skeleton;
     let tops = legs.iter().flat_map(|LegContacts { leg, .. }| [leg.knee, leg.ankle]);
     let tops: Vec<JointIndex> = tops.chain([hips]).collect();
@@ -285,27 +288,23 @@ fn lower(transfer: &Transfer, legs: &[LegContacts], poses: &mut [WorldPose], by:
 }
 
 /// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.
-fn ground_travel(transfer: &Transfer, times: &[f32], source_velocity: DVec3) -> Vec<DVec3> {
+fn ground_travel(transfer: &Transfer, times: &[f32], source: &Ground) -> Vec<DVec3> {
     let (laws, _) = rotation_laws(transfer);
     let removed = removed_travel(transfer, &laws, times);
-    let velocity = transfer.hips.map_or(1.0, |hips| hips.scale) * source_velocity;
-    times.iter().enumerate().map(|(at, &time)| velocity * f64::from(time) - removed.horizontal(at)).collect()
+    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    source.travel.iter().enumerate().map(|(at, &travel)| scale * travel - removed.horizontal(at)).collect()
 }
 
 /// How far the hips come down at each time for all legs to reach, smooth over time.
-fn drops(stage: Stage, plans: &[Plan]) -> Vec<f64> {
+fn drops(stage: Stage, plans: &[Plan], shifts: &[DVec3]) -> Vec<f64> {
     let Stage { times, poses, height, .. } = stage;
-    let needed = |(index, pose): (usize, &WorldPose)| {
-        let drops = plans.iter().map(|plan| drop_to_reach(&plan.leg, pose, plan.moves[index]));
+    let needed = |(at, pose): (usize, &WorldPose)| {
+        let drops = plans.iter().map(|plan| drop_to_reach(&plan.leg, pose, plan.moves[at].after(shifts[at])));
         drops.fold(0.0, f64::max).min(MAX_DROP * height)
     };
     let needed: Vec<f64> = poses.iter().enumerate().map(needed).collect();
     // The mean of the neighbourhood's maxima is never less than what is needed.
-    let near = |index: usize| {
-        let from = times.partition_point(|&time| f64::from(times[index] - time) > EASE_SECS);
-        let to = times.partition_point(|&time| f64::from(time - times[index]) <= EASE_SECS);
-        from..to
-    };
+    let near = |at: usize| near(times, at, EASE_SECS);
     let max: Vec<f64> = (0..times.len()).map(|at| needed[near(at)].iter().copied().fold(0.0, f64::max)).collect();
     (0..times.len()).map(|at| max[near(at)].iter().sum::<f64>() / near(at).len() as f64).collect()
 }
@@ -315,14 +314,16 @@ fn leg_rotations(
     transfer: &Transfer,
     stage: Stage,
     plans: &[Plan],
+    shifts: &[DVec3],
     drops: &[f64],
     own: Range<usize>,
 ) -> Vec<(JointIndex, Vec<DQuat>)> {
     let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
     for Plan { leg, moves } in plans {
+        let moves = moves.iter().zip(shifts).map(|(foot, shift)| foot.after(*shift));
         let steps = stage.poses.iter().zip(moves).zip(drops);
-        let solved = steps.map(|((pose, &by), &drop)| solve_leg(leg, pose, by, drop));
+        let solved = steps.map(|((pose, by), &drop)| solve_leg(leg, pose, by, drop));
         let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
         limit_turns(stage.times, &mut thighs, max_turn, max_rate);
         limit_turns(stage.times, &mut shins, max_turn, max_rate);

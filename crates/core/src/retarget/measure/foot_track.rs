@@ -68,12 +68,11 @@ pub fn foot_tracks(transfer: &Transfer, times: &[f32], mut feet: Vec<FootPositio
     let source: Vec<Vec<DVec3>> = feet.iter().map(|foot| foot.source.clone()).collect();
     let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
     let height = source_height(transfer.map, transfer.alignment);
-    let SourceContacts { touching, ground_velocity } = source_contacts(times, &source, &hips, height);
+    let SourceContacts { touching, ground } = source_contacts(times, &source, &hips, height);
     let (mut slide, mut source_slide, mut hover) = (Mean::default(), Mean::default(), Mean::default());
     let mut tracks = Vec::with_capacity(feet.len());
     for (foot, touching) in feet.iter_mut().zip(touching) {
-        for (at, &time) in times.iter().enumerate() {
-            let travel = ground_velocity * f64::from(time);
+        for (at, &travel) in ground.travel.iter().enumerate() {
             foot.source[at] -= travel;
             foot.target[at] -= scale * travel;
         }

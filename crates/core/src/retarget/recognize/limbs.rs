@@ -35,6 +35,17 @@ fn span(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
     0.5 * (one + other)
 }
 
+/// Mean length of the forearm that the skin shows beyond the last joint of an arm; None if the arm goes on or has no skin.
+fn forearm_beyond(shape: &Shape, twins: &Twins) -> Option<f32> {
+    let length = |chain: &Vec<JointIndex>| {
+        let last = *chain.last().filter(|&&last| shape.tree.children(last).is_empty())?;
+        let region = shape.evidence.region(last)?;
+        Some(region.min.midpoint(region.max).distance(shape.position(last)))
+    };
+    // The middle of forearm and hand is just above the wrist.
+    Some(1.2 * 0.5 * (length(&twins.chains[0])? + length(&twins.chains[1])?))
+}
+
 /// Mean length of the path between two joints of a limb.
 fn path_length(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
     let [one, other] = twins.chains.each_ref().map(|chain| shape.length(&chain[a..=b]));
@@ -158,7 +169,16 @@ pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[LimbJoint]) -> Option<Vec
             + misplaced
             + 0.3 * off((arm + forearm) / leg_length, 0.62)
     };
-    let mut parts = decide(&triples(count, cost), [LeftUpperArm, LeftLowerArm, LeftHand]);
+    let mut triples = triples(count, cost);
+    // Of three joints, the last may be an elbow, and a forearm without a joint of its own the rest.
+    if let (3, Some(forearm)) = (count, forearm_beyond(shape, twins)) {
+        let arm = span(shape, twins, 1, 2);
+        let near_spine = (1.0 - sideways(twins, 1) / hips_width).max(0.0);
+        let cost = off(arm / forearm, 1.05) + 0.6 * near_spine + 0.3 * off((arm + forearm) / leg_length, 0.62);
+        triples.push(([1, 2, 3], cost));
+        triples.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    }
+    let mut parts = decide(&triples, [LeftUpperArm, LeftLowerArm, LeftHand]);
     let upper = *parts.first()?;
     if let Some(at) = upper.at.checked_sub(1) {
         let length = span(shape, twins, at, upper.at);

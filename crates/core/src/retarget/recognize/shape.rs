@@ -25,6 +25,9 @@ const MAX_PAIRS: usize = 32;
 /// Maximum distance of the hips above the joint that the legs hang on.
 const MAX_HIPS_ABOVE: usize = 3;
 
+/// How much of the way from the feet to the shoulders of a body that hangs from its chest goes up.
+const MIN_HANGING_RISE: f32 = 0.5;
+
 /// Two limbs that mirror each other, and the joint they hang on.
 #[derive(Debug, Clone)]
 pub(super) struct Twins {
@@ -148,7 +151,7 @@ impl<'a> Shape<'a> {
         let mut count = 0;
         for (&a, &b) in a.iter().zip(b) {
             let segments = [self.distance(above[0], a), self.distance(above[1], b)];
-            if (segments[0] - segments[1]).abs() > 0.12 * segments[0].max(segments[1]) + 0.02 * whole {
+            if (segments[0] - segments[1]).abs() > 0.12 * segments[0].max(segments[1]) + 0.03 * whole {
                 break;
             }
             length += 0.5 * (segments[0] + segments[1]);
@@ -217,40 +220,66 @@ fn body(shape: &Shape, legs: &Twins, arms: &Twins) -> Option<Halves> {
     if arms.base == legs.base || on_leg(arms.base) || !(0.3..3.0).contains(&(arms.length / legs.length)) {
         return None;
     }
-    let hips = shape.trunk_root(legs, arms)?;
-    let trunk = tree.path(hips, arms.base);
-    let (hip, shoulder) = (shape.position(legs.base), shape.middle(arms, 0));
+    let root = shape.trunk_root(legs, arms)?;
+    // A body may also hang from its chest.
+    let hangs = root == arms.base;
+    let (hips, trunk, hip) = if hangs {
+        let above = tree.upwards(legs.base).skip(1).take_while(|&joint| tree.is_under(joint, root));
+        (legs.base, above.collect(), shape.middle(legs, 0))
+    } else {
+        (root, tree.path(root, arms.base), shape.position(legs.base))
+    };
+    let shoulder = shape.middle(arms, 0);
     let feet = shape.middle(legs, legs.chains[0].len() - 1);
     let down = (feet - hip).try_normalize()?;
     let up = (shoulder - feet).try_normalize()?;
-    let is_upright = (shoulder - hip).try_normalize()?.dot(down) < -0.6;
+    // So may an animal, but level.
+    let is_upright = (shoulder - hip).try_normalize()?.dot(down) < -0.6
+        && (!hangs || rise_at_rest(shape, legs, arms) > MIN_HANGING_RISE);
     let line = shape.apart(legs)?;
     let across = (line - up * line.dot(up)).try_normalize()?;
     let is_parallel = shape.apart(arms)?.dot(across).abs() > 0.7;
     if trunk.is_empty() || !is_upright || !is_parallel || shoulder.distance(hip) < 0.15 * legs.length {
         return None;
     }
-    let head = head(shape, arms, up)?;
+    let head = head(shape, legs, arms, up)?;
     Some(Halves { hips, legs: legs.clone(), trunk, arms: arms.clone(), head, up, across })
 }
 
+/// The share of the way from feet to shoulders that goes up, at rest.
+fn rise_at_rest(shape: &Shape, legs: &Twins, arms: &Twins) -> f32 {
+    let middle = |ends: [Option<&JointIndex>; 2]| {
+        let [a, b] = ends.map(|joint| joint.map_or(Vec3::ZERO, |joint| shape.evidence.poses[0][joint.get()]));
+        a.midpoint(b)
+    };
+    let feet = middle(legs.chains.each_ref().map(|chain| chain.last()));
+    let shoulders = middle(arms.chains.each_ref().map(|chain| chain.first()));
+    (shoulders - feet).normalize_or_zero().y
+}
+
 /// The chain above the arms, up to the joint where it forks.
-fn head(shape: &Shape, arms: &Twins, up: Vec3) -> Option<Vec<JointIndex>> {
-    let top = |joint: JointIndex| {
+fn head(shape: &Shape, legs: &Twins, arms: &Twins, up: Vec3) -> Option<Vec<JointIndex>> {
+    let below = |joint: JointIndex| {
         let below =
-            shape.tree.skeleton.joints().skip(joint.get()).take_while(|&other| shape.tree.is_under(other, joint));
-        let heights = below.filter(|joint| shape.tree.usable[joint.get()]).map(|joint| shape.position(joint).dot(up));
-        heights.fold(f32::NEG_INFINITY, f32::max)
+            shape.tree.skeleton.joints().skip(joint.get()).take_while(move |&other| shape.tree.is_under(other, joint));
+        below.filter(|joint| shape.tree.usable[joint.get()])
     };
-    let highest = |joints: &[JointIndex]| {
-        let free = joints.iter().copied().filter(|child| !arms.chains.iter().any(|chain| chain[0] == *child));
-        free.max_by(|&a, &b| top(a).total_cmp(&top(b)).then(b.cmp(&a)))
+    let top =
+        |joint: JointIndex| below(joint).map(|joint| shape.position(joint).dot(up)).fold(f32::NEG_INFINITY, f32::max);
+    // A head without a neck may turn about the very point the arms hang on.
+    let skin_top = |joint: JointIndex| {
+        let regions = below(joint).filter_map(|joint| shape.evidence.region(joint));
+        regions.map(|region| region.min.midpoint(region.max).dot(up)).fold(f32::NEG_INFINITY, f32::max)
     };
-    let first = highest(shape.tree.children(arms.base))?;
-    if top(first) < shape.position(arms.base).dot(up) + 0.02 * arms.length {
-        return None;
-    }
-    Some(shape.unforked(first))
+    let is_free = |child: &JointIndex| {
+        !arms.chains.iter().any(|chain| chain[0] == *child) && !shape.tree.is_under(legs.base, *child)
+    };
+    let highest = |top: &dyn Fn(JointIndex) -> f32| {
+        let free = shape.tree.children(arms.base).iter().copied().filter(is_free);
+        let first = free.max_by(|&a, &b| top(a).total_cmp(&top(b)).then(b.cmp(&a)))?;
+        (top(first) >= shape.position(arms.base).dot(up) + 0.02 * arms.length).then_some(first)
+    };
+    Some(shape.unforked(highest(&top).or_else(|| highest(&skin_top))?))
 }
 
 /// Slots with joint and confidence; the surest first where several are for one joint.
@@ -269,10 +298,12 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
     {
         for (chain, is_left) in twins.chains.iter().zip([is_left, !is_left]) {
             let side = |slot: Slot| if is_left { slot } else { slot.mirrored() };
-            found.extend(limb.iter().map(|part| (side(part.slot), chain[part.at], part.confidence.min(certainty))));
+            // The end of an arm without a hand is not a joint.
+            let joints = limb.iter().filter_map(|part| Some((side(part.slot), *chain.get(part.at)?, part)));
+            found.extend(joints.map(|(slot, joint, part)| (slot, joint, part.confidence.min(certainty))));
             let hand = limb.iter().find(|part| part.slot == LeftHand && part.confidence >= MIN_CONFIDENCE);
             if let Some(hand) = hand {
-                let fingers = fingers::find(shape, chain[hand.at]);
+                let fingers = chain.get(hand.at).map(|&hand| fingers::find(shape, hand)).unwrap_or_default();
                 found.extend(
                     fingers.into_iter().map(|(slot, joint, confidence)| (side(slot), joint, confidence.min(certainty))),
                 );

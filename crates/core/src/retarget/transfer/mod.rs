@@ -22,7 +22,7 @@ use glam::DVec3;
 use super::align::Alignment;
 use super::keys::tracks::SourceTracks;
 use super::map::{Pair, ResolvedMap};
-use super::pose::{Scratch, WorldPose, clip_locals};
+use super::pose::{Scratch, WorldPose, clip_locals, is_within};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Asset, Slot};
 
@@ -47,6 +47,15 @@ impl<'a> Transfer<'a> {
 
     pub fn hips_pair(&self) -> Option<&'a Pair> {
         self.hips.map(|hips| &self.map.pairs[hips.pair])
+    }
+
+    /// The target joint whose translation carries the hips: the hips themselves or, if they hang from a trunk whose root is in
+    /// the chest, that root.
+    pub fn hips_carrier(&self) -> Option<JointIndex> {
+        let hips = self.hips_pair()?.target;
+        let trunk = [Slot::Spine, Slot::Chest, Slot::UpperChest].into_iter().filter_map(|slot| self.pair(slot));
+        let above = trunk.map(|pair| pair.target).filter(|joint| is_within(self.target_skeleton, hips, *joint));
+        above.min().or(Some(hips))
     }
 
     /// Where a joint of the source is in the common frame.

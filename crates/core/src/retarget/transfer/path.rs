@@ -87,7 +87,7 @@ pub fn hips_channels(
 ) -> Vec<NewChannel> {
     let joint = transfer.map.pairs[hips.pair].target;
     let Some(path) = HipsPath::new(transfer, hips) else {
-        return constant_channel(transfer, hips).into_iter().collect();
+        return constant_channel(transfer, hips, laws).into_iter().collect();
     };
     let mut channels = Vec::new();
     if let Some(root) = path.policy.extraction_joint {
@@ -107,15 +107,15 @@ pub fn hips_channels(
         }
         _ => position,
     };
-    let translation = |time: f32| {
-        let world_from_parent = hips_parent_frame(transfer, joint, laws, time);
-        world_from_parent.inverse().transform_point3(seen_from_root(path.at(time), time))
-    };
+    let translation = |time: f32| carried(transfer, hips, laws, time, seen_from_root(path.at(time), time));
     // The tolerance is in the units of the hips' parent.
-    let unit_length = rest_parent_frame(transfer, joint).matrix3.x_axis.length().max(1e-12);
+    let carrier = transfer.hips_carrier().unwrap_or(joint);
+    let unit_length = rest_parent_frame(transfer, carrier).matrix3.x_axis.length().max(1e-12);
     let tolerance = TOLERANCE_OF_HEIGHT * hips.height / unit_length;
-    let positions = resample_positions(&path.times, &jumps(transfer, hips), tolerance, translation);
-    channels.push(NewChannel::resampled_translation(joint, positions));
+    let turning = turning_times(transfer, hips, laws);
+    let times = union(turning.iter().map(Vec::as_slice).chain([path.times.as_slice()]));
+    let positions = resample_positions(&times, &jumps(transfer, hips), tolerance, translation);
+    channels.push(NewChannel::resampled_translation(carrier, positions));
     channels
 }
 
@@ -127,12 +127,34 @@ fn jumps(transfer: &Transfer, hips: &Hips) -> Vec<f32> {
 }
 
 /// Hips that do not move may still be elsewhere than at rest.
-fn constant_channel(transfer: &Transfer, hips: &Hips) -> Option<NewChannel> {
+fn constant_channel(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw]) -> Option<NewChannel> {
     let (pair, tracks) = (&transfer.map.pairs[hips.pair], transfer.tracks);
     let has_channel = ancestry(tracks.skeleton, pair.source).any(|joint| tracks.has_channel[joint.get()]);
-    let parent_from_world = rest_parent_frame(transfer, pair.target).inverse();
-    let translation = parent_from_world.transform_point3(unedited(transfer, hips, 0.0));
-    has_channel.then(|| NewChannel::constant(pair.target, Keys::Translation(vec![translation.as_vec3()])))
+    let carrier = transfer.hips_carrier()?;
+    let translation = carried(transfer, hips, laws, 0.0, unedited(transfer, hips, 0.0));
+    has_channel.then(|| NewChannel::constant(carrier, Keys::Translation(vec![translation.as_vec3()])))
+}
+
+/// The local translation that brings the hips to a position: their own, or that of the joint that carries them.
+fn carried(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw], time_secs: f32, position: DVec3) -> DVec3 {
+    let joint = transfer.map.pairs[hips.pair].target;
+    let world_from_parent = hips_parent_frame(transfer, joint, laws, time_secs);
+    match transfer.hips_carrier().filter(|&carrier| carrier != joint) {
+        None => world_from_parent.inverse().transform_point3(position),
+        Some(carrier) => {
+            let locals = &transfer.alignment.target.locals;
+            let by = position - world_from_parent.transform_point3(locals[joint.get()].translation);
+            let parent_from_world = hips_parent_frame(transfer, carrier, laws, time_secs).inverse();
+            locals[carrier.get()].translation + parent_from_world.transform_vector3(by)
+        }
+    }
+}
+
+/// Key times of the joints between the hips and the joint that carries them, whose turning moves the hips.
+fn turning_times(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw]) -> Vec<Vec<f32>> {
+    let (hips, carrier) = (transfer.map.pairs[hips.pair].target, transfer.hips_carrier());
+    let above = ancestry(transfer.target_skeleton, hips).skip(1).filter(|&joint| Some(joint) >= carrier);
+    above.filter_map(|joint| transfer.map.pair_index(joint)).map(|pair| laws[pair].times().0).collect()
 }
 
 /// `world_from_parent` of the hips at the aligned rest.

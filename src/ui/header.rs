@@ -1,0 +1,155 @@
+//! The header: the name, opening and borrowing on the left; undo, saving, sharing and the menu on the right.
+
+use egui::{Align, Layout, RichText, ThemePreference, Ui};
+
+use super::icons::{Icon, icon_button};
+use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
+use crate::editor::Export;
+use crate::state::active_clip;
+
+const MENU_WIDTH: f32 = 220.0;
+/// Smaller screens have no room for the name.
+const NAME_WIDTH: f32 = 350.0;
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let frame = egui::Frame::new().inner_margin(egui::Margin { left: 10, right: 10, top: 5, bottom: 3 });
+    egui::Panel::top("header").frame(frame).resizable(false).show_separator_line(false).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.set_height(32.0);
+            ui.spacing_mut().item_spacing.x = 4.0;
+            left(ui, local, out);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));
+        });
+    });
+}
+
+/// Whether there is room for the button that shows the samples; otherwise the menu has it.
+fn has_samples(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() >= 800.0
+}
+
+fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
+    panel_button(ui, Sheet::Clips, local);
+    if ui.ctx().content_rect().width() >= NAME_WIDTH {
+        ui.label(RichText::new(text::NAME).strong().size(16.0));
+        ui.add_space(4.0);
+    }
+    if local.layout.is_narrow {
+        if icon_button(ui, Icon::Open, text::OPEN, false).clicked() {
+            out.actions.push(UiAction::OpenFiles);
+        }
+        return;
+    }
+    if ui.button(text::OPEN).on_hover_text("Open a model. You can also drop files anywhere.").clicked() {
+        out.actions.push(UiAction::OpenFiles);
+    }
+    borrow(ui, out);
+    if has_samples(ui) && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
+        out.actions.push(UiAction::ShowGallery);
+    }
+}
+
+fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    panel_button(ui, Sheet::Inspector, local);
+    ui.menu_button(text::MENU, |ui| menu(ui, shown, local, out));
+    let share = match local.layout.is_narrow {
+        true => icon_button(ui, Icon::Share, text::SHARE, false),
+        false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),
+    };
+    if share.clicked() {
+        out.actions.push(UiAction::ShareLink);
+    }
+    if !local.layout.is_narrow {
+        ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
+    }
+    let steps = [
+        (Icon::Redo, text::REDO_STEP, local.host.can_redo, UiAction::Redo),
+        (Icon::Undo, text::UNDO_STEP, local.host.can_undo, UiAction::Undo),
+    ];
+    for (icon, label, enabled, action) in steps {
+        if ui.add_enabled_ui(enabled, |ui| icon_button(ui, icon, label, false)).inner.clicked() {
+            out.actions.push(action);
+        }
+    }
+}
+
+/// Shows or hides a panel.
+fn panel_button(ui: &mut Ui, panel: Sheet, local: &mut UiState) {
+    let layout = &mut local.layout;
+    let is_open = layout.sheet == Some(panel);
+    let (icon, label) = match (panel, layout.is_narrow) {
+        (Sheet::Clips, true) => (Icon::Clips, text::CLIPS),
+        (Sheet::Inspector, true) => (Icon::Sliders, text::INSPECTOR),
+        (Sheet::Clips, false) => (Icon::PanelLeft, if layout.clips_open { text::HIDE_CLIPS } else { text::SHOW_CLIPS }),
+        (Sheet::Inspector, false) => {
+            (Icon::PanelRight, if layout.inspector_open { text::HIDE_INSPECTOR } else { text::SHOW_INSPECTOR })
+        }
+    };
+    if icon_button(ui, icon, label, is_open).clicked() {
+        layout.toggle(panel);
+    }
+}
+
+fn borrow(ui: &mut Ui, out: &mut Output) {
+    let button = ui.button(text::BORROW_MOTION);
+    if button.on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
+        out.actions.push(UiAction::ChooseMotion);
+    }
+}
+
+fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    ui.set_width(MENU_WIDTH);
+    if local.layout.is_narrow {
+        borrow(ui, out);
+        ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
+    }
+    let items = [
+        (text::SAMPLES, local.host.has_gallery && !has_samples(ui), UiAction::ShowGallery),
+        (text::FULL_SCREEN, local.host.has_fullscreen, UiAction::ToggleFullscreen),
+    ];
+    for (label, is_there, action) in items {
+        if is_there && ui.button(label).clicked() {
+            out.actions.push(action);
+        }
+    }
+    if ui.button(text::HELP).clicked() {
+        local.help.is_open = true;
+    }
+    if ui.button(text::ABOUT).clicked() {
+        local.about_open = true;
+    }
+    let themes =
+        [(ThemePreference::System, "System"), (ThemePreference::Light, "Light"), (ThemePreference::Dark, "Dark")];
+    controls::hint(ui, text::THEME);
+    let now = ui.ctx().options(|options| options.theme_preference);
+    if let Some(theme) = controls::segmented_about(ui, text::THEME, Some(now), &themes) {
+        out.actions.push(UiAction::SetTheme(theme));
+    }
+}
+
+/// Everything that can be saved of this view.
+fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    ui.set_width(MENU_WIDTH);
+    let Some(model) = shown.library.active() else { return };
+    let clip = active_clip(model, shown.state);
+    let borrowed = clip.and_then(|clip| Some((clip, model.borrowed(clip)?)));
+    let pictures = &local.picture_settings;
+    let files = [
+        borrowed.map(|(clip, _)| (text::SAVE_GLB, Export::Model { clip })),
+        clip.map(|clip| (text::SAVE_CLIP, Export::Clip { clip })),
+        borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),
+        (model.asset.format == "obj").then_some((text::SAVE_REST_POSE, Export::FullModel { posed: false })),
+        (model.asset.format == "obj").then_some((text::SAVE_CURRENT_POSE, Export::FullModel { posed: true })),
+    ];
+    let files = files.into_iter().flatten().map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
+    let video = shown.is_animated().then(|| (text::RECORD, UiAction::Record(pictures.video())));
+    let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
+    for (label, action) in [image].into_iter().chain(video).chain(files) {
+        if ui.button(label).clicked() {
+            out.actions.push(action);
+        }
+    }
+    if ui.button(text::PICTURE_SETTINGS).clicked() {
+        local.layout.show_tab(Tab::Camera);
+    }
+}

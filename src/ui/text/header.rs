@@ -1,0 +1,49 @@
+//! The header, its menus, and the box about the program.
+
+/// The program's name.
+pub const NAME: &str = "Gaitway";
+/// What the program does.
+pub const TAGLINE: &str = "Watch a 3D character move, and give it the motion of another.";
+/// Button that opens files.
+pub const OPEN: &str = "Open…";
+/// Button that borrows motion from another file, or loads a joint map.
+pub const BORROW_MOTION: &str = "Borrow motion…";
+/// Button that opens the gallery of samples.
+pub const SAMPLES: &str = "Samples";
+/// Menu of what can be saved.
+pub const EXPORT: &str = "Export";
+/// Entry of the export menu that shows the settings of images and videos.
+pub const PICTURE_SETTINGS: &str = "Image and video settings…";
+/// Button that shares a link to the view.
+pub const SHARE: &str = "Share…";
+/// Menu of everything else.
+pub const MENU: &str = "Menu";
+/// Entry of the menu that enters and leaves full screen.
+pub const FULL_SCREEN: &str = "Full screen";
+/// The choice of the panels' theme.
+pub const THEME: &str = "Theme";
+/// Entry of the menu that opens the help, with its key.
+pub const HELP: &str = "Keys and gestures (?)";
+/// Entry of the menu that opens the box about the program.
+pub const ABOUT: &str = "About Gaitway";
+/// The version, in that box.
+pub const VERSION: &str = concat!("Version ", env!("CARGO_PKG_VERSION"));
+/// The licence, in that box.
+pub const LICENCE: &str = "Free and open source: MIT or Apache 2.0, at your option. Your files stay on your computer.";
+/// Link in that box.
+pub const DOCUMENTATION: &str = "Documentation";
+/// Link in that box.
+pub const SOURCE_CODE: &str = "Source code";
+/// Button that closes that box.
+pub const CLOSE_ABOUT: &str = "Close";
+/// Button that undoes the last step, whatever it was, with its key.
+pub const UNDO_STEP: &str = "Undo last step (Ctrl+Z)";
+/// Button that redoes the last undone step, with its key.
+pub const REDO_STEP: &str = "Redo step (Ctrl+Y)";
+/// Button of an embedded view.
+pub const OPEN_PAGE: &str = "Open in Gaitway";
+
+/// Returns the name of the button that borrows the clips of an open model.
+pub fn borrow_from(model: &str) -> String {
+    format!("Borrow the motion of {model}")
+}

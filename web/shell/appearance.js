@@ -1,0 +1,32 @@
+// What the browser lends: full screen, and the theme of page and panels, which is remembered.
+const KEY = "gaitway-theme";
+
+export const hasFullscreen = () => document.fullscreenEnabled;
+
+export function toggleFullscreen() {
+  const done = document.fullscreenElement === null ? document.documentElement.requestFullscreen() : document.exitFullscreen();
+  // The browser refuses when the click was too long ago.
+  done.catch(() => {});
+}
+
+/** Returns `light`, `dark` or, for the system's theme, nothing. */
+export function theme() {
+  try {
+    return localStorage.getItem(KEY) ?? "";
+  } catch {
+    // No storage, as in a frame of another site.
+    return "";
+  }
+}
+
+/** @param {string} name */
+export function setTheme(name) {
+  document.documentElement.style.colorScheme = name;
+  try {
+    localStorage.setItem(KEY, name);
+  } catch {
+    // It lasts as long as the page.
+  }
+}
+
+document.documentElement.style.colorScheme = theme();
