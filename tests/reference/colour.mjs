@@ -91,3 +91,6 @@ function insideOf(one, other) {
     return [-1, 0, 1].every((down) => [-1, 0, 1].every((right) => isObject[at + down * width + right]));
   });
 }
+
+/** @param {number[]} values */
+export const average = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;

@@ -1,5 +1,5 @@
-// Draws a model with the Khronos glTF Sample Renderer and three.js in Chromium, and with `gaitway render`, under the
-// same camera and the same light from an image.
+// Draws a model with the Khronos glTF Sample Renderer, three.js and three-vrm in Chromium, and with `gaitway render`,
+// under the same camera and the same light from an image.
 import { execFile } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
@@ -25,7 +25,20 @@ import { roomImage } from "./room.mjs";
  * @property {Triple} target The point that the camera looks at.
  * @property {number} distance From the eye to the target.
  * @property {number} fov The vertical field of view in degrees.
+ * @property {{ strength: number, towards: Triple }} [key] A directional light, for three-vrm only: the radiance that it
+ *   gives a white surface facing it, and the direction to it.
+ * @property {Record<string, number>} [expressions] Weights by name.
+ * @property {Triple} [look] The point that the avatar looks at.
  */
+
+/**
+ * How an avatar is shown. `yaw` is the camera's, in degrees; `bounds` is what the picture shows instead of everything.
+ * `hasKey`: whether a directional light is added, for MToon only, since three.js compensates other materials for light
+ * that leaves them after several reflections.
+ * @typedef {Pick<View, "expressions" | "look"> & { yaw?: number, bounds?: Bounds, hasKey?: boolean }} Shown
+ */
+
+/** @typedef {{ min: Triple, max: Triple }} Bounds */
 
 /** @typedef {import("./colour.mjs").Triple} Triple */
 
@@ -34,6 +47,8 @@ import { roomImage } from "./room.mjs";
 /** @type {[number, number]} */
 const SIZE = [320, 320];
 const FOV = 35;
+/** The light on MToon; angles in degrees. */
+const KEY = { strength: 0.6, yaw: -30, pitch: 40 };
 
 const run = promisify(execFile);
 
@@ -65,21 +80,7 @@ export async function startReference(environment = roomImage()) {
    * @returns {Promise<Record<"gaitway" | "khronos" | "three", Picture>>}
    */
   const draw = async (file) => {
-    const { bounds, lights } = await inspect(file);
-    const camera = cameraFor(bounds);
-    const relative = path.relative(dataFile(""), file);
-    const model = relative.startsWith("..") ? `/made/${path.basename(file)}` : `/data/${relative}`;
-    const { eye, target, distance } = camera;
-    const view = {
-      model: server.origin + model,
-      environment: `${server.origin}/made/environment.hdr`,
-      hasLights: lights > 0,
-      size: SIZE,
-      eye,
-      target,
-      distance,
-      fov: FOV,
-    };
+    const { camera, view } = await prepare(file, server.origin);
     const [khronos, three] = await page.evaluate(
       async (view) => [await window.reference.khronos(view), await window.reference.three(view)],
       view,
@@ -90,12 +91,67 @@ export async function startReference(environment = roomImage()) {
       three: await decoded(three),
     };
   };
+
+  /**
+   * Draws an avatar at rest, without springs.
+   * @param {string} file
+   * @param {Shown} [shown]
+   * @returns {Promise<Record<"gaitway" | "vrm", Picture>>}
+   */
+  const drawAvatar = async (file, shown = {}) => {
+    const { camera, view } = await prepare(file, server.origin, shown);
+    const vrm = await page.evaluate((view) => window.reference.vrm(view), view);
+    return { gaitway: await drawGaitway(file, hdr, camera, folder, words(shown)), vrm: await decoded(vrm) };
+  };
   const close = async () => {
     await browser.close();
     await server.close();
     fs.rmSync(folder, { recursive: true });
   };
-  return { draw, close, folder };
+  return { draw, drawAvatar, close, folder };
+}
+
+/**
+ * @param {string} file
+ * @param {string} origin
+ * @param {Shown} [shown]
+ */
+async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, look } = {}) {
+  const { bounds, lights } = await inspect(file);
+  const camera = cameraFor(part ?? bounds, yaw);
+  const relative = path.relative(dataFile(""), file);
+  const model = relative.startsWith("..") ? `/made/${path.basename(file)}` : `/data/${relative}`;
+  const { eye, target, distance } = camera;
+  /** @type {View} */
+  const view = {
+    model: origin + model,
+    environment: `${origin}/made/environment.hdr`,
+    hasLights: lights > 0,
+    size: SIZE,
+    eye,
+    target,
+    distance,
+    fov: FOV,
+    key: hasKey ? { strength: KEY.strength, towards: direction(KEY.yaw, KEY.pitch) } : undefined,
+    expressions,
+    look,
+  };
+  return { camera, view };
+}
+
+/**
+ * Returns what the link says about an avatar.
+ * @param {Shown} shown
+ */
+function words({ hasKey, expressions, look }) {
+  const words = [];
+  if (hasKey) words.push(`key=${KEY.strength},${KEY.yaw},${KEY.pitch}`);
+  if (look) words.push(`look=${look.join(",")}`);
+  if (expressions) {
+    const weights = Object.entries(expressions).map(([name, weight]) => `${name}:${weight}`);
+    words.push(`expression=${weights.join(",")}`);
+  }
+  return words;
 }
 
 /** @param {string} file */
@@ -105,14 +161,25 @@ async function inspect(file) {
 }
 
 /**
+ * Returns the direction from the model at a yaw and a pitch, in degrees.
+ * @param {number} yaw
+ * @param {number} pitch
+ * @returns {Triple}
+ */
+function direction(yaw, pitch) {
+  const [y, p] = [yaw, pitch].map((degrees) => (degrees * Math.PI) / 180);
+  return [Math.sin(y) * Math.cos(p), Math.sin(p), Math.cos(y) * Math.cos(p)];
+}
+
+/**
  * Returns a camera in front of the model, a little to the right and above, as near as possible with the whole bounding
  * box in the picture. Yaw and pitch are in degrees.
- * @param {{ min: Triple, max: Triple }} bounds
+ * @param {Bounds} bounds
  */
-function cameraFor({ min, max }) {
-  const [yaw, pitch] = [25, 15];
+function cameraFor({ min, max }, yaw = 25) {
+  const pitch = 15;
   const [y, p] = [yaw, pitch].map((degrees) => (degrees * Math.PI) / 180);
-  const away = [Math.sin(y) * Math.cos(p), Math.sin(p), Math.cos(y) * Math.cos(p)];
+  const away = direction(yaw, pitch);
   const right = [Math.cos(y), 0, -Math.sin(y)];
   const up = [-Math.sin(y) * Math.sin(p), Math.cos(p), -Math.cos(y) * Math.sin(p)];
   /** @type {(component: (axis: number) => number) => Triple} */
@@ -134,11 +201,12 @@ function cameraFor({ min, max }) {
  * @param {string} hdr
  * @param {ReturnType<typeof cameraFor>} camera
  * @param {string} folder
+ * @param {string[]} more Keys of the link.
  */
-async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder) {
+async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder, more = []) {
   const out = path.join(folder, "gaitway.png");
   const camera = [yaw, pitch, distance, ...target].join(",");
-  const link = `clip=&show=no-shadow&background=808080&fov=${FOV}&camera=${camera}`;
+  const link = ["clip=", "show=no-shadow", "background=808080", `fov=${FOV}`, `camera=${camera}`, ...more].join("&");
   await run(program, ["render", file, "--out", out, "--size", SIZE.join("x"), "--environment", hdr, "--view", link]);
   return await decoded(fs.readFileSync(out));
 }

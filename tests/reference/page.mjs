@@ -1,13 +1,14 @@
-// Runs in the browser: draws a glTF with the Khronos glTF Sample Renderer and with three.js, under the same camera and
-// the same light from an image.
+// Runs in the browser: draws a glTF with the Khronos glTF Sample Renderer, three.js or three-vrm, under the same camera
+// and the same light from an image.
 import { GltfState, GltfView, ResourceLoader } from "@khronosgroup/gltf-viewer/dist/gltf-viewer.module.js";
 import * as THREE from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
-import { HDRLoader } from "three/examples/jsm/loaders/HDRLoader.js";
 import { BACKGROUND } from "./colour.mjs";
+import { cameraOf, pixels, threeStage } from "./stage.mjs";
+import { drawVrm } from "./vrm.mjs";
 
 /** @typedef {import("./draw.mjs").View} View */
-/** @typedef {Record<"khronos" | "three", (view: View) => Promise<string>>} Reference */
+/** @typedef {Record<"khronos" | "three" | "vrm", (view: View) => Promise<string>>} Reference */
 
 /**
  * Builds the directional albedo of the Charlie sheen lobe by N·V and roughness, a lookup table that the sample
@@ -70,28 +71,6 @@ function charlieLambda(cos, alpha) {
   return Math.exp(cos < 0.5 ? level(cos) : 2 * level(0.5) - level(1 - cos));
 }
 
-/**
- * Reads the canvas as a PNG in a data URL.
- * @param {WebGL2RenderingContext} gl
- * @param {View} view
- */
-function pixels(gl, { size: [width, height] }) {
-  const rows = new Uint8Array(4 * width * height);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  const image = new ImageData(width, height);
-  // WebGL's first row is at the bottom.
-  const stride = 4 * width;
-  for (let y = 0; y < height; y++) {
-    image.data.set(rows.subarray(stride * y, stride * (y + 1)), stride * (height - 1 - y));
-  }
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [width, height];
-  for (let at = 3; at < image.data.length; at += 4) image.data[at] = 255;
-  /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")).putImageData(image, 0, 0);
-  return canvas.toDataURL("image/png");
-}
-
 /** @param {View} view */
 function canvasContext({ size: [width, height] }) {
   const canvas = document.createElement("canvas");
@@ -144,36 +123,15 @@ async function drawKhronos(view) {
   return pixels(stage.gl, view);
 }
 
-/** @type {ReturnType<typeof startThree> | undefined} */
-let threeStage;
-
-/** @param {View} view */
-async function startThree(view) {
-  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-  renderer.setSize(...view.size);
-  renderer.toneMapping = THREE.NeutralToneMapping;
-  const image = await new HDRLoader().loadAsync(view.environment);
-  image.mapping = THREE.EquirectangularReflectionMapping;
-  const environment = new THREE.PMREMGenerator(renderer).fromEquirectangular(image).texture;
-  return { renderer, environment };
-}
-
 /** @param {View} view */
 async function drawThree(view) {
-  const { renderer, environment } = await (threeStage ??= startThree(view));
+  const { renderer, environment } = await threeStage(view);
   const { scene: model } = await new GLTFLoader().loadAsync(view.model);
   const scene = new THREE.Scene();
-  // Not a scene background: tone mapping would change it.
-  const gray = BACKGROUND / 255;
-  renderer.setClearColor(new THREE.Color().setRGB(gray, gray, gray, THREE.SRGBColorSpace));
   scene.environment = environment;
   scene.add(model);
-  const [near, far] = [view.distance / 100, view.distance * 100];
-  const camera = new THREE.PerspectiveCamera(view.fov, view.size[0] / view.size[1], near, far);
-  camera.position.set(...view.eye);
-  camera.lookAt(...view.target);
-  renderer.render(scene, camera);
+  renderer.render(scene, cameraOf(view));
   return pixels(/** @type {WebGL2RenderingContext} */ (renderer.getContext()), view);
 }
 
-Object.assign(window, { reference: { khronos: drawKhronos, three: drawThree } });
+Object.assign(window, { reference: { khronos: drawKhronos, three: drawThree, vrm: drawVrm } });

@@ -5,7 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
-import { meanDifference } from "./colour.mjs";
+import { average, meanDifference } from "./colour.mjs";
 import { startReference } from "./draw.mjs";
 import { sphereGrid } from "./spheres.mjs";
 
@@ -76,9 +76,6 @@ async function compareAll(names, limits) {
   assert.ok(mean <= limits.onAverage, `${mean}`);
   assert.ok(mean < ofThree, `three.js is closer: ${ofThree} instead of ${mean}`);
 }
-
-/** @param {number[]} values */
-const average = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 describe("pictures against the Khronos glTF Sample Renderer", { skip: skipWithoutData }, () => {
   before(async () => {

@@ -1,4 +1,4 @@
-// A grid of spheres in a GLB made in code: roughness grows to the right, and each row has a material.
+// Grids of spheres in GLBs made in code.
 
 const RINGS = 32;
 const SEGMENTS = 64;
@@ -24,26 +24,36 @@ function unitSphere() {
   return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
 }
 
-/** Returns the GLB's bytes. */
+/** Returns a GLB in which roughness grows to the right, and each row has a material. */
 export function sphereGrid() {
-  const { positions, indices } = unitSphere();
-  const cells = ROWS.flatMap(([color, metallicFactor], row) =>
-    Array.from({ length: COLUMNS }, (_, column) => ({ color, metallicFactor, row, column })),
+  return grid(
+    ROWS.map(([color, metallicFactor]) =>
+      Array.from({ length: COLUMNS }, (_, column) => {
+        const [baseColorFactor, roughnessFactor] = [[color, color, color, 1], column / (COLUMNS - 1)];
+        return { pbrMetallicRoughness: { baseColorFactor, metallicFactor, roughnessFactor } };
+      }),
+    ),
   );
-  const materials = cells.map(({ color, metallicFactor, column }) => {
-    const [baseColorFactor, roughnessFactor] = [[color, color, color, 1], column / (COLUMNS - 1)];
-    return { pbrMetallicRoughness: { baseColorFactor, metallicFactor, roughnessFactor } };
-  });
+}
+
+/**
+ * Returns a GLB with a sphere for each material.
+ * @param {object[][]} rows Materials, top row first.
+ * @param {object} [more] More members of the document.
+ */
+export function grid(rows, more) {
+  const { positions, indices } = unitSphere();
+  const cells = rows.flatMap((materials, row) => materials.map((material, column) => ({ material, row, column })));
   const [min, max] = [[-1, -1, -1], [1, 1, 1]];
   const json = {
     asset: { version: "2.0" },
     scene: 0,
     scenes: [{ nodes: cells.map((_, index) => index) }],
     nodes: cells.map(({ row, column }, mesh) => ({ mesh, translation: [2.1 * column, -2.1 * row, 0] })),
-    meshes: materials.map((_, material) => ({
+    meshes: cells.map((_, material) => ({
       primitives: [{ attributes: { POSITION: 0, NORMAL: 0 }, indices: 1, material }],
     })),
-    materials,
+    materials: cells.map(({ material }) => material),
     accessors: [
       { bufferView: 0, componentType: 5126, count: positions.length / 3, type: "VEC3", min, max },
       { bufferView: 1, componentType: 5125, count: indices.length, type: "SCALAR" },
@@ -53,6 +63,7 @@ export function sphereGrid() {
       { buffer: 0, byteOffset: positions.byteLength, byteLength: indices.byteLength },
     ],
     buffers: [{ byteLength: positions.byteLength + indices.byteLength }],
+    ...more,
   };
   return glb(json, Buffer.concat([Buffer.from(positions.buffer), Buffer.from(indices.buffer)]));
 }
