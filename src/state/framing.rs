@@ -36,7 +36,7 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     }
 }
 
-/// Aspect ratio where the viewport is unknown; suits most windows. [`apply`](super::apply) resolves the automatic camera with
+/// Aspect ratio where the viewport is unknown; suits most windows. [`apply`](fn@super::apply) resolves the automatic camera with
 /// it, so callers that know the viewport send `SetCamera` with [`resolve_camera`] first.
 pub const DEFAULT_ASPECT: f32 = 1.6;
 

@@ -78,7 +78,7 @@ impl Vec3x4 {
 }
 
 impl Quatx4 {
-    /// Expects unit quaternions; see [`unit`].
+    /// Expects unit quaternions; see [`unit()`].
     pub fn new(lanes: [Quat; LANES]) -> Self {
         Self {
             x: Vec4::from(lanes.map(|lane| lane.x)),
