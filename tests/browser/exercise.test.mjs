@@ -42,12 +42,12 @@ for (const renderer of BACK_ENDS) {
     onPage("three files dropped together are bent by a slider without stutter", {}, async (page) => {
       await dropModel(page, "Model1");
       await whenShown(page, VERTICES);
+      await openInspector(page);
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
       // The selected joint's “Pose manually” switch, then the handle of the first slider.
       await apply(page, { joint: 5 });
-      await openInspector(page);
       // egui finds what is under the pointer in the previous frame.
       await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
       await untilStill(page);
