@@ -229,11 +229,12 @@ impl Editor {
     }
 
     /// Keeps the clip that was active before its map changed. A map without pairs leaves no clip: the rest pose is active until
-    /// the clip is back, unless the user chooses another one.
+    /// the clip is back, unless the user chooses another one. If its motion is gone, the state's own clip is active.
     pub(super) fn follow_clip(&mut self, playing: Option<ClipIdentity>) {
         let waited = self.waiting_clip.take().filter(|_| self.state.playhead.clip == ClipChoice::RestPose);
         let Some(clip) = playing.or(waited) else { return };
-        if !self.keep_retargeted(&clip) {
+        let is_loaded = self.library.motions().iter().any(|motion| clip.is_of(motion));
+        if is_loaded && !self.keep_retargeted(&clip) {
             self.state.playhead.clip = ClipChoice::RestPose;
             self.waiting_clip = Some(clip);
         }

@@ -153,7 +153,8 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
         return;
     }
     shortcuts(context, out);
-    if context.egui_wants_keyboard_input() {
+    // An open menu has the arrow keys and Esc.
+    if context.egui_wants_keyboard_input() || egui::Popup::is_any_open(context) {
         return;
     }
     // While the modal help is open, only the keys that close it work.

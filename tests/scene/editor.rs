@@ -186,6 +186,19 @@ fn notices_say_how_to_go_back() {
 }
 
 #[test]
+fn the_clip_before_a_motion_plays_again_after_undo() {
+    let mut editor = editor("sample:pilot");
+    let before = editor.state().playhead.clip.clone();
+    open(&mut editor, "sample:walk");
+    let borrowed = editor.state().playhead.clip.clone();
+    assert_ne!(borrowed, before);
+    editor.undo();
+    assert_eq!(editor.state().playhead.clip, before);
+    editor.redo();
+    assert_eq!(editor.state().playhead.clip, borrowed);
+}
+
+#[test]
 fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
     let mut editor = editor("sample:creature");
     let before = editor.state().clone();

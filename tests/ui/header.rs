@@ -9,7 +9,7 @@ use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, Show};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, bench_of, model_with_clips, motion_bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench};
 
 /// Presses an entry of a menu.
 fn choose(harness: &mut Harness<'_, Bench>, menu: &str, entry: &str) {
@@ -111,6 +111,15 @@ fn the_menu_leads_to_everything_else() {
     press(&mut phone, text::MENU);
     choose(&mut phone, text::EXPORT, text::SAVE_IMAGE);
     assert_eq!(phone.state().actions.len(), 1);
+}
+
+#[test]
+fn keys_of_an_open_menu_do_nothing_else() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, text::MENU);
+    assert_eq!(press_key(&mut harness, egui::Key::ArrowDown), []);
+    assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
+    assert_ne!(press_key(&mut harness, egui::Key::ArrowDown), [], "the camera has them again");
 }
 
 #[test]
