@@ -372,7 +372,7 @@ for (const renderer of BACK_ENDS)
     });
 
     const otherVersion = new RegExp(
-      "the meshopt decoder is damaged or of another version: " +
+      "the meshopt decoder is damaged or from another version: " +
         "expected .* SHA-256 begins with [0-9a-f]{16}, found [0-9a-f]{16}; reload the page",
     );
     /** @type {[string, Buffer | null, RegExp, (() => void)?][]} */
@@ -381,7 +381,7 @@ for (const renderer of BACK_ENDS)
       ["that isn't what the page was built with", module("(nop)"), otherVersion],
       ["that traps", module("(unreachable)"), /meshopt decoder stopped \(.*unreachable.*\)/, withoutHashes],
       ["that never ends", module("(loop (br 0))"), /meshopt decoder stopped \(it took longer than 60 seconds\)/, withoutHashes],
-      ["that answers nothing", module("(nop)"), /answer that cannot be read/, withoutHashes],
+      ["that answers nothing", module("(nop)"), /returned an invalid answer/, withoutHashes],
     ];
     for (const [name, replacement, message, before] of troubles)
       test(`a part ${name} is an error, and the page goes on`, async () => {
