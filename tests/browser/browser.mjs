@@ -319,10 +319,10 @@ export async function untilStill(page) {
 }
 
 /**
- * Opens the inspector, with which a screen of this size doesn't start.
+ * Opens the inspector, with which a screen of this size does not start, or closes it.
  * @param {Page} page
  */
-export async function openInspector(page) {
+export async function toggleInspector(page) {
   await page.locator("canvas").focus();
   await page.keyboard.press("n");
   await untilStill(page);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, openInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, toggleInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
 /** Steps of a dragged slider. */
@@ -42,7 +42,7 @@ for (const renderer of BACK_ENDS) {
     onPage("three files dropped together are bent by a slider without stutter", {}, async (page) => {
       await dropModel(page, "Model1");
       await whenShown(page, VERTICES);
-      await openInspector(page);
+      await toggleInspector(page);
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);

@@ -8,7 +8,7 @@ import { after, before, describe, test } from "node:test";
 import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, open, openInspector, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -174,7 +174,7 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(await state(other), shown.state);
         assert.deepEqual(await pose(other), shown.pose);
         // Borrowing opened it on the first page.
-        await openInspector(other);
+        await toggleInspector(other);
         assert.equal(meanDifference(await picture(other), shown.picture), 0);
       } finally {
         await other.finish();

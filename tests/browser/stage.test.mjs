@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, eventually, furthest, openInspector, pose, startSite, state, stats, untilStill } from "./browser.mjs";
+import { BACK_ENDS, apply, eventually, furthest, toggleInspector, pose, startSite, state, stats, untilStill } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
@@ -127,7 +127,7 @@ for (const renderer of BACK_ENDS)
      */
     async function openCameraTab(page) {
       await page.setViewportSize({ width: 1280, height: 800 });
-      await openInspector(page);
+      await toggleInspector(page);
       await page.mouse.click(1183, 69);
       await untilStill(page);
       await page.mouse.move(1130, 400);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, toggleInspector, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -136,6 +136,8 @@ for (const renderer of BACK_ENDS)
         await whenModel(other, "Soldier.glb");
         await drop(other, files.slice(1));
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
+        // A motion that arrives alone brings the Motion tab forward.
+        await toggleInspector(other);
         assertSame(await shown(other), before);
         // After a reload, the address asks for the files again.
         await until(other, () => location.hash.includes("model=file:Soldier.glb") && location.hash.includes("t=1.5"));
