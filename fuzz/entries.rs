@@ -14,10 +14,11 @@ use gaitway::state::{from_link, to_link};
 pub type Entry = (&'static str, fn(&[u8]));
 
 /// All entries; each has a fuzz target of the same name in `fuzz_targets`.
-pub const ENTRIES: [Entry; 8] = [
+pub const ENTRIES: [Entry; 9] = [
     ("gltf", gltf),
     ("bvh", bvh),
     ("x", x),
+    ("npz", npz),
     ("exercise", exercise),
     ("archive", archive),
     ("map", map),
@@ -37,7 +38,15 @@ pub fn bvh(bytes: &[u8]) {
 
 /// A .x, text or binary, compressed or not.
 pub fn x(bytes: &[u8]) {
-    let mut files = one("model.x", bytes);
+    check_converted(one("model.x", bytes));
+}
+
+/// A .npz.
+pub fn npz(bytes: &[u8]) {
+    check_converted(one("motion.npz", bytes));
+}
+
+fn check_converted(mut files: FileSet) {
     match prepare(&mut files) {
         Ok(()) => check_model(&files),
         // Programs report a panic in a part as an error.

@@ -43,7 +43,8 @@ struct Frame {
     shadow_center: vec2f,
     shadow_x: vec2f,
     shadow_y: vec2f,
-    padding_2: vec2f,
+    time_secs: f32,
+    padding: f32,
     // sRGB.
     background_center: vec4f,
     background_edge: vec4f,

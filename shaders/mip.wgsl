@@ -1,4 +1,4 @@
-// Downsamples a mip level. The hardware decodes sRGB, so averages are linear.
+// Downsamples a mip level, or a whole image to a thumbnail. The hardware decodes sRGB, so averages are linear.
 
 @group(0) @binding(0) var above: texture_2d<f32>;
 @group(0) @binding(1) var above_sampler: sampler;
@@ -17,4 +17,17 @@ fn full_screen(@builtin(vertex_index) vertex: u32) -> MipOut {
 @fragment
 fn halve(in: MipOut) -> @location(0) vec4f {
     return textureSample(above, above_sampler, in.uv);
+}
+
+// Encodes colours again, since the target holds display values.
+override ENCODE: bool = false;
+
+@fragment
+fn thumbnail(in: MipOut) -> @location(0) vec4f {
+    let color = textureSample(above, above_sampler, in.uv).rgb;
+    if ENCODE {
+        let high = 1.055 * pow(color, vec3f(1.0 / 2.4)) - 0.055;
+        return vec4f(select(high, 12.92 * color, color <= vec3f(0.0031308)), 1.0);
+    }
+    return vec4f(color, 1.0);
 }

@@ -13,6 +13,8 @@ struct Draw {
     influence_stride: u32,
     // Joint of the heat map; 0xffffffff for none.
     heat_joint: u32,
+    // What the surface shows; see channel.wgsl.
+    channel: u32,
     // Wireframe colour, sRGB.
     color: vec4f,
 }
@@ -195,6 +197,21 @@ fn blend_texture(vertex: u32) -> Blend {
     return blend_from_sum(sum);
 }
 
+#if CHANNEL
+// Number of influences with a weight.
+fn heat_4(joints: vec4u, weights: vec4f) -> f32 {
+    return dot(vec4f(1.0), select(vec4f(0.0), vec4f(1.0), weights > vec4f(0.0)));
+}
+
+fn heat_texture(vertex: u32) -> f32 {
+    var count = 0.0;
+    for (var pair = 0u; pair < draw.influence_stride / 2u; pair++) {
+        let texel = influence_pair(vertex, pair);
+        count += dot(vec2f(1.0), select(vec2f(0.0), vec2f(1.0), texel.yw > vec2f(0.0)));
+    }
+    return count;
+}
+#else
 // Weight of the heat map's joint.
 fn heat_4(joints: vec4u, weights: vec4f) -> f32 {
     return dot(weights, select(vec4f(0.0), vec4f(1.0), joints == vec4u(draw.heat_joint)));
@@ -209,3 +226,4 @@ fn heat_texture(vertex: u32) -> f32 {
     }
     return heat;
 }
+#endif

@@ -1,5 +1,6 @@
 // Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, depth, shadow; MToon is in
-// toon.wgsl. Overrides remove unused features; src/render/shaders.rs explains `#if` and `#maps`.
+// toon.wgsl, single inputs of shading in channel.wgsl. Overrides remove unused features; src/render/shaders.rs explains
+// `#if`, `#maps`, `#heat` and `#influences`.
 
 override BASE_COLOR_MAP: bool = false;
 override METALLIC_ROUGHNESS_MAP: bool = false;
@@ -77,8 +78,11 @@ struct Material {
     rim_lift: f32,
     outline_width: f32,
     outline_on_screen: u32,
+    // Per second.
+    uv_rotation: f32,
+    uv_scroll: vec2f,
     // In the order of the maps' bindings.
-    uvs: array<UvTransform, 24>,
+    uvs: array<UvTransform, 25>,
 }
 
 @group(3) @binding(0) var<uniform> material: Material;
@@ -94,7 +98,11 @@ fn map_uv(slot: u32, uv: vec4f) -> vec2f {
 fn base_color(in: VertexOut) -> vec4f {
     var color = material.base_color;
     if BASE_COLOR_MAP {
+#if TOON
+        color *= base_color_texel(animated_uv(in.uv));
+#else
         color *= base_color_texel(in.uv);
+#endif
     }
     if VERTEX_COLORS {
         color *= in.color;
@@ -115,9 +123,13 @@ fn mask_coverage(alpha: f32) -> f32 {
     return clamp((alpha - material.alpha_cutoff + smallest) / max(fwidth(alpha), smallest) + 0.5, 0.0, 1.0);
 }
 
-// Encodes and premultiplies. The alpha test comes last, because textures must be sampled in uniform control flow.
+// Encodes and premultiplies.
 fn finish(display: vec3f, alpha: f32) -> vec4f {
-    let color = srgb_from_linear(display);
+    return finish_encoded(srgb_from_linear(display), alpha);
+}
+
+// The alpha test comes last, because textures must be sampled in uniform control flow.
+fn finish_encoded(color: vec3f, alpha: f32) -> vec4f {
     if MASK && COVERAGE {
         return vec4f(color, mask_coverage(alpha));
     }
@@ -342,14 +354,11 @@ fn unlit(in: VertexOut) -> @location(0) vec4f {
 }
 
 // Grey-blue for no weight, then blue, green, yellow, red.
+#heat
 fn heat_color(weight: f32) -> vec3f {
-    let blue = vec3f(0.03, 0.16, 0.75);
-    let green = vec3f(0.04, 0.55, 0.16);
-    let yellow = vec3f(0.95, 0.75, 0.03);
-    let red = vec3f(0.80, 0.03, 0.02);
-    var color = mix(blue, green, clamp(3.0 * weight, 0.0, 1.0));
-    color = mix(color, yellow, clamp(3.0 * weight - 1.0, 0.0, 1.0));
-    color = mix(color, red, clamp(3.0 * weight - 2.0, 0.0, 1.0));
+    var color = mix(HEAT_COLORS[0], HEAT_COLORS[1], clamp(3.0 * weight, 0.0, 1.0));
+    color = mix(color, HEAT_COLORS[2], clamp(3.0 * weight - 1.0, 0.0, 1.0));
+    color = mix(color, HEAT_COLORS[3], clamp(3.0 * weight - 2.0, 0.0, 1.0));
     return mix(vec3f(0.19, 0.23, 0.30), color, clamp(50.0 * weight, 0.0, 1.0));
 }
 

@@ -13,14 +13,25 @@ fn outline_offset(in: VertexIn, shape: Shape) -> vec3f {
     return width * normalize_or_zero(shape.normal);
 }
 
+// Turns texture coordinates about their middle, then moves them.
+fn animated_uv(uv: vec4f) -> vec4f {
+    let time = frame.time_secs * uv_animation_mask_texel(uv).b;
+    let turn = time * material.uv_rotation;
+    let rotation = mat2x2f(cos(turn), -sin(turn), sin(turn), cos(turn));
+    let middle = 0.5 + time * material.uv_scroll;
+    return vec4f(rotation * (uv.xy - 0.5) + middle, rotation * (uv.zw - 0.5) + middle);
+}
+
 // 0 in shade, 1 in light.
 fn toon_step(cosine: f32, shift: f32) -> f32 {
     return clamp(0.5 + (cosine + shift) / max(2.0 * (1.0 - material.shading_toony), 1e-3), 0.0, 1.0);
 }
 
 @fragment
-fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let base = base_color(in);
+fn lit(at_rest: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let base = base_color(at_rest);
+    var in = at_rest;
+    in.uv = animated_uv(in.uv);
     let shade = material.shade_color * shade_multiply_texel(in.uv).rgb;
     var shift = material.shading_shift;
 #if SHADING_SHIFT_MAP

@@ -32,6 +32,7 @@ struct VertexOut {
     @location(2) tangent: vec4f,
     @location(3) uv: vec4f,
     @location(4) color: vec4f,
+    // Weight of the heat map's joint or, for channels, the number of influences.
     @location(5) heat: f32,
 #if VOLUME
     // World units per unit of the mesh.

@@ -3,6 +3,7 @@
 use super::Inbox;
 use crate::editor::ExportedFile;
 use crate::files::Role;
+use crate::library::ModelId;
 use crate::state::ViewerState;
 
 /// A video to record.
@@ -48,6 +49,17 @@ pub trait Host {
 
     /// Ends the recording without saving it.
     fn cancel_recording(&self) {}
+
+    /// Whether the host can run the Khronos glTF validator.
+    fn has_validator(&self) -> bool {
+        false
+    }
+
+    /// Validates the glTF of a model, whose files [`Editor::gltf_file`](crate::editor::Editor::gltf_file) returns. Sends
+    /// [`Message::Validated`](super::Message::Validated). Called only if [`Host::has_validator`] returns true.
+    fn validate(&self, model: ModelId, inbox: &Inbox) {
+        let _ = (model, inbox);
+    }
 
     /// Opens files dropped on the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use crate::editor::{Contents, ExportedFile};
+use crate::library::ModelId;
 use crate::state::{Command, ViewerState};
 
 /// A message to the frame loop.
@@ -37,6 +38,8 @@ pub enum Message {
     Saved(Result<(String, Option<String>), String>),
     /// The recording has ended: the name of the saved video, `None` if it was cancelled, or why there is none.
     Recorded(Result<Option<String>, String>),
+    /// The Khronos validator's report on a model as JSON, or why there is none.
+    Validated(ModelId, Result<String, String>),
     /// A call from the script interface.
     Script(ScriptCall),
 }

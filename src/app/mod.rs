@@ -3,6 +3,7 @@
 mod device;
 mod host;
 mod inbox;
+pub mod mirror;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
 mod notices;
@@ -11,6 +12,7 @@ mod run;
 mod save;
 mod scene_texture;
 mod timing;
+mod validate;
 mod viewport;
 
 pub use device::{FatalHook, set_fatal_hook};

@@ -31,6 +31,7 @@ impl App {
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
         self.toast_steps = self.editor.undo_steps();
+        self.has_new_notice = true;
     }
 
     /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes.

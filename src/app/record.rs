@@ -71,7 +71,5 @@ impl App {
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
             Err(error) => self.add_error(&format!("Couldn't record the video: {error}")),
         }
-        // The page announces the notice to screen readers.
-        self.host.state_changed(self.editor.state());
     }
 }

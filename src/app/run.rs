@@ -35,6 +35,8 @@ pub struct App {
     pub(super) recording: Option<Recording>,
     /// Undo steps when the toast appeared.
     pub(super) toast_steps: usize,
+    /// A notice was shown since the host last heard of a change.
+    pub(super) has_new_notice: bool,
     /// Motions loaded in the last frame.
     last_motions: Vec<ModelId>,
     timing: Timing,
@@ -63,6 +65,7 @@ impl App {
         let mut panels = UiState::default();
         panels.host.has_gallery = host.has_gallery();
         panels.host.has_fullscreen = host.has_fullscreen();
+        panels.host.has_validator = host.has_validator();
         cc.egui_ctx.set_theme(host.theme());
         let app = Self {
             editor: Editor::default(),
@@ -78,6 +81,7 @@ impl App {
             screenshots: Vec::new(),
             recording: None,
             toast_steps: 0,
+            has_new_notice: false,
             last_motions: Vec::new(),
             timing: Timing::default(),
             backend: device::backend_name(&info),
@@ -158,6 +162,7 @@ impl App {
             Message::Saved(Ok((name, remark))) => self.toast(saved(&name, remark.as_deref())),
             Message::Saved(Err(error)) => self.add_error(&error),
             Message::Recorded(saved_name) => self.end_recording(saved_name),
+            Message::Validated(model, report) => self.end_validation(model, report),
             Message::Commands(commands) => {
                 self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
                 commands.into_iter().for_each(|command| self.apply(command));
@@ -257,6 +262,7 @@ impl App {
             UiAction::Save(what) => return self.save(what),
             UiAction::Record(settings) => return self.start_recording(settings),
             UiAction::CancelRecording => return self.host.cancel_recording(),
+            UiAction::Validate => return self.start_validation(),
             UiAction::ShareLink => return self.share(),
             UiAction::OpenPage => return self.open_page(),
             UiAction::OpenUrl(url) => return self.host.open_url(url),
@@ -286,6 +292,20 @@ impl App {
         if !motions().eq(self.last_motions.iter().copied()) {
             self.last_motions = motions().collect();
             self.panels.on_motions_changed();
+        }
+    }
+
+    /// Reports what was drawn, and makes the thumbnails of a model once the Info tab shows it.
+    fn update_drawn(&mut self) {
+        let drawn = self.viewport.scene.stats();
+        let host = &mut self.panels.host;
+        host.drawn = ui::Drawn { draw_calls: drawn.draw_calls, triangles: drawn.triangles, frames: self.timing.recent };
+        let Some(model) = self.panels.info_model.take() else { return };
+        host.drawn_bytes = self.viewport.scene.device_bytes();
+        if host.thumbnails_of != Some(model) {
+            host.thumbnails = self.viewport.scene.thumbnails(model, &host.thumbnails);
+            host.thumbnails_of = Some(model);
+            self.context.request_repaint();
         }
     }
 
@@ -345,16 +365,10 @@ impl App {
         ui::overlays(ui, rect, shown, &mut self.panels, output);
         let has_input = !output.commands.is_empty() || !output.actions.is_empty();
         self.editor.set_aspect(self.panels.viewport.aspect);
-        // On a slow machine, one key is released in the same frame as the next is pressed.
-        let is_press = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, repeat: false, .. });
-        if ui.input(|input| input.events.iter().any(is_press)) {
-            self.editor.end_gesture();
-        }
+        ui::begin_gestures(ui, &mut self.editor);
         output.commands.drain(..).for_each(|command| self.apply(command));
         output.actions.drain(..).for_each(|action| self.act(action));
-        if ui.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
-            self.editor.end_gesture();
-        }
+        ui::end_gestures(ui, &mut self.editor);
         (has_input, rect, slot)
     }
 }
@@ -389,8 +403,10 @@ impl eframe::App for App {
         self.panels.host.can_redo = self.editor.can_redo();
         self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
         self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
+        self.panels.host.has_gltf = self.editor.has_gltf();
         self.expire_toast();
         self.update_motions();
+        self.update_drawn();
         let mut output = std::mem::take(&mut self.output);
         let (has_input, rect, slot) = self.lay_out(ui, &mut output);
         self.output = output;
@@ -414,7 +430,8 @@ impl eframe::App for App {
             // The panels were laid out before the commands were applied.
             context.request_repaint();
         }
-        if self.editor.take_changed() {
+        // The page announces new notices to screen readers.
+        if self.editor.take_changed() | std::mem::take(&mut self.has_new_notice) {
             self.host.state_changed(&self.editor.shared_state());
         }
     }

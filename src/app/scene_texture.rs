@@ -3,7 +3,7 @@
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 
 use crate::frame::Frame;
-use crate::library::Model;
+use crate::library::{Model, ModelId};
 use crate::render::{Blit, RenderStats, Renderer, RendererOptions, UploadError};
 use crate::state::Background;
 
@@ -86,6 +86,21 @@ impl SceneTexture {
 
     pub fn stats(&self) -> RenderStats {
         self.renderer.stats()
+    }
+
+    /// Makes the panels' thumbnails of a model's images, by index in the asset, in place of `old`.
+    pub fn thumbnails(&self, model: ModelId, old: &[Option<egui::TextureId>]) -> Vec<Option<egui::TextureId>> {
+        let mut panels = self.gpu.renderer.write();
+        old.iter().flatten().for_each(|id| panels.free_texture(id));
+        let views = self.renderer.thumbnails(&self.gpu.device, &self.gpu.queue, model);
+        let mut register =
+            |view: wgpu::TextureView| panels.register_native_texture(&self.gpu.device, &view, wgpu::FilterMode::Linear);
+        views.into_iter().map(|view| view.map(&mut register)).collect()
+    }
+
+    /// Memory of the uploaded models in bytes: geometry and images.
+    pub fn device_bytes(&self) -> [u64; 2] {
+        self.renderer.device_bytes()
     }
 
     pub fn max_size(&self) -> u32 {

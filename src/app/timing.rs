@@ -1,21 +1,28 @@
-//! Frame times, for `window.gaitway.stats()`.
+//! Frame times, for `window.gaitway.stats()` and the Info tab.
+
+use crate::ui::FrameTimes;
 
 /// Zero until measured.
 #[derive(Debug, Default)]
 pub(super) struct Timing {
     /// Running mean of the time between consecutive frames.
     pub frame_secs: f32,
+    /// CPU time of the last frame.
     pub cpu_secs: f32,
+    /// Times between the last frames.
+    pub recent: FrameTimes,
     /// Frames laid out so far; does not grow while nothing changes.
     pub frames: u64,
 }
 
 impl Timing {
-    /// Adds a frame time to the mean; ignores pauses, such as a hidden page.
+    /// Adds the time between two frames, unless it was a pause, such as that of a hidden page.
     pub fn record(&mut self, secs: f32) {
+        const MAX_SECS: f32 = 1.0;
         const SMOOTHING: f32 = 0.1;
-        if secs < 1.0 {
+        if secs < MAX_SECS {
             let weight = if self.frame_secs == 0.0 { 1.0 } else { SMOOTHING };
+            self.recent.push(secs);
             self.frame_secs += weight * (secs - self.frame_secs);
         }
     }

@@ -1,13 +1,16 @@
-//! `gaitway convert`: converts any supported model to a single GLB.
+//! `gaitway convert`: converts any supported model to a single GLB, or one of its clips to BVH or a VRM animation.
 
 use super::failure::{Failure, Outcome};
 use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
-use super::output::write_output;
-use super::retarget::model_extensions;
-use super::{ConvertArguments, open, print_warnings};
-use crate::editor::Export;
+use super::output::{print_error, warn, write_output};
+use super::retarget::{choose_clip, clip_format_of, model_extensions};
+use super::{ConvertArguments, Unit, open, print_warnings};
+use crate::asset::Asset;
+use crate::editor::{ClipFormat, Export, write_clip};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
-use crate::formats::{LoadOptions, convert_named, write_model};
+use crate::formats::{LoadOptions, convert_named, load_named, write_model};
+use crate::library::Model;
+use crate::retarget::{ChangedClip, Symmetry, recognize};
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
     let (bytes, extensions) = match &arguments.view {
@@ -29,18 +32,60 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         models.retain(|(name, _)| members.contains(&&**name));
     }
     let found = models.iter().map(|(name, _)| name.clone()).collect();
-    let [(name, asset)] = &models[..] else { return Err(SortError::SeveralModels { found }.into()) };
-    let bytes = match arguments.unit {
-        Some(unit) => {
-            let options = LoadOptions { bvh_unit_metres: Some(unit.metres()), ..LoadOptions::default() };
-            convert_named(&set, name, &options)?
+    let Ok([(name, asset)]) = <[_; 1]>::try_from(models) else { return Err(SortError::SeveralModels { found }.into()) };
+    let options = LoadOptions { bvh_unit_metres: arguments.unit.map(Unit::metres), ..LoadOptions::default() };
+    let format = clip_format_of(&arguments.out).filter(|&format| {
+        let is_copy = asset.format == "vrma" && arguments.clip.is_none() && arguments.changes.changes().is_none();
+        format == ClipFormat::Bvh || (format == ClipFormat::Vrma && !is_copy)
+    });
+    if let Some(format) = format {
+        let asset = if arguments.unit.is_some() { load_named(&set, &name, &options)? } else { asset };
+        print_warnings(&name, &asset.warnings);
+        let extensions = vec![format.extension()];
+        return Ok((clip_alone(name, asset, arguments, format)?, extensions));
+    }
+    if !arguments.changes.changes().is_none() {
+        if arguments.unit.is_some() {
+            let failure = Failure::expected("a .bvh or .vrma to change a clip of a .bvh with a unit", "a .glb");
+            return Err(failure.at("--unit"));
         }
+        let clip = changed_clip(&name, &asset, arguments)?.renamed();
+        let bytes = write_model(&set, &name, &asset.skeleton, &[&clip])?;
+        return Ok((bytes, model_extensions(&asset)));
+    }
+    if let Some(clip) = &arguments.clip {
+        let failure = Failure::expected("a .bvh or .vrma for one clip", format!("clip {clip} of a .glb"));
+        return Err(failure.with_hint("a .glb has all clips").at("--clip"));
+    }
+    let (name, asset) = (&name, &asset);
+    let bytes = match arguments.unit {
+        Some(_) => convert_named(&set, name, &options)?,
         None => {
             print_warnings(name, &asset.warnings);
             write_model(&set, name, &asset.skeleton, &[])?
         }
     };
     Ok((bytes, model_extensions(asset)))
+}
+
+/// Writes one clip with its skeleton.
+fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: ClipFormat) -> Outcome<Vec<u8>> {
+    let clip = changed_clip(&name, &asset, arguments)?.clip;
+    let model = Model::new(name, asset, Vec::new());
+    Ok(write_clip(&model, &model.asset.skeleton, &clip, clip.frames_per_sec(), format)?)
+}
+
+/// Returns the chosen clip with its changes, and prints its seam and warnings.
+fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
+    let clip = &asset.clips[choose_clip(name, asset, arguments.clip.as_deref())?];
+    let mut warnings = Vec::new();
+    let symmetry = || Symmetry::of(asset, &recognize(asset));
+    let changed = arguments.changes.change(asset, clip.clone(), symmetry, &mut warnings)?;
+    warnings.iter().for_each(|(_, message)| warn(message));
+    if let Some(seam) = changed.seam {
+        print_error(&format!("seam: {seam}; blended"));
+    }
+    Ok(changed)
 }
 
 /// Writes a model of another format in the pose of a link.

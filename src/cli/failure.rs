@@ -97,7 +97,8 @@ impl From<UnknownName> for Failure {
 fn load_parts(error: &LoadError) -> Failure {
     match error {
         LoadError::Invalid { file, place, expected, found } => {
-            Failure::parts(Some(file), Some(place), Some(expected), Some(found))
+            let place = Some(place.as_str()).filter(|place| !place.is_empty());
+            Failure::parts(Some(file), place, Some(expected), Some(found))
         }
         LoadError::Json { file, place, .. } => Failure::parts(Some(file), Some(place), None, None),
         LoadError::MissingFile { file, place, uri } => Failure::parts(Some(file), Some(place), Some(uri), None),
@@ -145,7 +146,11 @@ fn write_parts(error: &WriteError) -> Failure {
     match error {
         WriteError::Read(error) => load_parts(error),
         WriteError::OtherSkeleton { file, .. } | WriteError::OtherParent { file, .. } => Failure::of_file(file),
-        WriteError::EmptyClip { .. } | WriteError::NotFinite { .. } | WriteError::TooLarge { .. } => Failure::default(),
+        WriteError::EmptyClip { .. }
+        | WriteError::NotFinite { .. }
+        | WriteError::NoBody { .. }
+        | WriteError::TooLong { .. }
+        | WriteError::TooLarge { .. } => Failure::default(),
     }
 }
 

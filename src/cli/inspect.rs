@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::failure::Outcome;
-use super::output::{print_bytes, print_json};
+use super::output::{print_bytes, print_json, warn};
 use super::{InspectArguments, open};
 use crate::files::{Disk, Opened};
 use crate::library::inspect;
@@ -13,6 +13,10 @@ use crate::library::inspect;
 pub(super) fn run(arguments: &InspectArguments, disk: &Disk) -> Outcome {
     let opened = open(&arguments.input.files, disk)?;
     let document = inspect(&opened.model, &opened.files);
+    // The reader's warnings have been printed.
+    for finding in opened.model.findings().iter().skip(opened.model.asset.warnings.len()) {
+        warn(&format!("{}: {}", opened.model.source, finding.warning));
+    }
     if arguments.json {
         return print_json(&document);
     }

@@ -10,13 +10,14 @@ use super::output::{is_standard_output, print_bytes, print_json, warn, write_out
 use super::{MapArguments, open};
 use crate::anim::Skeleton;
 use crate::files::Disk;
-use crate::retarget::{Body, Contradiction, Proposal, Recognized, ResolvedMap, Retargeting, propose};
+use crate::library::proposal_for;
+use crate::retarget::{Body, Contradiction, Proposal, Recognized, ResolvedMap, Retargeting};
 
 pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let opened_model = open(std::slice::from_ref(&arguments.model), disk)?.model;
     let opened_motion = open_motion(&arguments.motion, disk)?;
+    let proposal = proposal_for(&opened_model, &opened_motion);
     let (model, motion) = (&opened_model.asset, &opened_motion.asset);
-    let proposal = propose(model, motion);
     let map = proposal.to_map(model, motion).to_file(model, motion);
     for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
         for text in contradictions_text(found).into_iter().chain(left_out_text(found)) {

@@ -1,7 +1,10 @@
 //! The command line: thin wrappers around the functions that the page uses.
 
+mod batch;
+mod change;
 mod convert;
 mod failure;
+mod inputs;
 mod inspect;
 mod map;
 mod motion;
@@ -13,8 +16,10 @@ mod quiet;
 mod render;
 mod retarget;
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -22,12 +27,13 @@ use serde_json::json;
 
 use crate::anim::{ClipQuery, LoopMode, find_clip};
 use crate::asset::Warnings;
-use crate::editor::Editor;
+use crate::editor::{ClipFormat, Editor};
 use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
+use change::ChangeOptions;
 use failure::{Failure, Outcome};
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
@@ -53,7 +59,7 @@ enum Action {
     Map(MapArguments),
     /// Retargets a clip to a model, appends it to the model's own clips, and reports how well it fits.
     Retarget(Box<RetargetArguments>),
-    /// Converts any supported model to a single .glb.
+    /// Converts any supported model to a single .glb, or one of its clips to .bvh or .vrma.
     Convert(ConvertArguments),
     /// Renders the same image as the page, without a window.
     #[cfg(feature = "render")]
@@ -120,9 +126,10 @@ struct RetargetArguments {
     /// The model to animate.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh.
-    #[arg(long, value_name = "FILE")]
-    motion: PathBuf,
+    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz. With --out-dir, any number of files, folders
+    /// and patterns.
+    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    motion: Vec<PathBuf>,
     /// A clip's name or index in the motion [default: its first].
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
@@ -131,12 +138,23 @@ struct RetargetArguments {
     map: Option<PathBuf>,
     #[command(flatten)]
     options: RetargetOptions,
+    #[command(flatten)]
+    changes: ChangeOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
-    /// The file to write; `-` for standard output.
-    #[arg(long, value_name = "OUT.glb")]
-    out: PathBuf,
+    /// The file to write; `-` for standard output. A .bvh or .vrma holds the clip alone.
+    #[arg(long, value_name = "OUT.glb|.bvh|.vrma", required_unless_present = "out_dir", conflicts_with = "out_dir")]
+    out: Option<PathBuf>,
+    /// The folder for the results of many motions. Prints a line of JSON for each, and skips those that are up to date.
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// The format of the files in --out-dir [default: glb].
+    #[arg(long, value_enum, requires = "out_dir")]
+    format: Option<FormatArgument>,
+    /// Number of motions at a time in --out-dir [default: one per core].
+    #[arg(long, value_name = "N", requires = "out_dir")]
+    jobs: Option<NonZeroUsize>,
     /// Writes only the skeleton and the clip, without meshes.
     #[arg(long)]
     clip_only: bool,
@@ -203,6 +221,7 @@ arguments_of! {
     RootPartArgument of RootPart { Keep, InPlace, Freeze }
     FeetArgument of Feet { Off, Plant }
     KeepArgument of Keep { Auto, Keep, Drop }
+    FormatArgument of ClipFormat { Glb, Bvh, Vrma }
     RestArgument of RestChoice { Auto, Node, Bind, FirstFrame }
 }
 
@@ -210,9 +229,14 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write; `-` for standard output.
-    #[arg(long, value_name = "OUT.glb")]
+    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip.
+    #[arg(long, value_name = "OUT.glb|.bvh|.vrma")]
     out: PathBuf,
+    /// The clip to change, or to write as .bvh or .vrma, by name or index [default: the first].
+    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
+    clip: Option<String>,
+    #[command(flatten)]
+    changes: ChangeOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
@@ -331,7 +355,7 @@ fn usage_message(error: &clap::Error) -> String {
 fn check_usage(arguments: Arguments) -> Result<Arguments, clap::Error> {
     let is_used_twice = match &arguments.action {
         Some(Action::Map(map)) => map.json && map.out.as_deref().is_some_and(is_standard_output),
-        Some(Action::Retarget(retarget)) => retarget.json && is_standard_output(&retarget.out),
+        Some(Action::Retarget(retarget)) => retarget.json && retarget.out.as_deref().is_some_and(is_standard_output),
         _ => false,
     };
     if is_used_twice {
@@ -442,9 +466,13 @@ fn read_loops(text: &str) -> Result<u16, String> {
 
 #[cfg(feature = "render")]
 fn read_camera(text: &str) -> Result<[f32; 3], String> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    let numbers = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
-    numbers
-        .filter(|numbers| numbers.iter().all(|number| number.is_finite()) && numbers[2] > 0.0)
-        .ok_or_else(|| "expected YAW,PITCH,DISTANCE: degrees, degrees, metres above 0".to_owned())
+    let camera = read_numbers(text).filter(|[_, _, distance]| *distance > 0.0);
+    camera.ok_or_else(|| "expected YAW,PITCH,DISTANCE: degrees, degrees, metres above 0".to_owned())
+}
+
+/// Reads `N` finite numbers with commas between them.
+fn read_numbers<T: FromStr + Copy + Into<f64>, const N: usize>(text: &str) -> Option<[T; N]> {
+    let numbers: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let numbers = <[T; N]>::try_from(numbers?).ok()?;
+    numbers.iter().all(|&number| number.into().is_finite()).then_some(numbers)
 }

@@ -17,7 +17,7 @@ use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
 pub(super) struct MotionArguments {
-    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .x, .bvh.
+    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
     /// The joint map [default: as `gaitway map` proposes].
@@ -59,6 +59,13 @@ pub(super) fn rest_document(rest: FoundRest) -> Value {
 
 /// Opens one motion and prints its warnings.
 pub(super) fn open_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
+    let motion = read_motion(path, disk)?;
+    print_warnings(&motion.source, &motion.asset.warnings);
+    Ok(motion)
+}
+
+/// Opens one motion.
+pub(super) fn read_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
     let contents = disk.read_paths(&[path.to_owned()], Role::Motion)?;
     let mut motions = contents.motions.unwrap_or_default();
     if let Some(member) = member_of(path) {
@@ -69,7 +76,6 @@ pub(super) fn open_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
     let Ok([motion]) = <[Motion; 1]>::try_from(motions) else {
         return Err(Failure::expected("one motion", found).in_file(path.display()));
     };
-    print_warnings(&motion.source, &motion.asset.warnings);
     Ok(motion)
 }
 

@@ -1,29 +1,71 @@
 //! `gaitway retarget`: appends a retargeted clip to a model, and reports how well it fits.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
-use super::{RetargetArguments, open};
+use super::{RetargetArguments, batch, change, open};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
-use crate::editor::ModelFiles;
+use crate::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use crate::files::{Disk, Opened};
-use crate::formats::{write_model, write_motion};
-use crate::library::{Model, Motion, map_for, warning_documents};
+use crate::formats::write_model;
+use crate::library::{Model, Motion, map_for, warning_documents, with_expressions};
 use crate::retarget::{
-    ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking,
-    layer_clips,
+    ChangedClip, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Symmetry, Unmapped,
+    bake_layers, baking, layer_clips,
 };
 use crate::state::{NameKind, UnknownName};
 
 pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
+    let out = match (&arguments.out, &arguments.out_dir) {
+        (_, Some(folder)) => return batch::run(arguments, folder, disk),
+        (Some(out), None) => out,
+        (None, None) => return Err(Failure::new("neither --out nor --out-dir was given")),
+    };
+    let [motion] = &arguments.motion[..] else {
+        let found = arguments.motion.len().to_string();
+        return Err(Failure::expected("one motion", found).at("--motion").with_hint("--out-dir takes any number"));
+    };
     let opened = open(std::slice::from_ref(&arguments.model), disk)?;
-    let model = &opened.model;
-    let motion = open_motion(&arguments.motion, disk)?;
-    let resolved = resolve_map(arguments, model, &motion, disk)?;
-    let source_clip = choose_clip(&motion, arguments.clip.as_deref())?;
+    let motion = open_motion(motion, disk)?;
+    let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
+    let made = make(arguments, &opened.model, &motion, map.as_ref())?;
+    write(arguments, out, &opened, &made, disk)?;
+    made.warnings.iter().for_each(|(_, message)| warn(message));
+    if arguments.json {
+        return print_json(&made.document);
+    }
+    if is_standard_output(out) {
+        print_error(made.text.trim_end());
+        return Ok(());
+    }
+    print_bytes(made.text.as_bytes())
+}
+
+/// A retargeted clip and what is reported about it.
+pub(super) struct Made {
+    clip: Clip,
+    frames_per_sec: f64,
+    warnings: Vec<(&'static str, String)>,
+    /// For scripts.
+    pub document: Value,
+    /// For people.
+    text: String,
+}
+
+/// Retargets a clip of a motion, changes it, and measures how well it fits.
+pub(super) fn make(
+    arguments: &RetargetArguments,
+    model: &Model,
+    motion: &Motion,
+    map: Option<&OpenedMap>,
+) -> Outcome<Made> {
+    let resolved = resolve_map(arguments, model, motion, map)?;
+    let source_clip = choose_clip(&motion.source, &motion.asset, arguments.clip.as_deref())?;
     let pair = Retargeting::new(model.body(), motion.body(), source_clip, &resolved)?;
     let retargeted = pair.bake()?;
     let figures = pair.figures(&retargeted);
@@ -34,31 +76,34 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     }
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_layers(&model.asset, &resolved, &retargeted, arguments.loops.map(usize::from), &mut warnings);
-    write(arguments, &opened, &clip, disk)?;
-    warnings.iter().for_each(|(_, message)| warn(message));
-    if arguments.json {
-        let mut document = document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings);
-        document["motion_rest"] = rest_document(pair.motion_rest());
-        document["planting"] = json!(retargeted.planting);
-        return print_json(&document);
+    let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
+    let symmetry = || Symmetry::of(&model.asset, model.recognition());
+    let ChangedClip { clip, seam } = arguments.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
+    let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
+    document["motion_rest"] = rest_document(pair.motion_rest());
+    document["planting"] = json!(retargeted.planting);
+    document["changed"] = change::document(&arguments.changes, seam.as_ref());
+    let mut text = text(&resolved, &retargeted, &figures);
+    if let Some(seam) = seam {
+        text += &format!("seam              {seam}; blended\n");
     }
-    let text = text(&resolved, &retargeted, &figures);
-    if is_standard_output(&arguments.out) {
-        print_error(text.trim_end());
-        return Ok(());
-    }
-    print_bytes(text.as_bytes())
+    let frames_per_sec = motion.asset.clips[source_clip].frames_per_sec();
+    Ok(Made { clip, frames_per_sec, warnings, document, text })
 }
 
 /// Returns the given map or else the proposed one, with the command line's options.
-fn resolve_map(arguments: &RetargetArguments, model: &Model, motion: &Motion, disk: &Disk) -> Outcome<ResolvedMap> {
-    let given = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
+fn resolve_map(
+    arguments: &RetargetArguments,
+    model: &Model,
+    motion: &Motion,
+    given: Option<&OpenedMap>,
+) -> Outcome<ResolvedMap> {
     let in_map = |problem: MapError| match &given {
         Some(opened) => Failure::from(problem).in_file(&opened.name),
         None => problem.into(),
     };
-    let looked_up = given.as_ref().map(|opened| opened.map.look_up_joints(&model.asset, &motion.asset));
-    let (mut map, proposal) = map_for(&model.asset, &motion.asset, looked_up.transpose().map_err(in_map)?.as_ref());
+    let looked_up = given.map(|opened| opened.map.look_up_joints(&model.asset, &motion.asset));
+    let (mut map, proposal) = map_for(model, motion, looked_up.transpose().map_err(in_map)?.as_ref());
     let is_empty = proposal.is_some_and(|proposal| proposal.pairs.is_empty());
     if is_empty && !model.has_skeleton() {
         return Err(Failure::new(format!("{} {}", model.source, Model::NO_SKELETON)).in_file(&motion.source));
@@ -78,25 +123,41 @@ fn resolve_map(arguments: &RetargetArguments, model: &Model, motion: &Motion, di
     })
 }
 
-fn write(arguments: &RetargetArguments, opened: &Opened, clip: &Clip, disk: &Disk) -> Outcome {
+/// Writes the model with the clip, or the clip alone: on request, and in formats that hold nothing else.
+fn write(arguments: &RetargetArguments, out: &Path, opened: &Opened, made: &Made, disk: &Disk) -> Outcome {
+    let format = clip_format_of(out).unwrap_or(ClipFormat::Glb);
+    let extensions = if arguments.clip_only {
+        ClipFormat::ALL.map(ClipFormat::extension).to_vec()
+    } else {
+        model_extensions(&opened.model.asset)
+    };
+    write_output(out, &clip_file(opened, made, arguments.clip_only, format)?, &extensions, disk)
+}
+
+/// The content of the file. `clip_only` matters for a .glb; other formats hold nothing else.
+pub(super) fn clip_file(opened: &Opened, made: &Made, clip_only: bool, format: ClipFormat) -> Outcome<Vec<u8>> {
     let Opened { model, model_files, .. } = opened;
     let skeleton = &model.asset.skeleton;
-    if arguments.clip_only {
-        return write_output(&arguments.out, &write_motion(&model.asset, skeleton, &[clip])?, &["glb"], disk);
+    if clip_only || format != ClipFormat::Glb {
+        return Ok(write_clip(model, skeleton, &made.clip, made.frames_per_sec, format)?);
     }
     let Some(ModelFiles { set, name }) = model_files else {
         let problem =
             "this sample is generated and has no file to add a clip to; use --clip-only to write skeleton and clip";
         return Err(Failure::new(problem).in_file(&model.source));
     };
-    let bytes = write_model(set, name, skeleton, &[clip])?;
-    write_output(&arguments.out, &bytes, &model_extensions(&model.asset), disk)
+    Ok(write_model(set, name, skeleton, &[&made.clip])?)
 }
 
-/// The extensions that fit a model as GLB: VRM files are GLB, and stay VRM when they are written.
+/// The extensions that fit a model as GLB: a VRM file is a GLB, and stays VRM when it is written. Clips alone can be other files.
 pub(super) fn model_extensions(asset: &Asset) -> Vec<&'static str> {
-    let own = ["vrm", "vrma"].into_iter().filter(|extension| *extension == asset.format);
-    ["glb"].into_iter().chain(own).collect()
+    let own = (asset.format == "vrm").then_some("vrm");
+    own.into_iter().chain(ClipFormat::ALL.map(ClipFormat::extension)).collect()
+}
+
+/// The format that the extension of an output asks for.
+pub(super) fn clip_format_of(out: &Path) -> Option<ClipFormat> {
+    ClipFormat::of_extension(&out.extension()?.to_str()?.to_lowercase())
 }
 
 /// Applies the command line's options, which override the map.
@@ -124,16 +185,16 @@ fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
 }
 
 /// Finds a clip by name or index; the first if none was requested.
-fn choose_clip(motion: &Motion, requested: Option<&str>) -> Outcome<usize> {
-    let clips = &motion.asset.clips;
+pub(super) fn choose_clip(source: &str, asset: &Asset, requested: Option<&str>) -> Outcome<usize> {
+    let clips = &asset.clips;
     if clips.is_empty() {
-        return Err(Failure::expected("a clip to retarget", "none").in_file(&motion.source));
+        return Err(Failure::expected("a clip", "none").in_file(source));
     }
     let Some(requested) = requested else { return Ok(0) };
     find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
         let names = clips.iter().map(|clip| clip.name().to_owned()).collect();
         let unknown = UnknownName { kind: NameKind::Clip, name: requested.to_owned(), names };
-        Failure::from(unknown).in_file(&motion.source)
+        Failure::from(unknown).in_file(source)
     })
 }
 
@@ -229,7 +290,8 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          rotations         mean error {}, max. {}\n\
          foot slide        {} (source: {})\n\
          hover             {}\n\
-         below ground      {}\n\
+         sole penetration  {}\n\
+         joint penetration {}\n\
          planted feet      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
@@ -245,6 +307,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.foot_hover_metres_mean, " m"),
+        number(figures.sole_penetration_metres_max, " m"),
         number(figures.ground_penetration_metres_max, " m"),
         retargeted.planting.map_or("–".to_owned(), |planting| planting.to_string()),
     )

@@ -2,7 +2,7 @@
 //! graphics device.
 
 use super::names::stem;
-use super::{Editor, ModelFiles};
+use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
@@ -18,15 +18,17 @@ pub enum Export {
         /// Index into [`Library::motions`](crate::library::Library::motions).
         motion: usize,
     },
-    /// The model with one of its retargeted clips.
+    /// The model with one of its retargeted or changed clips.
     Model {
-        /// Index among all clips of the active model; one of its own clips is an error.
+        /// Index among all clips of the active model; one of its own clips as it is in the file is an error.
         clip: usize,
     },
-    /// The skeleton with one of the clips, without meshes.
+    /// One of the clips with its skeleton, without meshes.
     Clip {
         /// Index among all clips of the active model.
         clip: usize,
+        /// The kind of file.
+        format: ClipFormat,
     },
     /// The whole model as a .glb, in its current pose or in its rest pose.
     FullModel {
@@ -67,7 +69,7 @@ impl Editor {
         match what {
             Export::Map { motion } => self.export_map(motion),
             Export::Model { clip } => self.export_model(clip),
-            Export::Clip { clip } => self.export_clip(clip),
+            Export::Clip { clip, format } => self.export_clip(clip, format),
             Export::FullModel { posed } => self.export_whole(posed),
         }
     }
@@ -99,7 +101,7 @@ impl Editor {
         Ok(ExportedFile::new(format!("{}-{}.json", stem(&model.source), stem(&about.source)), json.into_bytes()))
     }
 
-    fn files_of(&self, model: &Model) -> Option<&ModelFiles> {
+    pub(super) fn files_of(&self, model: &Model) -> Option<&ModelFiles> {
         self.shelf.get(&model.id)?.files.as_ref()
     }
 
@@ -115,22 +117,32 @@ impl Editor {
     }
 
     /// Writes one clip with its skeleton.
-    fn export_clip(&self, clip: usize) -> Result<ExportedFile, String> {
+    fn export_clip(&self, clip: usize, format: ClipFormat) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        let name = format!("{}-clip.glb", self.stem_with_clip(Some(clip)));
+        let stem = self.stem_with_clip(Some(clip));
+        // Of these, only a GLB could be mistaken for the model.
+        let suffix = if format == ClipFormat::Glb { "-clip" } else { "" };
+        let name = format!("{stem}{suffix}.{}", format.extension());
         let baked = self.baked_clip(clip)?;
+        let frames_per_sec = model.frames_per_sec(clip);
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
-        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, None), &[clip])
-            .map_err(|error| error.to_string())?;
+        let skeleton = written_skeleton(model, &self.state, None);
+        let bytes = write_clip(model, &skeleton, clip, frames_per_sec, format).map_err(|error| error.to_string())?;
         Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(name, bytes) })
     }
 
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        let borrowed = model.borrowed(clip).ok_or("this clip is one of the model's own")?;
+        if !model.is_derived(clip) {
+            return Err("this clip is in the model's file as it is".to_owned());
+        }
+        let borrowed = model.borrowed(clip);
+        let changed = model.changed_clip(clip).filter(|_| borrowed.is_none());
+        let renamed = changed.map(|changed| changed.clone().renamed());
         let baked = self.baked_clip(clip)?;
-        let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
+        let derived = renamed.as_ref().or(baked.clip.as_ref()).or_else(|| model.clip(clip));
+        let clips = [derived.ok_or("there is no such clip")?];
         let mut remark = None;
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
@@ -140,19 +152,23 @@ impl Editor {
                 write_motion(&model.asset, &skeleton, &clips)
             }
         };
-        let motion = self.library.motions().get(borrowed.motion).map_or("motion", |motion| &motion.source);
-        let name = format!("{}-{}.glb", stem(&model.source), stem(motion));
+        let motion = borrowed.and_then(|borrowed| self.library.motions().get(borrowed.motion));
+        let name = match motion {
+            Some(motion) => format!("{}-{}.glb", stem(&model.source), stem(&motion.source)),
+            None => format!("{}.glb", self.stem_with_clip(Some(clip))),
+        };
         let bytes = bytes.map_err(|error| error.to_string())?;
         Ok(ExportedFile { name, bytes, remark: baked.remark.or(remark) })
     }
 
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
-        let Some(borrowed) = model.borrowed(clip).filter(|borrowed| !borrowed.layers.is_empty()) else {
+        let layers = model.layers(clip);
+        let Some(clip) = model.clip(clip).filter(|_| !layers.is_empty()) else {
             return Ok(BakedClip { clip: None, remark: None });
         };
-        let baking = baking(&borrowed.clip, &borrowed.layers, None);
-        let clip = bake_layers(&model.asset, &borrowed.clip, &borrowed.layers, &baking);
+        let baking = baking(clip, layers, None);
+        let clip = bake_layers(&model.asset, clip, layers, &baking);
         let seam =
             "The loop has a seam: the lengths of the model's own clip and the retargeted one don't divide evenly.";
         Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })

@@ -4,6 +4,7 @@
 //! Shells call it (`open`, `apply`, `undo`, …) and present the resulting [`Event`]s to the user.
 
 mod camera;
+mod clip_file;
 mod contents;
 mod event;
 mod export;
@@ -14,12 +15,15 @@ mod open;
 mod reduced_motion;
 mod steps;
 mod suit;
+mod validation;
 
+pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
 pub use export::{Export, ExportedFile};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
+pub use validation::{ValidatorGroup, ValidatorReport};
 
 use std::collections::BTreeMap;
 
@@ -253,7 +257,7 @@ impl Editor {
 
 const OTHER_FILES: &str = "something else was opened in the meantime";
 
-/// Whether the command changes what retargeted clips depend on.
+/// Whether the command changes what retargeted or changed clips depend on.
 fn affects_retargeting(command: &Command) -> bool {
     matches!(
         command,
@@ -264,5 +268,6 @@ fn affects_retargeting(command: &Command) -> bool {
             | Command::SetUnmapped(_)
             | Command::SetRoot(_)
             | Command::SetFeet(_)
+            | Command::ChangeClip { .. }
     )
 }

@@ -3,10 +3,10 @@
 
 use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
 use crate::library::{BorrowError, BorrowedClip, Library, Model, ModelId, Motion, names_checksum};
-use crate::retarget::{JointMap, MapError, propose};
+use crate::retarget::{JointMap, MapError};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
-    choice_of_clip,
+    choice_of_clip, clip_changes,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -48,6 +48,7 @@ impl Editor {
         let problems = self.add_motions(motions.clone(), map);
         let clips = self.clips_of_last(motions.len());
         if clips == 0 && !motions.is_empty() {
+            let why = self.why_refused(&motions, &problems);
             if let Some(before) = before {
                 self.library.restore(before.loaded);
                 self.state = before.state;
@@ -56,7 +57,7 @@ impl Editor {
             self.refused = motions;
             let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
             self.events.push(Event::MotionsRefused { lacks_skeleton });
-            return Err(self.why_refused(&problems));
+            return Err(why);
         }
         self.remember(before);
         self.report(problems);
@@ -85,9 +86,8 @@ impl Editor {
         let Some(model) = self.library.get(id) else { return Ok(()) };
         let mut motion = Motion::new(model.source.clone(), model.asset.clone());
         (motion.origin, motion.is_own) = (model.origin.clone(), model.is_own);
-        self.refused.clear();
-        (self.needs_redraw, self.is_changed) = (true, true);
-        self.open_motions(vec![motion], None, None, true, admit)
+        let contents = Contents { motions: Some(vec![motion]), is_by_hand: true, ..Contents::default() };
+        self.open(contents, None, admit)
     }
 
     /// Checks that the library has room for these motions beside the loaded ones.
@@ -131,12 +131,13 @@ impl Editor {
         self.library.set_motions(motions);
     }
 
-    /// Returns why motions were refused. Unlike the command line's error, it doesn't explain how to write a map: shells offer
-    /// alternatives.
-    fn why_refused(&self, problems: &[String]) -> String {
-        if let (Some(model), [motion]) = (self.library.active(), &self.refused[..])
+    /// Returns why motions that were just added don't fit. Unlike the command line's error, it doesn't explain how to write a
+    /// map: shells offer alternatives.
+    fn why_refused(&self, motions: &[Motion], problems: &[String]) -> String {
+        let last = self.library.motions().len().saturating_sub(1);
+        if let (Some(model), [motion]) = (self.library.active(), motions)
             && !motion.asset.clips.is_empty()
-            && propose(&model.asset, &motion.asset).pairs.is_empty()
+            && self.library.proposal(last).is_some_and(|proposal| proposal.pairs.is_empty())
         {
             let has_skeleton = model.has_skeleton();
             let (motion, model) = (short_name(&motion.source), short_name(&model.source));
@@ -148,7 +149,8 @@ impl Editor {
         problems.join("\n")
     }
 
-    /// Retargets the motions' clips if anything they depend on has changed; returns problems not reported before.
+    /// Retargets the motions' clips and applies changes to clips where their inputs differ from before; returns problems not
+    /// reported yet.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(|problem| self.map_problem(problem)).collect();
@@ -164,6 +166,8 @@ impl Editor {
             new.extend(errors.iter().filter(|error| !self.reported.contains(error)).cloned());
             self.reported = errors;
         }
+        let changes = self.library.active().map(|model| clip_changes(model, &self.state)).unwrap_or_default();
+        self.needs_redraw |= self.library.change_clips(&changes);
         new
     }
 

@@ -54,13 +54,14 @@ impl Editor {
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
         let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems } = contents;
-        let is_view = view.is_some();
+        let (is_view, has_models) = (view.is_some(), !models.is_empty());
+        let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
         self.opened_map = map.as_ref().map(|opened| opened.name.clone());
         self.has_private_map |= is_map_private;
         self.refused.clear();
         let opened = match motions {
-            motions if !models.is_empty() => {
+            motions if has_models => {
                 let opened = self.open_models(models, Companions { motions, map: waiting, view }, admit);
                 if opened.is_ok() {
                     self.suits_follow = is_by_hand;
@@ -75,15 +76,16 @@ impl Editor {
         if opened.is_ok()
             && let Some(environment) = environment
         {
-            self.open_environment(environment, is_view);
+            self.open_environment(environment, is_view, has_step);
         }
         (self.needs_redraw, self.is_changed) = (true, true);
         self.report(problems);
         opened
     }
 
-    /// Adds an environment and lights the scene with it, unless a view says what lights it.
-    fn open_environment(&mut self, environment: Environment, is_view: bool) {
+    /// Adds an environment and lights the scene with it, unless a view says what lights it. With `has_step`, that is part of the
+    /// step of the models opened with it.
+    fn open_environment(&mut self, environment: Environment, is_view: bool, has_step: bool) {
         let origin = environment.origin.clone();
         self.library.add_environment(environment);
         if is_view {
@@ -92,11 +94,14 @@ impl Editor {
         let (notice, light) = (format!("Lit by {}.", short_name(&origin)), EnvironmentChoice::File(origin));
         // A newer file of the same name takes the place of the old one.
         if self.state.lighting.environment == light {
-            self.notify(notice);
+            return self.notify(notice);
+        }
+        if has_step {
+            self.state.lighting.environment = light;
         } else {
             self.record(Command::SetLight(light));
-            self.notify_undoable(notice);
         }
+        self.notify_undoable(notice);
     }
 
     /// Activates the first model, or the one that the view names, and lists the others. The current one stays in the list, and

@@ -36,6 +36,16 @@ impl Editor {
         self.history.end_gesture();
     }
 
+    /// The pointer was pressed.
+    pub fn pointer_pressed(&mut self) {
+        self.history.pointer_pressed();
+    }
+
+    /// The second click of a double click continues the gesture of the first, if that changed something.
+    pub fn continue_gesture(&mut self) {
+        self.history.continue_gesture();
+    }
+
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());

@@ -35,7 +35,8 @@ fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), Str
             "AVIF is decoded only by the page: open the model there, or convert the image to PNG, JPEG or WebP";
         return Err(problem.to_owned());
     }
-    let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut reader =
+        ImageReader::new(Cursor::new(&image.bytes[..])).with_guessed_format().map_err(|e| e.to_string())?;
     // The decoder parses the header itself.
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_IMAGE_SIDE);

@@ -7,7 +7,7 @@ use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, SortError};
 use crate::editor::{container_of, short_name};
 use crate::formats::limits::MAX_FOLDER_FILES;
-use crate::formats::{FileSet, missing_files, next_preparation};
+use crate::formats::{FileSet, GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS, missing_files, next_preparation};
 use crate::library::Model;
 use crate::samples;
 
@@ -33,8 +33,8 @@ pub(super) struct FilesRead {
 
 /// Maximum depth of files that refer to other files.
 const MAX_ROUNDS: usize = 4;
-/// Extensions that identify the model among the items.
-const MODEL_EXTENSIONS: [&str; 9] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".x", ".bvh", ".obj", ".zip"];
+/// Extensions that identify the model among the items, besides those of files that may be motions.
+const MODEL_EXTENSIONS: [&str; 2] = ["obj", "zip"];
 
 pub(super) async fn read_items<S: Source>(
     source: &S,
@@ -215,7 +215,8 @@ fn model_label(labels: &[String]) -> &str {
     let is_model = |label: &&String| {
         let label = label.to_lowercase();
         let path = label.split(['?', '#']).next().unwrap_or_default();
-        MODEL_EXTENSIONS.iter().any(|extension| path.ends_with(extension))
+        let known = GLTF_EXTENSIONS.iter().chain(&OTHER_MOTION_EXTENSIONS).chain(&MODEL_EXTENSIONS);
+        path.rsplit_once('.').is_some_and(|(_, extension)| known.into_iter().any(|known| *known == extension))
     };
     let named = || labels.iter().filter(|label| !label.is_empty());
     named().find(is_model).or_else(|| named().next()).map_or("", String::as_str)

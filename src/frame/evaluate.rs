@@ -1,5 +1,7 @@
 //! Evaluates the library and the state into a frame.
 
+use std::collections::BTreeSet;
+
 use glam::Vec3;
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
@@ -60,6 +62,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         light,
         key: state.lighting.key,
         background: state.display.background,
+        channel: state.display.channel,
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,
         boxes: state.display.show.boxes,
@@ -67,6 +70,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         shadow: state.display.show.shadow,
         grid: None,
         ground_height: 0.0,
+        time_secs: 0.0,
     };
     frame.comparison = comparison(library, state);
     frame.panes = panes(frame.comparison, aspect);
@@ -81,6 +85,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         return;
     };
     frame.clip = active_clip(model, state);
+    frame.look.time_secs = frame.clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
     frame.scratch.sampler.sample_motion(model, state);
     let follows = state.camera_options.follow;
     let travel = if follows { travel(model, frame.clip, state, &mut frame.scratch) } else { Vec3::ZERO };
@@ -110,19 +115,21 @@ fn write_characters(
     source: Option<&SourceOnStage>,
     frame: &mut Frame,
 ) {
-    let Frame { characters, scratch, clip, comparison, panes, .. } = frame;
+    let Frame { characters, scratch, look, clip, comparison, panes, .. } = frame;
     let count = (panes[0] * panes[1]) as usize;
     characters.resize_with(count + usize::from(source.is_some()), Character::default);
     let properties = &scratch.sampler.properties;
-    scratch.model_scene.update(model, state.sources.scene, properties);
+    scratch.model_scene.update(model, state.sources.scene, properties, &state.edits.hidden.nodes);
     let skeleton = &model.asset.skeleton;
-    let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
+    let time_secs = look.time_secs;
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
     for (pane, character) in characters.iter_mut().take(count).enumerate() {
         character.model = model.id;
         character.pane = comparison.is_some().then_some(pane as u32);
         character.variant = active_variant(model, state);
+        character.hidden_materials.clear();
+        character.hidden_materials.extend(&state.edits.hidden.materials);
         character.skinning = match comparison {
             Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
             _ => state.display.skinning,
@@ -156,11 +163,12 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
         clip.sample(skeleton, time_secs, &mut scratch.source_cursor, &mut scratch.source_pose);
         clip.sample_properties(time_secs, &mut scratch.source_cursor, &mut scratch.source_properties);
     }
-    scratch.source_scene.update(source.model, None, &scratch.source_properties);
+    scratch.source_scene.update(source.model, None, &scratch.source_properties, &BTreeSet::new());
     character.model = source.model.id;
     character.skinning = SkinningMode::Linear;
     character.pane = None;
     character.variant = None;
+    character.hidden_materials.clear();
     character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
     let pose = &scratch.source_pose;
     model_from_joint(skeleton, pose, source.world_from_source, &mut character.world_from_joint);
@@ -169,7 +177,8 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
 }
 
 impl Scene {
-    fn update(&mut self, model: &Model, scene: Option<usize>, properties: &PropertyValues) {
+    /// `hidden` are nodes by their index in the file.
+    fn update(&mut self, model: &Model, scene: Option<usize>, properties: &PropertyValues, hidden: &BTreeSet<usize>) {
         let key = (model.id, model.scene(scene));
         if self.key != Some(key) || self.joints.visible.len() != model.asset.skeleton.len() {
             self.joints = SceneJoints::new(&model.asset, key.1);
@@ -177,6 +186,7 @@ impl Scene {
             self.has_meshes = model.asset.instances.iter().any(|instance| at_rest[instance.joint.get()]);
             self.key = Some(key);
         }
+        self.joints.hide(hidden.iter().filter_map(|&node| model.asset.skeleton.joint_of_source(node)));
         self.joints.show(&model.asset, properties);
     }
 }

@@ -18,7 +18,7 @@ use crate::anim::{JointIndex, Pose, PropertyValues};
 use crate::asset::{LightKind, Panorama};
 use crate::library::ModelId;
 use crate::mesh::{Bounds, Material, PaletteEntry, SkinningMode};
-use crate::state::{Background, Comparison, KeyLight, LightSetup, ToneMap};
+use crate::state::{Background, Channel, Comparison, KeyLight, LightSetup, ToneMap};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -103,6 +103,8 @@ pub struct Look {
     pub key: Option<KeyLight>,
     /// What shows behind the scene.
     pub background: Background,
+    /// What surfaces show.
+    pub channel: Channel,
     /// Draws the surfaces. Without them nothing casts a shadow.
     pub mesh: bool,
     /// Draws the edges of triangles, over the surfaces if those are drawn.
@@ -117,6 +119,8 @@ pub struct Look {
     pub grid: Option<Grid>,
     /// Height of the plane that the character stands on and that receives shadows.
     pub ground_height: f32,
+    /// Time within the clip, for what moves without keys; 0 at rest.
+    pub time_secs: f32,
 }
 
 /// A grid on the ground plane.
@@ -143,6 +147,8 @@ pub struct Character {
     pub pane: Option<u32>,
     /// Index of the material variant in [`crate::asset::AssetParts::variants`]; `None` for the file's own materials.
     pub variant: Option<usize>,
+    /// Materials whose surfaces are not drawn, in ascending order; `None` is the default material.
+    pub hidden_materials: Vec<Option<usize>>,
     /// One per joint of the model.
     pub world_from_joint: Vec<Affine3A>,
     /// World-space palettes of all draws, concatenated.
@@ -176,7 +182,7 @@ pub struct Draw {
     pub mesh: usize,
     /// Whether this is another EXT_mesh_gpu_instancing copy of the draw before it.
     pub is_copy: bool,
-    /// False if the file or the clip hides the node or an ancestor.
+    /// False if the file, the clip or the user hides the node or an ancestor.
     pub visible: bool,
     /// Range in [`Character::palette`].
     pub palette: Range<u32>,
@@ -249,6 +255,7 @@ impl Default for Look {
             light: LightSetup::Studio,
             key: None,
             background: Background::Studio,
+            channel: Channel::Shaded,
             mesh: true,
             wireframe: false,
             boxes: false,
@@ -256,6 +263,7 @@ impl Default for Look {
             shadow: true,
             grid: None,
             ground_height: 0.0,
+            time_secs: 0.0,
         }
     }
 }

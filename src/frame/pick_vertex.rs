@@ -23,7 +23,8 @@ pub fn pick_vertex(
     for draw in character.draws.iter().filter(|draw| draw.visible) {
         let (palette, weights) = (character.palette_of(draw), character.morph_weights_of(draw));
         for (primitive, geometry) in model.asset.meshes.get(draw.mesh)?.primitives.iter().enumerate() {
-            if geometry.topology != Topology::Triangles || palette.is_empty() {
+            let is_hidden = character.hidden_materials.contains(&geometry.material_in(character.variant));
+            if is_hidden || geometry.topology != Topology::Triangles || palette.is_empty() {
                 continue;
             }
             deform(geometry, weights, palette, character.skinning, scratch);

@@ -7,12 +7,14 @@ use super::shaders::SurfacePermutation;
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
-use crate::state::{Background, ToneMap};
+use crate::state::{Background, Channel, ToneMap};
 
 /// Stride of the draw uniforms: the alignment WebGPU and WebGL2 require of dynamic offsets.
 const ALIGNMENT: usize = 256;
 const WIREFRAME_OVER_MESH: [f32; 4] = [0.0, 0.0, 0.0, 0.2];
 const WIREFRAME_ALONE: [f32; 4] = [0.15, 0.25, 0.38, 0.75];
+/// Opaque, so that edges that two primitives share are not darker.
+const WIREFRAME_CHANNEL: [f32; 4] = [0.1, 0.2, 0.34, 1.0];
 
 /// One draw call.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +50,11 @@ impl Item {
     }
 }
 
+/// Whether the edges of triangles are drawn.
+fn shows_edges(frame: &Frame) -> bool {
+    frame.look.wireframe || frame.look.channel == Channel::Wireframe
+}
+
 /// What the primitives of a mesh instance and its copies have in common.
 struct Instance<'a> {
     frame: &'a Frame,
@@ -73,6 +80,7 @@ impl Instance<'_> {
     fn uniform(&self, primitive: &GpuPrimitive) -> DrawUniform {
         let geometry = &primitive.geometry;
         let (morph_weights, morph_count) = self.morph_weights;
+        let look = &self.frame.look;
         DrawUniform {
             palette: self.palette,
             morph_weights,
@@ -81,21 +89,33 @@ impl Instance<'_> {
             vertices: geometry.vertices,
             influence_stride: geometry.influence_stride,
             heat_joint: self.draw.heat_joint.unwrap_or(u32::MAX),
-            padding: 0,
-            color: if self.frame.look.mesh { WIREFRAME_OVER_MESH } else { WIREFRAME_ALONE },
+            channel: look.channel as u32,
+            color: match (look.mesh, look.channel) {
+                (true, Channel::Wireframe) => WIREFRAME_CHANNEL,
+                (true, _) => WIREFRAME_OVER_MESH,
+                (false, _) => WIREFRAME_ALONE,
+            },
         }
     }
 
     fn mesh_key(&self, primitive: &GpuPrimitive) -> MeshKey {
         let geometry = &primitive.geometry;
-        let shading = if self.draw.heat_joint.is_some() { Shading::Heat } else { primitive.shading };
+        let shows_channel = self.frame.look.channel != Channel::Shaded;
+        let shading = match self.draw.heat_joint {
+            _ if shows_channel => Shading::Channel,
+            Some(_) => Shading::Heat,
+            None => primitive.shading,
+        };
         let mut features = primitive.features.with(self.lighting, shading == Shading::Lit);
+        if !shows_channel {
+            features = features.without(Features::UVS);
+        }
         if self.frame.look.smooth && geometry.topology == Topology::Triangles {
             features = features.without(Features::FLAT);
         }
         MeshKey {
             shading,
-            permutation: primitive.permutation,
+            permutation: if shows_channel { primitive.permutation.of_channels() } else { primitive.permutation },
             influences: geometry.influences,
             skinning: self.character.skinning,
             topology: geometry.topology,
@@ -118,14 +138,14 @@ fn shadow_key(key: MeshKey) -> MeshKey {
     let alpha_sources = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
     let features =
         if has_holes { key.features.only(alpha_sources).with(Features::MASK, true) } else { Features::default() };
-    let tone_map = ToneMap::default();
-    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map, coverage: false, ..key }
+    MeshKey { shading: Shading::Shadow, features, ..plain_key(key) }
 }
 
 /// The key that draws the depth of the opaque parts of a blended surface.
 fn depth_key(key: MeshKey) -> MeshKey {
     let features = key.features.only(Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true));
-    MeshKey { shading: Shading::Depth, features, tone_map: ToneMap::default(), ..key }
+    let permutation = key.permutation.without_channels();
+    MeshKey { shading: Shading::Depth, permutation, features, tone_map: ToneMap::default(), ..key }
 }
 
 /// The key that draws an MToon surface's outline, if it has one. Blended surfaces get none, because it would show
@@ -142,9 +162,18 @@ fn outline_key(primitive: &GpuPrimitive, key: MeshKey) -> Option<MeshKey> {
 
 /// The key that draws the surface's edges.
 fn wireframe_key(key: MeshKey) -> MeshKey {
+    MeshKey { shading: Shading::Wireframe, topology: Topology::Lines, ..plain_key(key) }
+}
+
+/// The key that draws the depth of the whole surface, without holes, so that it hides the edges behind it.
+fn occluder_key(key: MeshKey) -> MeshKey {
+    MeshKey { shading: Shading::Occluder, ..plain_key(key) }
+}
+
+/// A key without anything that only materials need.
+fn plain_key(key: MeshKey) -> MeshKey {
     MeshKey {
-        shading: Shading::Wireframe,
-        topology: Topology::Lines,
+        permutation: key.permutation.without_channels(),
         features: Features::default(),
         cull: None,
         mirrored: false,
@@ -211,7 +240,7 @@ impl DrawList {
         self.has_transmission
     }
 
-    /// Back to front, then wireframes.
+    /// Back to front, then wireframes; without surfaces, their depth and then wireframes.
     pub fn blended(&self) -> &[Item] {
         &self.blended
     }
@@ -237,7 +266,7 @@ impl DrawList {
         self.has_transmission = false;
         self.uniforms.clear();
         palette.clear();
-        if !frame.look.mesh && !frame.look.wireframe {
+        if !frame.look.mesh && !shows_edges(frame) {
             return;
         }
         for character in &frame.characters {
@@ -253,7 +282,7 @@ impl DrawList {
             let Some(model) = models.iter().position(|model| model.id == character.model) else { continue };
             for copies in character.draws.chunk_by(|draw, next| next.is_copy && next.mirrored == draw.mirrored) {
                 let Some(draw) = copies.first().filter(|draw| draw.visible) else { continue };
-                if frame.look.wireframe {
+                if shows_edges(frame) {
                     models[model].prepare_edges(device, draw.mesh);
                 }
                 let morph_weights = palette.push_morph_weights(character.morph_weights_of(draw));
@@ -293,6 +322,9 @@ impl DrawList {
             let Some(primitive) = primitive else { continue };
             let combined = instance(copies);
             let shown = primitive.in_variant(combined.character.variant);
+            if combined.character.hidden_materials.contains(&shown.material) {
+                continue;
+            }
             let depth_draws = DepthDraws {
                 shadow: combined.shadow && model.casts_shadow(shown),
                 opaque_parts: shown.features.has(Features::BLEND) && model.has_opaque_parts(shown),
@@ -319,6 +351,7 @@ impl DrawList {
     ) {
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
+        let edges = shows_edges(instance.frame);
         let wireframe = wireframe_key(instance.mesh_key(primitive));
         let primitive = primitive.in_variant(instance.character.variant);
         let offset = self.push_uniform(&instance.uniform(primitive));
@@ -333,7 +366,7 @@ impl DrawList {
             offset,
             copies: instance.copies,
             edges,
-            depth_only: key.shading == Shading::Depth,
+            depth_only: matches!(key.shading, Shading::Depth | Shading::Occluder),
             distance: instance.distance,
         };
         if look.mesh {
@@ -348,7 +381,7 @@ impl DrawList {
             } else if !key.features.has(Features::BLEND) {
                 self.solid.push(item(key, false));
                 // An outline would hide the wireframe.
-                if let Some(key) = outline_key(primitive, key).filter(|_| !look.wireframe) {
+                if let Some(key) = outline_key(primitive, key).filter(|_| !edges) {
                     self.solid.push(item(key, false));
                 }
             } else if primitive.double_sided && is_surface {
@@ -364,7 +397,11 @@ impl DrawList {
                 self.shadow.push(item(shadow_key(key), false));
             }
         }
-        if look.wireframe && is_surface {
+        if edges && is_surface {
+            // After the background, which is drawn only where nothing has written depth.
+            if !look.mesh {
+                self.blended.push(item(occluder_key(key), false));
+            }
             self.blended.push(item(wireframe, true));
         }
     }

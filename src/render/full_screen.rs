@@ -1,4 +1,4 @@
-//! Layout, bind group and pipeline of passes that draw one texture over a whole target.
+//! Passes that draw one texture over a whole target: layout, bind group, pipeline and the pass itself.
 
 /// Creates the layout of one filtered texture and its sampler, both for the fragment stage.
 pub(super) fn sampled_texture_layout(device: &wgpu::Device, label: &str) -> wgpu::BindGroupLayout {
@@ -72,4 +72,27 @@ impl FullScreenPipeline<'_> {
             cache: None,
         })
     }
+}
+
+/// Records a pass that covers the target.
+pub(super) fn draw_full_screen(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &str,
+    target: &wgpu::TextureView,
+    pipeline: &wgpu::RenderPipeline,
+    group: &wgpu::BindGroup,
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.draw(0..3, 0..1);
 }

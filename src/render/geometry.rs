@@ -7,6 +7,7 @@ use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
+use super::texture::texture_bytes;
 use crate::mesh::{Geometry, Influences, Topology};
 
 /// Width of a vertex texture in texels; must match skinning.wgsl.
@@ -188,6 +189,13 @@ impl GpuGeometry {
             morph_view,
             influence_view,
         })
+    }
+
+    /// Returns the memory of all buffers and textures in bytes.
+    pub fn device_bytes(&self) -> u64 {
+        let buffers = [Some(&self.shape), Some(&self.surface), self.influence_buffer.as_ref(), Some(&self.indices)];
+        let textures = [&self.morph_view, &self.influence_view].into_iter().flatten();
+        buffers.into_iter().flatten().map(wgpu::Buffer::size).sum::<u64>() + textures.map(texture_bytes).sum::<u64>()
     }
 
     /// Binds the vertex buffers but not the index buffer.

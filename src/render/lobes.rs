@@ -100,7 +100,8 @@ fn uses_map(lobes: u64, slot: TextureSlot) -> bool {
         | TextureSlot::ShadingShift
         | TextureSlot::Matcap
         | TextureSlot::RimMultiply
-        | TextureSlot::OutlineWidth => lobes & Permutation::TOON != 0,
+        | TextureSlot::OutlineWidth
+        | TextureSlot::UvAnimationMask => lobes & Permutation::TOON != 0,
         TextureSlot::BaseColor | TextureSlot::Normal | TextureSlot::Emissive => true,
     }
 }
@@ -153,4 +154,6 @@ pub(super) fn write_toon(toon: &Toon, uniform: &mut MaterialUniform) {
     uniform.outline_lighting_mix = toon.outline_lighting_mix;
     uniform.outline_width = toon.outline_width;
     uniform.outline_on_screen = u32::from(toon.outline_mode == OutlineMode::Screen);
+    uniform.uv_rotation = toon.uv_rotation;
+    uniform.uv_scroll = toon.uv_scroll.to_array();
 }

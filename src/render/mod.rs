@@ -23,6 +23,7 @@ pub mod shaders;
 mod shadow;
 mod targets;
 mod texture;
+mod thumbnail;
 mod transmission;
 mod uniform_buffer;
 pub mod uniforms;

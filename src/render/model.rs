@@ -10,7 +10,7 @@ use super::geometry::{GpuGeometry, InfluenceSource, edges};
 use super::lobes::{self, write_lobes, write_toon};
 use super::pipelines::{Features, Shading, primitive_layout};
 use super::shaders::SurfacePermutation;
-use super::texture::{MipMaker, sampler, single_texel};
+use super::texture::{MipMaker, sampler, single_texel, texture_bytes};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
@@ -31,8 +31,12 @@ pub(super) struct GpuModel {
     pub meshes: Vec<Vec<Option<GpuPrimitive>>>,
     /// The uniforms of the file's materials that primitives use, by index.
     materials: BTreeMap<usize, UniformBuffer<MaterialUniform>>,
+    /// The images that materials use, by their index in the asset and whether they are decoded from sRGB.
+    images: BTreeMap<(usize, bool), wgpu::TextureView>,
     /// Materials whose uniform currently holds animated values.
     animated: Vec<usize>,
+    /// Memory of vertices, indices and morph targets, and of images with their mip levels, in bytes.
+    pub device_bytes: [u64; 2],
 }
 
 pub(super) struct GpuPrimitive {
@@ -45,7 +49,7 @@ pub(super) struct GpuPrimitive {
     /// Whether it has an outline.
     pub outlined: bool,
     /// Index in the asset; `None` is the default material.
-    material: Option<usize>,
+    pub material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
     /// The same geometry with the materials of material variants, by the variant's index.
@@ -117,13 +121,33 @@ impl ModelUploader {
             }
             meshes.push(primitives);
         }
+        let uploaded = materials.images.drain().filter_map(|(key, view)| Some((key, view?)));
+        let images: BTreeMap<_, _> = uploaded.collect();
         let of_file = |(index, material): (Option<usize>, GpuMaterial)| Some((index?, material.uniform));
         let materials = materials.created.into_iter().filter_map(of_file).collect();
-        Ok(GpuModel { id: model.id, asset: asset.clone(), meshes, materials, animated: Vec::new() })
+        let primitives = meshes.iter().flatten().flatten();
+        let geometry_bytes = primitives.map(|primitive| primitive.geometry.device_bytes()).sum();
+        let device_bytes = [geometry_bytes, images.values().map(texture_bytes).sum()];
+        Ok(GpuModel {
+            id: model.id,
+            asset: asset.clone(),
+            meshes,
+            materials,
+            images,
+            animated: Vec::new(),
+            device_bytes,
+        })
     }
 }
 
 impl GpuModel {
+    /// Returns the images of the asset, and whether sampling decodes them from sRGB; `None` for those that no material uses.
+    pub fn images(&self) -> impl Iterator<Item = Option<(&wgpu::TextureView, bool)>> {
+        let find =
+            |image: usize| [true, false].into_iter().find_map(|srgb| Some((self.images.get(&(image, srgb))?, srgb)));
+        (0..self.asset.images.len()).map(find)
+    }
+
     /// Applies animated materials, given with their indices, and resets all others to the file's.
     pub fn animate(&mut self, queue: &wgpu::Queue, materials: &[(usize, Material)]) {
         for &index in &self.animated {
@@ -174,6 +198,7 @@ impl GpuModel {
                 contents: bytemuck::cast_slice(&indices),
                 usage: wgpu::BufferUsages::INDEX,
             });
+            self.device_bytes[0] += buffer.size();
             primitive.edges = Some((buffer, indices.len() as u32));
         }
     }
@@ -315,6 +340,7 @@ fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry
         .with(Features::TANGENTS, !geometry.tangents.is_empty())
         .with(Features::MASK, matches!(material.alpha_mode, AlphaMode::Mask { .. }))
         .with(Features::BLEND, material.alpha_mode == AlphaMode::Blend)
+        .with(Features::UVS, !geometry.uvs[0].is_empty())
 }
 
 /// `plain` is the sampler of the maps that the material does not have.

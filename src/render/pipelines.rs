@@ -108,7 +108,11 @@ pub(super) enum Shading {
     Lit,
     Unlit,
     Heat,
+    /// A single input of shading.
+    Channel,
     Wireframe,
+    /// Depth only: hides the edges behind the surface.
+    Occluder,
     /// Depth only: the opaque parts of a blended surface.
     Depth,
     /// Depth only, into the shadow map.
@@ -133,6 +137,8 @@ impl Features {
     pub const SHADOW: Self = Self(1 << 10);
     pub const FILE_LIGHTS: Self = Self(1 << 11);
     pub const OUTLINE: Self = Self(1 << 12);
+    /// Only for channels.
+    pub const UVS: Self = Self(1 << 13);
 
     pub fn with(self, other: Self, wanted: bool) -> Self {
         if wanted { Self(self.0 | other.0) } else { self }
@@ -421,7 +427,7 @@ impl Pipelines {
                 (false, false) => None,
             },
             write_mask: match key.shading {
-                Shading::Depth => wgpu::ColorWrites::empty(),
+                Shading::Depth | Shading::Occluder => wgpu::ColorWrites::empty(),
                 _ => wgpu::ColorWrites::ALL,
             },
         })];
@@ -473,6 +479,9 @@ impl Pipelines {
 fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
     let mut constants: Vec<(&str, f64)> =
         OVERRIDES.iter().enumerate().map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1))).collect();
+    if key.shading == Shading::Channel {
+        constants.push(("UVS", f64::from(u8::from(key.features.has(Features::UVS)))));
+    }
     let skinning = match key.skinning {
         SkinningMode::Linear => 0.0,
         SkinningMode::Rigid => 1.0,
@@ -506,7 +515,8 @@ fn fragment_entry_point(key: MeshKey) -> Option<&'static str> {
         Shading::Lit => Some("lit"),
         Shading::Unlit => Some("unlit"),
         Shading::Heat => Some("heat"),
-        Shading::Wireframe => Some("wireframe"),
+        Shading::Channel => Some("channel"),
+        Shading::Wireframe | Shading::Occluder => Some("wireframe"),
         Shading::Depth => Some("depth_mask"),
         Shading::Shadow => key.features.has(Features::MASK).then_some("shadow_mask"),
     }

@@ -13,6 +13,7 @@ use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
 use super::refine::{Accumulator, SAMPLE_OFFSETS};
 use super::targets::Targets;
+use super::thumbnail::thumbnails;
 use super::transmission::TransmissionPass;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
@@ -113,6 +114,14 @@ impl UniformBuffer<FrameUniform> {
     }
 }
 
+/// The target of another sample of a picture.
+#[derive(Clone, Copy)]
+struct Sample<'a> {
+    view: &'a wgpu::TextureView,
+    /// The same, bound for the transmission pass to copy; `None` until a picture has transmissive surfaces.
+    copied: Option<&'a wgpu::BindGroup>,
+}
+
 impl Renderer {
     /// Creates what every picture needs. Pipelines of meshes and overlays follow when they are first drawn.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
@@ -157,6 +166,22 @@ impl Renderer {
             self.models.push(self.uploader.upload(device, queue, model)?);
         }
         Ok(())
+    }
+
+    /// Returns small copies of an uploaded model's images, gamma-encoded; `None` for those that no material uses.
+    pub fn thumbnails(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        model: ModelId,
+    ) -> Vec<Option<wgpu::TextureView>> {
+        let model = self.models.iter().find(|known| known.id == model);
+        model.map_or_else(Vec::new, |model| thumbnails(device, queue, model.images()))
+    }
+
+    /// Returns the memory of all uploaded models in bytes: their geometry and their images.
+    pub fn device_bytes(&self) -> [u64; 2] {
+        self.models.iter().fold([0, 0], |sums, model| [0, 1].map(|kind: usize| sums[kind] + model.device_bytes[kind]))
     }
 
     /// Frees the GPU data of all other models.
@@ -244,7 +269,9 @@ impl Renderer {
         let stats = self.stats;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") });
         let ground = GroundPlane::of(frame);
-        self.draw_scene(&mut encoder, Some(&sample), frame.look.background, ground.as_ref(), &panes);
+        let copied = self.transmission.as_ref().map(|pass| pass.bind(device, &sample));
+        let target = Sample { view: &sample, copied: copied.as_ref() };
+        self.draw_scene(&mut encoder, Some(target), frame.look.background, ground.as_ref(), &panes);
         self.stats = stats;
         let accumulator = self.accumulator.get_or_insert_with(|| Accumulator::new(device));
         let group = accumulator.bind(device, &sample);
@@ -294,11 +321,11 @@ impl Renderer {
     }
 
     /// Draws everything in one pass or, with transmissive surfaces, in two: the first one's opaque surfaces are copied
-    /// for the second. Further samples, drawn into `sample`, need one pass, since they reuse the copy of the first.
+    /// for the second.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        sample: Option<&wgpu::TextureView>,
+        sample: Option<Sample>,
         background: Background,
         ground: Option<&GroundPlane>,
         panes: &Panes,
@@ -314,9 +341,11 @@ impl Renderer {
         };
         let clear = (wgpu::LoadOp::Clear(clear), wgpu::LoadOp::Clear(1.0));
         let transmission = self.transmission.as_ref().zip(self.targets.transmission.as_ref());
-        let transmission = transmission.filter(|_| self.draws.has_transmission() && sample.is_none());
+        let transmission = transmission.filter(|_| self.draws.has_transmission());
+        let copied = sample.and_then(|sample| sample.copied);
+        let view = sample.map(|sample| sample.view);
         let mut stats = RenderStats::default();
-        let mut pass = self.scene_pass(encoder, sample, clear, transmission.is_some());
+        let mut pass = self.scene_pass(encoder, view, clear, transmission.is_some());
         for pane in 0..panes.count() {
             panes.set_viewport(&mut pass, pane);
             stats += self.draw_opaque(&mut pass, background, ground, pane);
@@ -326,8 +355,8 @@ impl Renderer {
         }
         drop(pass);
         if let Some((copy, buffer)) = transmission {
-            copy.record(buffer, encoder);
-            let mut pass = self.scene_pass(encoder, None, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
+            copy.record(buffer, encoder, copied);
+            let mut pass = self.scene_pass(encoder, view, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
             for pane in 0..panes.count() {
                 panes.set_viewport(&mut pass, pane);
                 stats += self.draw_transparent(&mut pass, pane);

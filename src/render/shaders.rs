@@ -25,6 +25,7 @@ const IRIDESCENCE: &str = wgsl!("iridescence");
 const TRANSMISSION: &str = wgsl!("transmission");
 const SURFACE: &str = wgsl!("surface");
 const TOON: &str = wgsl!("toon");
+const CHANNELS: &str = wgsl!("channel");
 const GROUND: &str = wgsl!("ground");
 const LINE: &str = wgsl!("line");
 const BONE: &str = wgsl!("bone");
@@ -60,10 +61,11 @@ const MAPS: [&str; TextureSlot::ALL.len()] = [
     "matcap",
     "rim_multiply",
     "outline_width",
+    "uv_animation_mask",
 ];
 
-/// A permutation of the mesh shader: a bit for each map, in the order of [`TextureSlot`], then one for each lobe, then
-/// MToon. Everything else is cut from the shader's text, since WebGL2 has few texture units and most materials have no
+/// A permutation of the mesh shader: a bit for each map, in the order of [`TextureSlot`], then one for each lobe, MToon
+/// and channels. Everything else is cut from the shader's text, since WebGL2 has few texture units and most materials have no
 /// lobes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SurfacePermutation(pub u64);
@@ -72,32 +74,34 @@ impl SurfacePermutation {
     /// All maps of core glTF, which overrides turn off, and no lobes.
     pub const PLAIN: Self = Self(0b11111);
     /// An index of refraction, or a weight or colour of the dielectric reflection.
-    pub const SPECULAR: u64 = 1 << 24;
+    pub const SPECULAR: u64 = 1 << 25;
     /// Glossiness in the alpha of the specular colour map.
-    pub const GLOSSINESS: u64 = 1 << 25;
+    pub const GLOSSINESS: u64 = 1 << 26;
     /// KHR_materials_clearcoat.
-    pub const CLEARCOAT: u64 = 1 << 26;
+    pub const CLEARCOAT: u64 = 1 << 27;
     /// KHR_materials_sheen.
-    pub const SHEEN: u64 = 1 << 27;
+    pub const SHEEN: u64 = 1 << 28;
     /// KHR_materials_iridescence.
-    pub const IRIDESCENCE: u64 = 1 << 28;
+    pub const IRIDESCENCE: u64 = 1 << 29;
     /// KHR_materials_anisotropy.
-    pub const ANISOTROPY: u64 = 1 << 29;
+    pub const ANISOTROPY: u64 = 1 << 30;
     /// KHR_materials_transmission.
-    pub const TRANSMISSION: u64 = 1 << 30;
+    pub const TRANSMISSION: u64 = 1 << 31;
     /// KHR_materials_volume; only with transmission or diffuse transmission.
-    pub const VOLUME: u64 = 1 << 31;
+    pub const VOLUME: u64 = 1 << 32;
     /// KHR_materials_dispersion; only with transmission and a volume.
-    pub const DISPERSION: u64 = 1 << 32;
+    pub const DISPERSION: u64 = 1 << 33;
     /// KHR_materials_diffuse_transmission.
-    pub const DIFFUSE_TRANSMISSION: u64 = 1 << 33;
+    pub const DIFFUSE_TRANSMISSION: u64 = 1 << 34;
     /// All lobes.
-    pub const LOBES: u64 = 0x3ff << 24;
+    pub const LOBES: u64 = 0x3ff << 25;
     /// VRMC_materials_mtoon, which has no lobes.
-    pub const TOON: u64 = 1 << 34;
+    pub const TOON: u64 = 1 << 35;
+    /// Shows single inputs of shading instead of the whole.
+    pub const CHANNEL: u64 = 1 << 36;
 
     /// Conditions of the shaders' `#if`: true if the permutation has any of these bits.
-    const CONDITIONS: [(&str, u64); 16] = [
+    const CONDITIONS: [(&str, u64); 17] = [
         ("SPECULAR", Self::SPECULAR),
         ("GLOSSINESS", Self::GLOSSINESS),
         ("CLEARCOAT", Self::CLEARCOAT),
@@ -112,6 +116,7 @@ impl SurfacePermutation {
         ("DIFFUSE_TRANSMISSION", Self::DIFFUSE_TRANSMISSION),
         ("TRANSMISSIVE", Self::TRANSMISSION | Self::DIFFUSE_TRANSMISSION),
         ("TOON", Self::TOON),
+        ("CHANNEL", Self::CHANNEL),
         ("SHADING_SHIFT_MAP", Self::map_bit(TextureSlot::ShadingShift)),
         ("MATCAP_MAP", Self::map_bit(TextureSlot::Matcap)),
     ];
@@ -119,6 +124,16 @@ impl SurfacePermutation {
     /// The bit of a map.
     pub(super) const fn map_bit(slot: TextureSlot) -> u64 {
         1 << slot as u32
+    }
+
+    /// Returns the permutation with the same maps that shows channels.
+    pub(super) fn of_channels(self) -> Self {
+        Self(self.0 | Self::CHANNEL)
+    }
+
+    /// Returns the permutation with the same maps that doesn't.
+    pub(super) fn without_channels(self) -> Self {
+        Self(self.0 & !Self::CHANNEL)
     }
 
     /// Whether it has any of these bits.
@@ -171,6 +186,19 @@ return textureSample{call}({name}_map, {name}_sampler, map_uv({map}u, uv){level}
     }
 }
 
+/// Colours of the heat map in linear RGB at equal distances, from little weight to 1.
+pub const HEAT_COLORS: [[f32; 3]; 4] = [[0.03, 0.16, 0.75], [0.04, 0.55, 0.16], [0.95, 0.75, 0.03], [0.80, 0.03, 0.02]];
+
+/// Colours of vertices with 1, 2, 4, 8 and 16 influences, in sRGB.
+pub const INFLUENCE_COLORS: [[f32; 3]; 5] =
+    [[0.19, 0.44, 0.88], [0.16, 0.68, 0.70], [0.22, 0.76, 0.35], [0.98, 0.66, 0.13], [0.90, 0.16, 0.28]];
+
+fn write_colors(out: &mut String, name: &str, colors: &[[f32; 3]]) {
+    let colors = colors.iter().map(|[red, green, blue]| format!("vec3f({red}, {green}, {blue})"));
+    let colors = colors.collect::<Vec<_>>().join(", ");
+    out.push_str(&format!("const {name} = array({colors});\n"));
+}
+
 /// One shader module.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
@@ -180,7 +208,7 @@ pub struct Shader {
     permutation: SurfacePermutation,
 }
 
-const MESH_PARTS: [&str; 14] = [
+const MESH_PARTS: [&str; 15] = [
     FRAME,
     TONE,
     PALETTE,
@@ -195,6 +223,7 @@ const MESH_PARTS: [&str; 14] = [
     TRANSMISSION,
     SURFACE,
     TOON,
+    CHANNELS,
 ];
 
 /// Meshes without lobes: all vertex and fragment stages of the scene and shadow passes.
@@ -232,22 +261,25 @@ impl Shader {
     }
 
     /// Returns the WGSL of the whole module. `#if NAME`, `#else` and `#endif` select lines by the permutation; `#maps`
-    /// stands for the declarations of its maps.
+    /// stands for the declarations of its maps, `#heat` for [`HEAT_COLORS`], `#influences` for [`INFLUENCE_COLORS`].
     pub fn source(&self) -> String {
         let mut out = String::new();
         // Whether each enclosing `#if` selects the current line.
         let mut selected: Vec<bool> = Vec::new();
         for line in self.parts.iter().flat_map(|part| part.lines()) {
+            let is_skipped = selected.contains(&false);
             match line.strip_prefix('#') {
-                Some("maps") => self.permutation.write_maps(&mut out),
                 Some("endif") => drop(selected.pop()),
                 Some("else") => selected.last_mut().into_iter().for_each(|is_selected| *is_selected = !*is_selected),
-                Some(condition) => selected.push(self.permutation.meets(condition.trim_start_matches("if "))),
-                None if selected.iter().all(|is_selected| *is_selected) => {
+                Some(line) if line.starts_with("if ") => selected.push(self.permutation.meets(&line[3..])),
+                _ if is_skipped => {}
+                Some("maps") => self.permutation.write_maps(&mut out),
+                Some("heat") => write_colors(&mut out, "HEAT_COLORS", &HEAT_COLORS),
+                Some("influences") => write_colors(&mut out, "INFLUENCE_COLORS", &INFLUENCE_COLORS),
+                _ => {
                     out.push_str(line);
                     out.push('\n');
                 }
-                None => {}
             }
         }
         out

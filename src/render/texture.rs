@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use gaitway_ktx2::{Format, Formats, Texture as Ktx2};
 
 use super::flush;
-use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
+use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
 use super::pipelines::pipeline_layout;
 use super::shaders;
 use crate::library::ImageData;
@@ -75,23 +75,7 @@ impl MipMaker {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mips") });
         for level in given..texture.mip_level_count() {
             let bind_group = sampled_texture_group(device, "mips", &self.layout, &level_view(level - 1), &self.sampler);
-            let target = level_view(level);
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("mips"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bind_group, &[]);
-            pass.draw(0..3, 0..1);
+            draw_full_screen(&mut encoder, "mips", &level_view(level), pipeline, &bind_group);
         }
         queue.submit([encoder.finish()]);
     }
@@ -243,6 +227,19 @@ fn halved(pixels: &[u8], width: u32, height: u32) -> Vec<u8> {
         }
     }
     out
+}
+
+/// Returns the memory of a texture with all its levels in bytes.
+pub(super) fn texture_bytes(view: &wgpu::TextureView) -> u64 {
+    let texture = view.texture();
+    let format = texture.format();
+    let (block_width, block_height) = format.block_dimensions();
+    let block_bytes = u64::from(format.block_copy_size(None).unwrap_or(0));
+    let level = |level: u32| {
+        let blocks = |edge: u32, block: u32| u64::from((edge >> level).max(1).div_ceil(block));
+        blocks(texture.width(), block_width) * blocks(texture.height(), block_height) * block_bytes
+    };
+    (0..texture.mip_level_count()).map(level).sum()
 }
 
 /// Creates a texture of a single texel.

@@ -1,7 +1,7 @@
 //! The transmission buffer: a copy of everything opaque, which transmissive surfaces refract. Rough ones read its mip
 //! levels.
 
-use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
+use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
 use super::pipelines::pipeline_layout;
 use super::shaders::{self, Shader};
 
@@ -80,31 +80,27 @@ impl TransmissionPass {
         });
         let targets: Vec<wgpu::TextureView> = targets.collect();
         let sources = [image].into_iter().chain(&targets);
-        let groups = sources.map(|source| sampled_texture_group(device, LABEL, &self.layout, source, &self.sampler));
+        let groups = sources.map(|source| self.bind(device, source));
         let levels = groups.zip(targets.iter().cloned()).collect();
         TransmissionBuffer { view: texture.create_view(&Default::default()), levels }
     }
 
-    /// Records the copy of the image into the buffer and the generation of its mip levels.
-    pub fn record(&self, buffer: &TransmissionBuffer, encoder: &mut wgpu::CommandEncoder) {
+    /// Binds an image of the same size, to copy it instead of the first one.
+    pub fn bind(&self, device: &wgpu::Device, image: &wgpu::TextureView) -> wgpu::BindGroup {
+        sampled_texture_group(device, LABEL, &self.layout, image, &self.sampler)
+    }
+
+    /// Copies the buffer's image, or `other`, into the buffer and generates its mip levels.
+    pub fn record(
+        &self,
+        buffer: &TransmissionBuffer,
+        encoder: &mut wgpu::CommandEncoder,
+        other: Option<&wgpu::BindGroup>,
+    ) {
         let pipelines = [&self.copy].into_iter().chain(std::iter::repeat(&self.halve));
-        for ((source, target), pipeline) in buffer.levels.iter().zip(pipelines) {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(LABEL),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, source, &[]);
-            pass.draw(0..3, 0..1);
+        for (level, ((source, target), pipeline)) in buffer.levels.iter().zip(pipelines).enumerate() {
+            let source = other.filter(|_| level == 0).unwrap_or(source);
+            draw_full_screen(encoder, LABEL, target, pipeline, source);
         }
     }
 }

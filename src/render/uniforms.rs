@@ -67,8 +67,10 @@ pub struct FrameUniform {
     pub shadow_x: [f32; 2],
     /// X and z of half that area's edge along the shadow map's y axis.
     pub shadow_y: [f32; 2],
+    /// Time within the clip.
+    pub time_secs: f32,
     /// Unused, zero.
-    pub padding_2: [f32; 2],
+    pub padding: f32,
     /// sRGB colour of the studio background at its brightest point.
     pub background_center: [f32; 4],
     /// sRGB colour of the studio background at its edge.
@@ -101,8 +103,8 @@ pub struct DrawUniform {
     pub influence_stride: u32,
     /// Joint of the heat map as an index into the draw's palette; `u32::MAX` for none.
     pub heat_joint: u32,
-    /// Unused, zero.
-    pub padding: u32,
+    /// The [`Channel`](crate::state::Channel) that the surface shows, as a number.
+    pub channel: u32,
     /// Wireframe colour, sRGB with straight alpha.
     pub color: [f32; 4],
 }
@@ -205,8 +207,12 @@ pub struct MaterialUniform {
     pub outline_width: f32,
     /// 1 if the outline's width is a fraction of the viewport's height, otherwise 0.
     pub outline_on_screen: u32,
+    /// Speed at which texture coordinates turn, in radians per second.
+    pub uv_rotation: f32,
+    /// Speed at which texture coordinates move, in UV units per second.
+    pub uv_scroll: [f32; 2],
     /// Unused, zero.
-    pub padding: f32,
+    pub padding: [f32; 2],
     /// Transforms of the maps, in the order of [`TextureSlot::ALL`].
     pub uvs: [UvTransformUniform; TextureSlot::ALL.len()],
 }

@@ -6,11 +6,13 @@ use glam::Vec3;
 
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
-use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState};
+use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
+use super::{
+    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState,
+};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
-use crate::retarget::JointMap;
+use crate::retarget::{ClipChanges, JointMap};
 
 const MAX_NAME_CHARS: usize = 80;
 
@@ -45,7 +47,9 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
         Command::ClearPose => state.edits.pose.clear(),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
+        Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
         Command::SetShow(show) => state.display.show = show,
+        Command::SetChannel(channel) => state.display.channel = channel,
         Command::SetInspect(inspect) => state.inspect = inspect,
         Command::SelectJoint(joint) => select_joint(state, model, joint),
         Command::SelectVertex(vertex) => select_vertex(state, model, vertex),
@@ -58,6 +62,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetFollow(follow) => state.camera_options.follow = follow,
         Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
         Command::SetVariant(variant) => set_variant(state, model, variant),
+        Command::SetHidden(hidden) => set_hidden(state, model, hidden),
         Command::SetUp(up) => state.edits.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
         Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
@@ -116,6 +121,10 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (joint, name) in wanted.edits.names {
         rename(state, None, joint, &name);
     }
+    state.edits.clips.clear();
+    for (name, changes) in wanted.edits.clips {
+        insert_changes(state, name, changes.clamped());
+    }
     state.camera_options.turntable = default.camera_options.turntable;
     set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
@@ -139,6 +148,13 @@ fn set_variant(state: &mut ViewerState, model: Option<&Model>, variant: Option<S
     if variant.as_ref().is_none_or(exists) {
         state.edits.variant = variant;
     }
+}
+
+fn set_hidden(state: &mut ViewerState, model: Option<&Model>, mut hidden: Hidden) {
+    if let Some(model) = model {
+        hidden.retain_known(&model.asset);
+    }
+    state.edits.hidden = hidden;
 }
 
 fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
@@ -392,6 +408,38 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
         _ => {
             state.edits.names.insert(joint, name.to_owned());
         }
+    }
+}
+
+/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
+/// a reversed one is dropped.
+fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
+    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
+    let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
+    let changes = changes.clamped();
+    let before = changes_of(model, state, clip);
+    // A link may name the clip by its index.
+    state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
+    if active_clip(model, state) == Some(clip) {
+        let playhead = &mut state.playhead;
+        if changes.trim != before.trim {
+            (playhead.range, playhead.time_secs) = (None, 0.0);
+        }
+        let stretch = before.speed / changes.speed;
+        playhead.time_secs *= stretch;
+        playhead.range = playhead
+            .range
+            .filter(|_| changes.reverse == before.reverse)
+            .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+    }
+    insert_changes(state, name, changes);
+}
+
+fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
+    if changes.is_none() {
+        state.edits.clips.remove(&name);
+    } else {
+        state.edits.clips.insert(name, changes);
     }
 }
 

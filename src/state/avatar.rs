@@ -131,7 +131,7 @@ fn gaze_direction(
 
 impl SpringsKey {
     fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
-        let (revision, up, joints) = (model.borrowed_revision(), state.edits.up, state.edits.pose.clone());
+        let (revision, up, joints) = (model.clips_revision(), state.edits.up, state.edits.pose.clone());
         Self { model: model.id, revision, clip, range, repeats, up, joints }
     }
 
@@ -144,7 +144,7 @@ impl SpringsKey {
         range: TimeRange,
         repeats: bool,
     ) -> bool {
-        (self.model, self.revision, self.clip) == (model.id, model.borrowed_revision(), clip)
+        (self.model, self.revision, self.clip) == (model.id, model.clips_revision(), clip)
             && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
             && self.joints == state.edits.pose
     }

@@ -1,12 +1,12 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
 use super::{
-    Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, LookTarget, MapEdit, MotionMap, ToneMap, UpAxis,
-    ViewerState,
+    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Hidden, KeyLight, LookTarget, MapEdit, MotionMap,
+    ToneMap, UpAxis, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, Feet, JointMap, RootOptions, Unmapped};
 
 /// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
@@ -73,8 +73,17 @@ pub enum Command {
         /// Control characters are removed, and everything after 80 characters.
         name: String,
     },
+    /// Changes a clip, by index among all clips of the model. Numbers out of range are clamped.
+    ChangeClip {
+        /// Index among all clips.
+        clip: usize,
+        /// Replaces the changes it had.
+        changes: Box<ClipChanges>,
+    },
     /// Sets what is drawn.
     SetShow(super::Show),
+    /// Sets what surfaces show.
+    SetChannel(Channel),
     /// Sets what the viewport explains about the model.
     SetInspect(super::Inspect),
     /// Selects a joint by index in the file; `None` deselects.
@@ -117,6 +126,8 @@ pub enum Command {
     SetTurntable(f32),
     /// Shows a material variant by name; `None` shows the file's own materials.
     SetVariant(Option<String>),
+    /// Sets which nodes and materials are hidden.
+    SetHidden(Hidden),
     /// Sets which axis of the file points up.
     SetUp(UpAxis),
     /// Sets the exposure in stops, −10 to 10.

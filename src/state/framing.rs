@@ -72,14 +72,29 @@ pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
     if quarters == -2.0 { PI } else { quarters * FRAC_PI_2 + 0.0 }
 }
 
-/// Fits everything into the viewport, keeping the current direction.
+/// Returns [`resolved_bounds`] without the model's hidden nodes, unless nothing would be left or a source stands beside it.
+fn shown_bounds(library: &Library, state: &ViewerState) -> Bounds {
+    let all = resolved_bounds(library, state);
+    let nodes = &state.edits.hidden.nodes;
+    let is_whole = nodes.is_empty() || source_on_stage(library, state).is_some();
+    let Some(model) = library.active().filter(|_| !is_whole) else { return all };
+    let hidden = nodes.iter().filter_map(|&node| model.asset.skeleton.joint_of_source(node));
+    let (clip, in_place) = (active_clip(model, state), state.camera_options.follow);
+    let shown = model.clip_bounds_without(state.sources.scene, clip, in_place, &hidden.collect::<Vec<_>>());
+    if shown.is_empty() || !shown.size().is_finite() {
+        return all;
+    }
+    shown.transformed(&world_from_model(state.edits.up))
+}
+
+/// Fits everything that is shown into the viewport, keeping the current direction.
 pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let now = resolve_camera(library, state, aspect);
     match library.active() {
         Some(_) => {
             let aspect = pane_aspect(comparison(library, state), aspect);
             fit(
-                resolved_bounds(library, state),
+                shown_bounds(library, state),
                 now.yaw_radians,
                 now.pitch_radians,
                 state.camera_options.fov_degrees,

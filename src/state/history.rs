@@ -10,8 +10,17 @@ use crate::library::{Library, Loaded, ModelId};
 pub struct History {
     past: Vec<Step>,
     future: Vec<Step>,
-    /// The kind of command that the current gesture repeats.
-    gesture: Option<Discriminant<Command>>,
+    /// The gesture that made the last step.
+    gesture: Option<Gesture>,
+}
+
+/// Consecutive commands of one kind, which share a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gesture {
+    kind: Discriminant<Command>,
+    has_ended: bool,
+    /// Presses of the pointer since it ended.
+    presses: u32,
 }
 
 #[derive(Debug)]
@@ -28,7 +37,7 @@ impl History {
     const MAX_STEPS: usize = 200;
 
     /// Applies a command, and adds a step if it was an edit that changed something. Consecutive commands of one kind are one
-    /// step until [`History::end_gesture`].
+    /// step until [`History::end_gesture`], and none if they end where they began.
     pub fn apply(&mut self, state: &mut ViewerState, library: &Library, command: Command) {
         if !may_be_edit(&command) {
             apply(state, library, command);
@@ -39,17 +48,35 @@ impl History {
         apply(state, library, command);
         // Commands that move the camera while a slider is dragged don't end the gesture.
         if before.undoable() != state.undoable() {
-            if self.gesture != Some(kind) {
+            let gesture = Some(Gesture { kind, has_ended: false, presses: 0 });
+            if self.gesture != gesture {
                 self.push(Step::Edits(before));
             }
             self.future.clear();
-            self.gesture = Some(kind);
+            self.gesture = gesture;
+            let is_back =
+                |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
+            if self.past.pop_if(is_back).is_some() {
+                self.gesture = None;
+            }
         }
     }
 
     /// The pointer or the key was released: the next edit is a separate step.
     pub fn end_gesture(&mut self) {
-        self.gesture = None;
+        self.gesture.iter_mut().for_each(|gesture| gesture.has_ended = true);
+    }
+
+    /// The pointer was pressed.
+    pub fn pointer_pressed(&mut self) {
+        self.gesture.iter_mut().filter(|gesture| gesture.has_ended).for_each(|gesture| gesture.presses += 1);
+    }
+
+    /// The second click of a double click continues the gesture of the first, if that changed something.
+    pub fn continue_gesture(&mut self) {
+        if let Some(gesture) = self.gesture.as_mut().filter(|gesture| gesture.presses < 2) {
+            (gesture.has_ended, gesture.presses) = (false, 0);
+        }
     }
 
     /// Adds a step with what was loaded before something was opened, retargeted or removed.
@@ -132,7 +159,8 @@ impl History {
 impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
-        matches!(self, Self::Edits(edits) if edits.retarget != state.retarget)
+        matches!(self, Self::Edits(before)
+            if before.retarget != state.retarget || before.edits.clips != state.edits.clips)
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.

@@ -1,6 +1,7 @@
 //! The text form of a view state: `key=value` pairs joined by `&` after the `#`, and the same keys as a JSON object. Old links
 //! keep working: `v=1` fixes the defaults, and unknown keys are preserved when the link is written again.
 
+mod changes;
 mod files;
 mod values;
 
@@ -161,6 +162,20 @@ const KEYS: &[Key] = &[
         "two times in seconds and a clip: 0.1,1.5,Walk"
     ),
     key!("play", playback.playing, flag, write_flag, "0 or 1"),
+    Key {
+        name: "mirror",
+        repeatable: true,
+        read: changes::read_mirror,
+        write: changes::write_mirror,
+        reset: changes::reset_mirror,
+    },
+    Key {
+        name: "change",
+        repeatable: true,
+        read: changes::read_change,
+        write: changes::write_change,
+        reset: changes::reset_change,
+    },
     key!("speed", playback.speed, finite, write_number, "a factor such as 0.5"),
     word!("loop", playback.loop_mode, LOOP_MODES, "once, loop or ping-pong"),
     key!(
@@ -183,6 +198,13 @@ const KEYS: &[Key] = &[
     key!("springs", display.springs, flag, write_flag, "0 or 1"),
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
+    word!(
+        "channel",
+        display.channel,
+        CHANNELS,
+        "shaded, base-color, normal, tangent, roughness, metallic, occlusion, emissive, uv, vertex-color, influences or \
+         wireframe"
+    ),
     Key { name: "show", repeatable: false, read: read_show, write: write_show, reset: reset_show },
     key!("joint", selection.joint, read_index, write_index, "a joint's index in the file"),
     key!(
@@ -209,6 +231,7 @@ const KEYS: &[Key] = &[
         write_some(String::clone),
         "the name of a material variant"
     ),
+    key!("hidden", edits.hidden, read_hidden, write_hidden, "node indices, and materials as m and their index: 4,7,m2"),
     word!("up", edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
     key!("exposure", display.exposure, finite, write_number, "stops"),
     word!("tonemap", display.tone_map, TONE_MAPS, "neutral, aces, agx or none"),

@@ -3,9 +3,11 @@
 mod apply;
 mod avatar;
 mod camera;
+mod channel;
 mod command;
 mod comparison;
 mod framing;
+mod hidden;
 mod history;
 mod lighting;
 mod link;
@@ -23,11 +25,13 @@ mod view;
 pub use apply::apply;
 pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
+pub use channel::Channel;
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use framing::{
     DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
 };
+pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
@@ -40,8 +44,8 @@ pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
 pub use playhead::{
-    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, unknown_clip,
-    world_from_model,
+    PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_secs, manual_degrees, manual_rotation,
+    play_range, unknown_clip, world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};

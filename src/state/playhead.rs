@@ -1,11 +1,14 @@
 //! From a view state to a pose: the active clip, its time, and the sampled pose.
 
+use std::collections::BTreeMap;
+
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::avatar::AvatarPose;
 use super::{ClipChoice, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
+use crate::retarget::ClipChanges;
 
 /// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
@@ -29,7 +32,7 @@ pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
 }
 
 /// Finds a clip by its name, its index in decimal, or its display title.
-fn clip_called(model: &Model, name: &str) -> Option<usize> {
+pub(super) fn clip_called(model: &Model, name: &str) -> Option<usize> {
     if name.is_empty() {
         return None;
     }
@@ -44,6 +47,21 @@ pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
     let found = clip_called(model, name);
     let unique = model.clips().filter(|other| other.name() == name).count() == 1;
     ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
+}
+
+/// Returns the changes of the model's clips by index; names that the model lacks are skipped.
+pub fn clip_changes(model: &Model, state: &ViewerState) -> BTreeMap<usize, ClipChanges> {
+    let clips = state.edits.clips.iter();
+    clips.filter_map(|(name, changes)| Some((clip_called(model, name)?, changes.clone()))).collect()
+}
+
+/// Returns the changes of one clip.
+pub fn changes_of(model: &Model, state: &ViewerState, clip: usize) -> ClipChanges {
+    let mut clips = state.edits.clips.iter().rev();
+    clips
+        .find(|(name, _)| clip_called(model, name) == Some(clip))
+        .map(|(_, changes)| changes.clone())
+        .unwrap_or_default()
 }
 
 /// Returns the in and out points, clamped to the clip.

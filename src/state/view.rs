@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, Lighting, LookTarget, MotionMap, ToneMap};
+use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{Feet, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, Feet, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -160,8 +160,12 @@ pub struct Edits {
     /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
     /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,
+    /// Changes to clips, by their name, or index in decimal, as in [`ClipChoice::Named`]; never empty ones.
+    pub clips: BTreeMap<String, ClipChanges>,
     /// Name of the material variant (KHR_materials_variants); `None` shows the file's own materials.
     pub variant: Option<String>,
+    /// Nodes and materials that are not shown.
+    pub hidden: Hidden,
     /// Which axis of the file points up.
     pub up: UpAxis,
 }
@@ -228,6 +232,8 @@ pub struct Display {
     pub skinning: SkinningMode,
     /// What is drawn.
     pub show: Show,
+    /// What surfaces show.
+    pub channel: Channel,
     /// The target of an avatar's gaze.
     pub look_at: LookTarget,
     /// Whether an avatar's spring bones are simulated.
@@ -247,6 +253,7 @@ impl Default for Display {
         Self {
             skinning: SkinningMode::Linear,
             show: Show::default(),
+            channel: Channel::Shaded,
             look_at: LookTarget::Off,
             springs: false,
             exposure: 0.0,

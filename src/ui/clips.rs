@@ -10,6 +10,7 @@ use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;
+const BORROW_WIDTH: f32 = 56.0;
 /// Including the space below.
 const ROW_HEIGHT: f32 = 32.0;
 /// Height of the clip list's heading.
@@ -74,6 +75,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     ScrollArea::vertical().id_salt("clips").auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         clips(ui, shown, model, &list.search, scrolls, out);
+        controls::follow_focus(ui);
     });
 }
 
@@ -151,9 +153,9 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
             let is_active = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let lends = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
-                let buttons = if lends { 2.0 } else { 1.0 };
-                let size = egui::vec2(ui.available_width() - buttons * (CLEAR_SIZE + 2.0), ROW_HEIGHT);
+                let has_motion = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
+                let borrow_width = if has_motion { BORROW_WIDTH + 2.0 } else { 0.0 };
+                let size = egui::vec2(ui.available_width() - borrow_width - CLEAR_SIZE - 2.0, ROW_HEIGHT);
                 let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", is_active)).inner;
                 if scrolls && is_active {
                     row.scroll_to_me(None);
@@ -161,8 +163,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
                 if row.clicked() && !is_active {
                     out.actions.push(UiAction::ShowModel(model.id));
                 }
-                let borrow = text::borrow_from(name);
-                if lends && icon_button_sized(ui, Icon::Borrow, &borrow, false, CLEAR_SIZE).clicked() {
+                if has_motion && borrow_button(ui, name) {
                     out.actions.push(UiAction::BorrowFrom(model.id));
                 }
                 let close = text::close_model(name);
@@ -171,7 +172,16 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
                 }
             });
         }
+        controls::follow_focus(ui);
     });
+}
+
+/// Returns whether the button that borrows the motion of an open model was clicked.
+fn borrow_button(ui: &mut Ui, name: &str) -> bool {
+    ui.spacing_mut().button_padding.x = 4.0;
+    let button = ui.add_sized([BORROW_WIDTH, CLEAR_SIZE], egui::Button::new(text::BORROW).small());
+    controls::named(&button, || text::borrow_from(name));
+    button.on_hover_ui(|ui| drop(ui.label(text::borrow_from(name)))).clicked()
 }
 
 /// The name of a motion, above its clips.

@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
 use super::icons::{Icon, icon_button};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
-use crate::editor::Export;
+use crate::editor::{ClipFormat, Export};
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -134,14 +134,19 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     let clip = active_clip(model, shown.state);
     let borrowed = clip.and_then(|clip| Some((clip, model.borrowed(clip)?)));
     let pictures = &local.picture_settings;
-    let files = [
-        borrowed.map(|(clip, _)| (text::SAVE_GLB, Export::Model { clip })),
-        clip.map(|clip| (text::SAVE_CLIP, Export::Clip { clip })),
+    let clips = clip.into_iter().flat_map(|clip| {
+        let formats = ClipFormat::ALL.into_iter().filter(|format| format.fits(model));
+        formats.map(move |format| (text::save_clip(format), Export::Clip { clip, format }))
+    });
+    let derived = clip.filter(|&clip| model.is_derived(clip));
+    let model_with_clip = derived.map(|clip| (text::SAVE_GLB, Export::Model { clip }));
+    let others = [
         borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),
         (model.asset.format == "obj").then_some((text::SAVE_REST_POSE, Export::FullModel { posed: false })),
         (model.asset.format == "obj").then_some((text::SAVE_CURRENT_POSE, Export::FullModel { posed: true })),
     ];
-    let files = files.into_iter().flatten().map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
+    let files = model_with_clip.into_iter().chain(clips).chain(others.into_iter().flatten());
+    let files = files.map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
     let video = shown.is_animated().then(|| (text::RECORD, UiAction::Record(pictures.video())));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
     for (label, action) in [image].into_iter().chain(video).chain(files) {

@@ -14,13 +14,21 @@ pub struct KeyHelp {
     /// What they do, as the help says it.
     pub does: &'static str,
     pressed: &'static [Key],
-    act: fn(&Shown<'_>, &mut UiState, usize, &mut Output),
+    act: fn(&Shown<'_>, &mut UiState, Press, &mut Output),
+}
+
+/// The press of a key.
+#[derive(Clone, Copy)]
+struct Press {
+    /// Its index in [`KeyHelp::pressed`].
+    which: usize,
+    has_shift: bool,
 }
 
 const ORBIT_STEP_RADIANS: f32 = 0.12;
 const ZOOM_STEP: f32 = 0.9;
 
-/// All shortcuts. `act` receives the index of the pressed key in `pressed`.
+/// All shortcuts.
 pub const KEY_TABLE: &[KeyHelp] = &[
     KeyHelp {
         keys: "Space",
@@ -32,13 +40,13 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: text::STEP_KEYS,
         does: text::STEP_FRAMES,
         pressed: &[Key::Comma, Key::Period],
-        act: |_, _, which, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
+        act: |_, _, Press { which, .. }, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
     },
     KeyHelp {
         keys: "Up  Down",
         does: "Zoom in, zoom out",
         pressed: &[Key::ArrowUp, Key::ArrowDown],
-        act: |_, _, which, out| {
+        act: |_, _, Press { which, .. }, out| {
             let factor = if which == 0 { ZOOM_STEP } else { 1.0 / ZOOM_STEP };
             out.commands.push(Command::Zoom { factor, right: 0.0, up: 0.0 });
         },
@@ -47,7 +55,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "Left  Right",
         does: "Orbit",
         pressed: &[Key::ArrowLeft, Key::ArrowRight],
-        act: |_, _, which, out| {
+        act: |_, _, Press { which, .. }, out| {
             let yaw_radians = if which == 0 { -ORBIT_STEP_RADIANS } else { ORBIT_STEP_RADIANS };
             out.commands.push(Command::Orbit { yaw_radians, pitch_radians: 0.0 });
         },
@@ -56,7 +64,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "1 – 9",
         does: "Play a clip",
         pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
-        act: |shown, _, which, out| {
+        act: |shown, _, Press { which, .. }, out| {
             if let Some(model) = shown.library.active().filter(|model| which < model.clip_count()) {
                 out.commands.push(Command::SetClip(choice_of_clip(model, which)));
             }
@@ -84,7 +92,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "I  O",
         does: "Set in point, set out point",
         pressed: &[Key::I, Key::O],
-        act: |shown, _, which, out| out.commands.extend(range_here(shown, which == 0)),
+        act: |shown, _, Press { which, .. }, out| out.commands.extend(range_here(shown, which == 0)),
     },
     KeyHelp {
         keys: "L",
@@ -102,7 +110,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "S  W  G",
         does: "Toggle skeleton, wireframe, grid",
         pressed: &[Key::S, Key::W, Key::G],
-        act: |shown, _, which, out| {
+        act: |shown, _, Press { which, .. }, out| {
             let mut show: Show = shown.state.display.show;
             match which {
                 0 => show.skeleton = !show.skeleton,
@@ -113,10 +121,21 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
+        keys: "V, Shift V",
+        does: text::CYCLE_CHANNELS,
+        pressed: &[Key::V],
+        act: |shown, _, press, out| {
+            let channel = shown.state.display.channel.cycled(if press.has_shift { -1 } else { 1 });
+            out.commands.push(Command::SetChannel(channel));
+        },
+    },
+    KeyHelp {
         keys: "T  N",
         does: "Show or hide the clips, the inspector",
         pressed: &[Key::T, Key::N],
-        act: |_, local, which, _| local.layout.toggle(if which == 0 { Sheet::Clips } else { Sheet::Inspector }),
+        act: |_, local, Press { which, .. }, _| {
+            local.layout.toggle(if which == 0 { Sheet::Clips } else { Sheet::Inspector })
+        },
     },
     KeyHelp { keys: "Ctrl O", does: "Open files", pressed: &[], act: |_, _, _, _| {} },
     KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo", pressed: &[], act: |_, _, _, _| {} },
@@ -154,7 +173,8 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     }
     shortcuts(context, out);
     // An open menu has the arrow keys and Esc.
-    if context.egui_wants_keyboard_input() || egui::Popup::is_any_open(context) {
+    let is_taken = context.egui_wants_keyboard_input() && !local.viewport.has_focus;
+    if is_taken || egui::Popup::is_any_open(context) {
         return;
     }
     // While the modal help is open, only the keys that close it work.
@@ -164,14 +184,24 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
             continue;
         }
         for (which, &key) in line.pressed.iter().enumerate() {
-            let presses = context.input(|input| {
-                let plain = !input.modifiers.intersects_command_or_alt();
-                if plain { input.num_presses(key) } else { 0 }
-            });
-            for _ in 0..presses {
-                (line.act)(shown, local, which, out);
+            let pressed =
+                |input: &egui::InputState| input.events.iter().filter_map(|event| plain_press(event, key)).collect();
+            let presses: Vec<bool> = context.input(pressed);
+            for has_shift in presses {
+                (line.act)(shown, local, Press { which, has_shift }, out);
             }
         }
+    }
+}
+
+/// If the event presses this key without Ctrl, Alt or Cmd, returns whether Shift was held then: on a slow machine, Shift may have been
+/// released by the end of the frame.
+fn plain_press(event: &egui::Event, wanted: Key) -> Option<bool> {
+    match *event {
+        egui::Event::Key { key, pressed: true, modifiers, .. } if key == wanted => {
+            (!modifiers.intersects_command_or_alt()).then_some(modifiers.shift)
+        }
+        _ => None,
     }
 }
 

@@ -1,8 +1,10 @@
 //! The user interface: functions that show a library and a view state and return commands. They change neither, and know
 //! neither the clock nor the GPU; what only the interface remembers lives in [`UiState`].
 
+mod change;
 mod clips;
 mod feet;
+mod gestures;
 mod header;
 mod keys;
 mod motion;
@@ -17,10 +19,12 @@ mod widgets;
 use egui::{Context, Rect, Ui};
 
 use crate::anim::Clip;
+use crate::editor::ValidatorReport;
 use crate::frame::Frame;
-use crate::library::{Library, Model};
+use crate::library::{Library, Model, ModelId};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
+pub use gestures::{begin_gestures, end_gestures};
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use output::{Output, Saved, UiAction, VideoSettings};
 pub use tabs::Tab;
@@ -103,6 +107,9 @@ pub struct UiState {
     pub about_open: bool,
     /// Time stands still while the user holds the playhead or points at the rotation gizmo.
     pub holds_time: bool,
+    /// The model in the open Info tab, which needs its thumbnails and the GPU memory; taken by the app in each frame.
+    pub info_model: Option<ModelId>,
+    lists: tabs::Lists,
     clip_list: clips::ClipList,
     scene_tree: tabs::SceneTree,
     vertex_probe: tabs::VertexProbe,
@@ -126,8 +133,81 @@ pub struct HostState {
     pub can_undo_retargeting: bool,
     /// The next redo repeats such an edit.
     pub can_redo_retargeting: bool,
+    /// Counts for the last image, and frame times.
+    pub drawn: Drawn,
+    /// GPU memory of the shown models in bytes: geometry and images.
+    pub drawn_bytes: [u64; 2],
+    /// Small copies of the images of `thumbnails_of`, by index in the asset.
+    pub thumbnails: Vec<Option<egui::TextureId>>,
+    /// The model that they were made for.
+    pub thumbnails_of: Option<ModelId>,
     /// The video that is being recorded; everything else waits.
     pub recording: Option<RecordingProgress>,
+    /// The host can run the Khronos validator.
+    pub has_validator: bool,
+    /// The model was read from a glTF, which can be validated.
+    pub has_gltf: bool,
+    /// The last validation and its model.
+    pub validation: Option<(ModelId, Validation)>,
+}
+
+/// State of the validation of a model's file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Validation {
+    /// The validator is running.
+    Running,
+    /// The validator's report.
+    Done(ValidatorReport),
+    /// Why there is no report.
+    Failed(String),
+}
+
+/// What the last image took to draw.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Drawn {
+    /// Draw calls of the shadow pass and of all panes.
+    pub draw_calls: u32,
+    /// Triangles of meshes and bones in all panes.
+    pub triangles: u32,
+    /// Times between frames while something moves.
+    pub frames: FrameTimes,
+}
+
+/// Times between the last frames in seconds, without the pauses while nothing moves.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameTimes {
+    secs: [f32; Self::CAPACITY],
+    /// Number of times added so far.
+    count: usize,
+}
+
+impl Default for FrameTimes {
+    fn default() -> Self {
+        Self { secs: [0.0; Self::CAPACITY], count: 0 }
+    }
+}
+
+impl FrameTimes {
+    /// Maximum number of times.
+    pub const CAPACITY: usize = 120;
+
+    /// Adds a time, in place of the oldest one when full.
+    pub fn push(&mut self, secs: f32) {
+        self.secs[self.count % Self::CAPACITY] = secs;
+        self.count += 1;
+    }
+
+    /// Returns the times, the oldest first.
+    pub fn iter(&self) -> impl Iterator<Item = f32> + '_ {
+        let oldest = self.count.saturating_sub(Self::CAPACITY);
+        (oldest..self.count).map(|at| self.secs[at % Self::CAPACITY])
+    }
+
+    /// Returns the mean of the times; `None` before the first.
+    pub fn mean_secs(&self) -> Option<f32> {
+        let count = self.count.min(Self::CAPACITY);
+        (count > 0).then(|| self.iter().sum::<f32>() / count as f32)
+    }
 }
 
 /// How far the recording of a video has got.

@@ -42,6 +42,8 @@ pub enum UiAction {
     Record(VideoSettings),
     /// Discard the recording.
     CancelRecording,
+    /// Validate the model's file.
+    Validate,
     /// Share a link to this view.
     ShareLink,
     /// Open this view in a page of its own, from a page that embeds it.

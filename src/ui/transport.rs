@@ -163,7 +163,7 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         })
         .inner;
     let slider = slider.accessible_name(text::SPEED).on_hover_text("Speed. Double-click to reset to 1×.");
-    if slider.double_clicked() {
+    if controls::is_double_clicked(&slider) {
         out.commands.push(Command::SetSpeed(1.0));
     } else if slider.changed() {
         // Snaps to the normal speed.

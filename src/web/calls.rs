@@ -12,7 +12,7 @@ use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::frame::PoseDocument;
-use crate::library::{Environment, Model, Motion};
+use crate::library::{Environment, Model, ModelId, Motion};
 use crate::samples;
 use crate::state::{
     Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
@@ -26,7 +26,7 @@ use crate::ui::title_and_hint;
 #[wasm_bindgen]
 pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_hand: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
-    let items = items_of(&items).map_err(error)?;
+    let items = items_of(items).map_err(error)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
     let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await.map_err(error)?;
     Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
@@ -106,6 +106,16 @@ pub async fn video_frame(index: u32) -> Result<Uint8Array, JsError> {
     let page = page().map_err(error)?;
     let pixels = with_app(&page, |app| app.video_frame(index)).flatten().map_err(error)?;
     pixels.await.map(|pixels| Uint8Array::from(pixels.as_slice())).map_err(error)
+}
+
+/// Returns the glTF that a model was read from as it was opened, or the file that it refers to by a URI.
+#[wasm_bindgen]
+pub fn gltf_file(model: f64, uri: Option<String>) -> Result<Uint8Array, JsError> {
+    let page = page().map_err(error)?;
+    let read = |app: &mut App| {
+        app.editor().gltf_file(ModelId(model as u64), uri.as_deref()).map(|file| Uint8Array::from(file.as_slice()))
+    };
+    with_app(&page, read).map_err(error)?.ok_or_else(|| error("there is no such file"))
 }
 
 /// Resolves when the first image has been drawn, and starts time.
@@ -269,7 +279,8 @@ async fn show(
     Ok(Opened { kind, document, problems })
 }
 
-pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
+/// Takes the array, so that the browser can free the files as soon as they are copied.
+pub(super) fn items_of(items: Array) -> Result<Vec<Item>, String> {
     let invalid = || "expected URLs, files, or one object with a buffer for each name".to_owned();
     items
         .iter()

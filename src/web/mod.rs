@@ -5,6 +5,7 @@
 mod bench;
 mod calls;
 mod links;
+mod mirror;
 mod page;
 mod rehearsal;
 mod shell;

@@ -10,10 +10,11 @@ use wasm_bindgen::prelude::*;
 use super::calls::with_app;
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
+use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::{Contents, ExportedFile};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
-use crate::library::{Environment, Model};
+use crate::library::{Environment, Model, ModelId};
 use crate::samples;
 use crate::state::{EnvironmentChoice, ViewerState, from_link, to_link};
 
@@ -21,6 +22,7 @@ use crate::state::{EnvironmentChoice, ViewerState, from_link, to_link};
 pub(super) struct Page {
     pub runner: eframe::WebRunner,
     pub inbox: Inbox,
+    pub context: egui::Context,
     pub shell: Shell,
     pub loads: Loads,
 }
@@ -59,7 +61,7 @@ pub async fn run(
     shell::set_shell(shell.clone());
     let has_arrived = Cell::new(false);
     let first = async {
-        let contents = first_contents(&link, &items, &motion_items, is_private, &shell).await;
+        let contents = first_contents(&link, items, motion_items, is_private, &shell).await;
         has_arrived.set(true);
         contents
     };
@@ -84,18 +86,21 @@ pub async fn run(
 
 async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<(), String> {
     let runner = eframe::WebRunner::new();
-    let inbox_cell = std::rc::Rc::new(RefCell::new(None));
-    let app_inbox_cell = inbox_cell.clone();
+    let started = std::rc::Rc::new(RefCell::new(None));
+    let start = started.clone();
     let host = Box::new(PageHost { shell: shell.clone() });
-    let create: eframe::AppCreator<'static> =
-        Box::new(move |cc| Ok(Box::new(App::new(cc, host, |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?)));
+    let create: eframe::AppCreator<'static> = Box::new(move |cc| {
+        let context = cc.egui_ctx.clone();
+        context.add_plugin(Mirror::new(shell::mirror));
+        Ok(Box::new(App::new(cc, host, |inbox| *start.borrow_mut() = Some((inbox, context)))?))
+    });
     runner.start(canvas, web_options(), create).await.map_err(|error| text_of(&error))?;
     if IS_DESTROYED.get() {
         runner.destroy();
         return Err("Gaitway was stopped".to_owned());
     }
-    let inbox = inbox_cell.borrow_mut().take().ok_or("Gaitway couldn't start")?;
-    let page = Page { runner, inbox, shell: shell.clone(), loads: Loads::default() };
+    let (inbox, context) = started.borrow_mut().take().ok_or("Gaitway couldn't start")?;
+    let page = Page { runner, inbox, context, shell: shell.clone(), loads: Loads::default() };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
     Ok(())
 }
@@ -104,8 +109,8 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
 /// model cannot be opened, falls back to the skeleton of the first motion that can, then to an empty stage.
 async fn first_contents(
     link: &str,
-    items: &Array,
-    motion_items: &Array,
+    items: Array,
+    motion_items: Array,
     is_private: bool,
     shell: &Shell,
 ) -> Result<(Contents, ViewerState, Vec<String>), String> {
@@ -244,6 +249,19 @@ impl Host for PageHost {
 
     fn cancel_recording(&self) {
         self.shell.cancel_recording();
+    }
+
+    fn has_validator(&self) -> bool {
+        true
+    }
+
+    fn validate(&self, model: ModelId, inbox: &Inbox) {
+        let (shell, inbox) = (self.shell.clone(), inbox.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            let report = shell.validate(model.0 as f64).await;
+            let report = report.map(|report| text_of(&report)).map_err(|error| text_of(&error));
+            inbox.send(Message::Validated(model, report));
+        });
     }
 
     /// Does nothing: the shell handles drops before the canvas does, since it keeps the files and reads folders.

@@ -39,6 +39,10 @@ extern "C" {
     #[wasm_bindgen(method, js_name = cancelRecording)]
     pub fn cancel_recording(this: &Shell);
 
+    /// Validates the glTF of a model, which [`super::calls::gltf_file`] returns. Resolves to the report as JSON.
+    #[wasm_bindgen(method, catch)]
+    pub async fn validate(this: &Shell, model: f64) -> Result<JsValue, JsValue>;
+
     /// Reports the progress of a download before anything is on screen; a total of 0 is unknown.
     #[wasm_bindgen(method)]
     pub fn progress(this: &Shell, name: &str, received_bytes: f64, total_bytes: f64);
@@ -75,6 +79,10 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str);
 
+    /// Shows the panels' accessibility tree; see [`crate::app::mirror`].
+    #[wasm_bindgen(method)]
+    pub fn mirror(this: &Shell, tree: &str);
+
     /// Reports that the instance has stopped: nothing more can be drawn or called.
     #[wasm_bindgen(method)]
     pub fn stopped(this: &Shell, message: &str);
@@ -84,15 +92,24 @@ thread_local! {
     static SHELL: RefCell<Option<Shell>> = const { RefCell::new(None) };
 }
 
-/// Makes the shell available to the hooks for panics and lost devices, which receive nothing but a message.
+/// Makes the shell available to hooks, which receive nothing but a text.
 pub(super) fn set_shell(shell: Shell) {
     SHELL.with_borrow_mut(|slot| *slot = Some(shell));
 }
 
+/// If a panic happened while the slot was borrowed, it cannot be reported.
+fn shell() -> Option<Shell> {
+    SHELL.with(|slot| slot.try_borrow().ok().and_then(|slot| slot.clone()))
+}
+
 pub(super) fn stopped(message: &str) {
-    // If the panic happened while the slot was borrowed, it cannot be reported.
-    let shell = SHELL.with(|slot| slot.try_borrow().ok().and_then(|slot| slot.clone()));
-    if let Some(shell) = shell {
+    if let Some(shell) = shell() {
         shell.stopped(message);
+    }
+}
+
+pub(super) fn mirror(tree: &str) {
+    if let Some(shell) = shell() {
+        shell.mirror(tree);
     }
 }

@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable;
 use gaitway::app::{App, Host, Inbox, Message, ScriptCall, Video, native_options};
 use gaitway::editor::ExportedFile;
 use gaitway::files::{Role, read_paths};
-use gaitway::library::Library;
+use gaitway::library::{Library, ModelId};
 use gaitway::state::{Command, ViewerState};
 use gaitway::ui::text;
 
@@ -24,6 +24,8 @@ pub struct Desk {
     inbox: Inbox,
     /// The video whose recording was started last.
     pub video: Rc<RefCell<Option<Video>>>,
+    /// The models whose validation was started.
+    pub validated: Rc<RefCell<Vec<ModelId>>>,
 }
 
 /// Returns `None` if there is no adapter.
@@ -34,13 +36,15 @@ pub fn desk(first: &str) -> Option<Desk> {
     let ready = inbox.clone();
     let video = Rc::new(RefCell::new(None));
     let window_video = video.clone();
+    let validated = Rc::new(RefCell::new(Vec::new()));
+    let window_validated = validated.clone();
     let mut frame = eframe::Frame::_new_kittest();
     let show = move |ui: &mut egui::Ui, app: &mut Option<App>| {
         let app = app.get_or_insert_with(|| {
             let mut cc = eframe::CreationContext::_new_kittest(ui.ctx().clone());
             cc.wgpu_render_state = Some(gpu.clone());
             let (contents, ready) = (contents.take().expect("begins once"), ready.clone());
-            let window = Window { video: window_video.clone() };
+            let window = Window { video: window_video.clone(), validated: window_validated.clone() };
             let ready = move |inbox| *ready.borrow_mut() = Some(inbox);
             let mut app = App::new(&cc, Box::new(window), ready).expect("starts");
             app.open(contents, None).expect("fits");
@@ -56,7 +60,7 @@ pub fn desk(first: &str) -> Option<Desk> {
     };
     let harness = Harness::builder().with_size([1280.0, 720.0]).build_ui_state(show, None);
     let inbox = inbox.take().expect("given at the start");
-    let mut desk = Desk { harness, inbox, video };
+    let mut desk = Desk { harness, inbox, video, validated };
     desk.command(Command::TogglePlaying);
     assert!(!desk.state().playback.playing);
     // A window of this size starts without it.
@@ -185,6 +189,7 @@ fn gpu() -> Result<RenderState, impl std::fmt::Display> {
 
 struct Window {
     video: Rc<RefCell<Option<Video>>>,
+    validated: Rc<RefCell<Vec<ModelId>>>,
 }
 
 impl Host for Window {
@@ -201,6 +206,14 @@ impl Host for Window {
     fn record(&self, video: Video, _inbox: &Inbox) -> Result<(), String> {
         *self.video.borrow_mut() = Some(video);
         Ok(())
+    }
+
+    fn has_validator(&self) -> bool {
+        true
+    }
+
+    fn validate(&self, model: ModelId, _inbox: &Inbox) {
+        self.validated.borrow_mut().push(model);
     }
 
     fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}

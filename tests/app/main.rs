@@ -7,4 +7,5 @@ mod data_folder;
 mod desk;
 mod open;
 mod record;
+mod validate;
 mod view;

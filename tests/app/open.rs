@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use gaitway::editor::ClipFormat;
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, to_link};
 use gaitway::ui::{Tab, text};
@@ -87,7 +88,7 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
 fn what_is_saved_is_told() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.press(text::EXPORT);
-    desk.press(text::SAVE_CLIP);
+    desk.press(text::save_clip(ClipFormat::Glb));
     assert!(desk.shows("Saved Pilot-"), "{:?}", desk.problem());
 }
 

@@ -2,6 +2,7 @@
 
 use gaitway::frame::travelled;
 use gaitway::state::{CameraChoice, Command, Inspect, OrbitCamera, Show};
+use gaitway::ui::{Tab, text};
 use glam::Vec3;
 
 use crate::desk::{Desk, desk};
@@ -69,4 +70,20 @@ fn a_paused_picture_is_refined_and_then_left_alone() {
     assert!(desk.screenshot() == settled, "the same view gives the same picture");
     desk.settle();
     assert!(desk.screenshot() == settled, "the picture doesn't change any more");
+}
+
+#[test]
+fn the_info_tab_measures_what_is_drawn_and_comes_to_rest() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.press(Tab::Info.label());
+    desk.settle();
+    for (row, nothing) in [
+        (text::DRAW_CALLS, "0"),
+        (text::DRAWN_TRIANGLES, "0"),
+        (text::GEOMETRY_MEMORY, "0.0 MB"),
+        (text::IMAGE_MEMORY, "0.0 MB"),
+    ] {
+        assert!(desk.shows(&text::labelled(row, "")), "{row}");
+        assert!(!desk.shows(&text::labelled(row, nothing)), "{row} should have been measured");
+    }
 }

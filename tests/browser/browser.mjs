@@ -214,12 +214,19 @@ export function drop(page, files, across = 0.5) {
 export const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
 
 /**
+ * Returns what the panels offer under this role and name.
+ * @param {Page} page
+ * @param {Parameters<Page["getByRole"]>[0]} role
+ * @param {string | RegExp} name
+ */
+export const control = (page, role, name) => page.locator("#mirror").getByRole(role, { name }).first();
+
+/**
  * Opens the share dialog by keyboard.
  * @param {Page} page
  */
 export async function share(page) {
-  await page.locator("#do-share").focus();
-  await page.keyboard.press("Enter");
+  await control(page, "button", "Share…").press("Enter");
   await page.locator("#share").waitFor({ state: "visible" });
 }
 

@@ -6,7 +6,7 @@ import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
-import { BACK_ENDS, colorsOf, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
@@ -132,9 +132,8 @@ for (const renderer of BACK_ENDS)
       await page.keyboard.press("Escape");
       assert.equal(await gallery(page).isVisible(), false);
       await until(page, (height) => document.querySelector("canvas")?.getBoundingClientRect().height === height, DESKTOP.height);
-      await page.locator("#do-samples").focus();
-      await page.keyboard.press("Enter");
-      assert.equal(await gallery(page).isVisible(), true);
+      await control(page, "button", "Samples").press("Enter");
+      await gallery(page).waitFor({ state: "visible" });
       assert.equal(await card(page, last.name).evaluate((card) => card === document.activeElement), true, "the focus starts at the current scene");
       await page.locator("#gallery-close").press("Enter");
       assert.equal(await gallery(page).isVisible(), false);

@@ -229,7 +229,7 @@ for (const renderer of BACK_ENDS) {
     onPage("says that a folder has no files in it", {}, async (page) => {
       await apply(page, { play: 0 });
       const before = await page.screenshot();
-      await page.locator("#do-open").evaluate((button) => button instanceof HTMLElement && button.click());
+      await page.locator("#gallery-own").evaluate((button) => button instanceof HTMLElement && button.click());
       await page.locator("#open-folder").dispatchEvent("change");
       await until(page, () => /folder has no files/.test(document.querySelector("#problem")?.textContent ?? ""));
       assert.equal(await page.locator("#open").isVisible(), false);

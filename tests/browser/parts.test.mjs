@@ -4,7 +4,9 @@ import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { walkingPerson } from "../three/npz.mjs";
 import { dataUri, png, withPngTextures, withTextures } from "../three/ktx2.mjs";
+import { withoutMeshopt } from "../three/meshopt.mjs";
 import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 /**
@@ -13,9 +15,12 @@ import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite, state
  */
 const COMPRESSED = [
   {
-    plain: "compressed/RobotExpressive-gltfpack-quantized.glb",
+    plain: "threejs/RobotExpressive.glb",
     view: "clip=&camera=30,10,20,0,2,0",
-    encodings: [{ file: "compressed/RobotExpressive-gltfpack-meshopt.glb", part: "meshopt" }],
+    encodings: [
+      { file: "compressed/RobotExpressive-gltfpack-meshopt.glb", part: "meshopt" },
+      { file: "compressed/RobotExpressive-gltfpack-quantized.glb" },
+    ],
   },
   {
     plain: "khronos/CesiumMan/glTF/CesiumMan.gltf",
@@ -46,6 +51,8 @@ const COMPRESSED = [
  */
 const QUANTIZED = 0.1;
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+/** Their uncompressed originals are not among the files. */
+const MESHOPT = ["compressed/loaders-gl-meshopt/BoxTextured_meshopt.glb", "compressed/loaders-gl-meshopt/pirate.glb"];
 const KTX2 = "compressed/agi-ktx2.glb";
 const AVIF = new URL("../support/gradients.avif", import.meta.url);
 const UASTC = new URL("../support/ktx2/uastc.ktx2", import.meta.url);
@@ -239,6 +246,22 @@ for (const renderer of BACK_ENDS)
       return found;
     }
 
+    for (const file of MESHOPT)
+      test(`${file} looks as three.js's decoder has it, under either name of the extension`, async () => {
+        const expected = await pictureOf(await withoutMeshopt(dataFile(file)));
+        // Both names are equally long, so nothing else in the file changes.
+        const khr = fs.readFileSync(dataFile(file), "latin1").replaceAll("EXT_meshopt_compression", "KHR_meshopt_compression");
+        for (const name of [file, "made.glb"]) {
+          const page = await site.page({ renderer, link: `model=${site.data(name)}`, files: { "made.glb": Buffer.from(khr, "latin1") } });
+          assert.equal(requested(page).length, 1);
+          assert.match(requested(page)[0], /\/parts\/meshopt-[0-9a-f]{16}\.wasm$/);
+          const difference = meanDifference(await picture(page), expected);
+          assert.ok(difference < QUANTIZED, `${name}: the pictures differ by ${difference} of 255`);
+          assert.deepEqual(page.troubles, []);
+          await page.finish();
+        }
+      });
+
     test("a model with KTX2 textures is a link and looks like the same with PNG; they cost only themselves if the decoder fails", async () => {
       const expected = await pictureOf(await withPngTextures(dataFile(KTX2)));
       const page = await site.page({ renderer, link: `model=${site.data(KTX2)}` });
@@ -340,6 +363,20 @@ for (const renderer of BACK_ENDS)
         const off = apart(expected.nodes.filter(({ name }) => name !== "RootNode"), found.nodes);
         assert.ok(off < 6e-4, `moment ${at}: ${off} apart, of a height of 6`);
       }
+    });
+
+    test("a .npz file is a link like any other", async () => {
+      const files = { "strides.npz": walkingPerson(22) };
+      const page = await site.page({ renderer, link: `model=${site.data("threejs/Xbot.glb")}&motion=${site.data("strides.npz")}&clip=strides&play=0&t=0`, files });
+      await whenBorrowed(page, 1);
+      assert.deepEqual(requested(page).map((url) => url.replace(/.*\/parts\/|-[0-9a-f]{16}/g, "")), ["npz.wasm"]);
+      /** Height of the left knee. */
+      const knee = async () => (await pose(page)).nodes.find(({ name }) => name === "mixamorig:LeftLeg")?.world[13] ?? NaN;
+      const standing = await knee();
+      await apply(page, { t: 0.5 });
+      assert.ok((await knee()) - standing > 0.1, `${standing}, then ${await knee()}`);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
     });
 
     test("a .x file is a link like any other, as a model and as a motion", async () => {

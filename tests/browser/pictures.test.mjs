@@ -20,6 +20,10 @@ const MAX_COLOR_DIFFERENCE = 0.5;
 const FOV_DEGREES = 35;
 const MODES = ["linear", "rigid", "dual-quaternion"];
 
+const SKY = "materials/bevy/spiaggia_di_mondello_1k.hdr";
+
+/** @typedef {{ name: string, file: string, clip: string, t: number, light?: string }} Shown */
+
 /** `blended`: vertices have several influences, so the three methods give three shapes. */
 const MODELS = [
   { name: "Fox", file: "khronos/Fox/glTF-Binary/Fox.glb", clip: "Run", t: 0.5, yaw: 60, blended: true },
@@ -28,7 +32,7 @@ const MODELS = [
   { name: "dwarf", file: "cosc422/dwarf.glb", clip: "0", t: 1, yaw: 30, blended: false },
 ];
 
-/** Not skinned, so only compared between the back ends. */
+/** Not skinned, so only compared between the back ends. @type {Shown[]} */
 const MORE_PICTURES = [
   { name: "AnimatedMorphCube", file: "khronos/AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb", clip: "0", t: 1.5 },
   { name: "RobotExpressive", file: "threejs/RobotExpressive.glb", clip: "Wave", t: 0.6 },
@@ -39,14 +43,26 @@ const MORE_PICTURES = [
 ];
 
 /**
+ * In the light of an .hdr image, which is also the background. Without fine textures: on a software adapter the page
+ * draws a picture four times, while the command line samples each texture once, anisotropically.
+ * @type {Shown[]}
+ */
+const LIT_PICTURES = [
+  { name: "glass-table", file: "materials/playcanvas/glass-table.glb", clip: "", t: 0, light: SKY },
+  { name: "cryptovoxels", file: "vrm/vrm0_cryptovoxels.vrm", clip: "", t: 0, light: SKY },
+];
+
+/**
  * Draws a model with `gaitway render` as the page shows it, and returns three bytes per pixel.
- * @param {{ file: string, clip: string, t: number }} model
+ * @param {Shown} model
  * @param {{ width: number, height: number }} size
  */
-async function renderNatively({ file, clip, t }, { width, height }) {
+async function renderNatively({ file, clip, t, light }, { width, height }) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-"));
   const out = path.join(folder, "picture.png");
-  const options = ["--out", out, "--size", `${width}x${height}`, "--view", `clip=${clip}&t=${t}`];
+  const background = light === undefined ? "studio" : "environment";
+  const options = ["--out", out, "--size", `${width}x${height}`, "--view", `clip=${clip}&t=${t}&background=${background}`];
+  if (light !== undefined) options.push("--environment", dataFile(light));
   const { status, stderr } = await run("render", dataFile(file), ...options);
   assert.equal(status, 0, stderr);
   const rgb = await sharp(out).removeAlpha().raw().toBuffer();
@@ -71,13 +87,16 @@ describe("pictures", { skip: skipWithoutData }, () => {
   before(async () => (site = await startSite()));
   after(() => site?.close());
 
-  for (const model of [...MODELS, ...MORE_PICTURES])
+  /** @type {Shown[]} */
+  const compared = [...MODELS, ...MORE_PICTURES, ...LIT_PICTURES];
+  for (const model of compared)
     test(`${model.name}: the back ends and the command line agree`, async () => {
       const pictures = [];
       for (const renderer of BACK_ENDS) {
         const page = await site.page({ renderer });
         await open(page, site.data(model.file));
         await apply(page, { clip: model.clip, t: model.t, play: 0 });
+        if (model.light !== undefined) await apply(page, { light: site.data(model.light), background: "environment" });
         pictures.push(await picture(page));
         assert.deepEqual(page.troubles, []);
         await page.finish();

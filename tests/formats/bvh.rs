@@ -5,6 +5,7 @@ use gaitway::asset::Asset;
 use gaitway::formats::{FileSet, LoadError, LoadOptions, load, load_named, load_with, main_files};
 use glam::{Affine3A, Quat, Vec3};
 
+use crate::allocations::allocations_after;
 use crate::build_gltf::one;
 use crate::data_folder::data_folder;
 
@@ -228,6 +229,29 @@ fn joints_may_nest_to_any_depth() {
     assert_eq!(read_bvh(&text).expect("readable").skeleton.len(), DEPTH + 1);
     let open = &text[..text.len() - DEPTH];
     assert!(read_bvh(open).is_err());
+}
+
+/// Nested or side by side. With 100,000 joints, anything quadratic takes minutes.
+#[test]
+fn twice_as_many_joints_take_twice_as_many_allocations() {
+    const JOINT: &str = "JOINT a { OFFSET 0 1 0 CHANNELS 3 Zrotation Xrotation Yrotation ";
+    let nested = |count: usize| JOINT.repeat(count) + &"}".repeat(count);
+    let side_by_side = |count: usize| format!("{JOINT}}} ").repeat(count);
+    for joints in [&nested as &dyn Fn(usize) -> String, &side_by_side] {
+        let allocations = |count: usize| {
+            let frame = "1 2 3 ".repeat(count);
+            let motion = format!("MOTION\nFrames: 1\nFrame Time: 1\n{frame}\n");
+            let text = format!("HIERARCHY\nROOT r {{ OFFSET 0 0 0 CHANNELS 0\n{} }}\n{motion}", joints(count));
+            let read = |asset: &mut Option<Asset>| *asset = Some(read_bvh(&text).expect("readable"));
+            let mut asset = None;
+            let allocations = allocations_after(&mut asset, read, read);
+            let asset = asset.expect("it was read");
+            assert_eq!((asset.skeleton.len(), asset.clips[0].channels().len()), (count + 1, count));
+            allocations
+        };
+        let [half, whole] = [50_000, 100_000].map(allocations);
+        assert!(whole < 2 * half + half / 10, "{half} and {whole}");
+    }
 }
 
 #[test]

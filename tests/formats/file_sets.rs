@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 
 use base64::Engine;
-use gaitway::formats::{FileSet, LoadError, load, missing_files};
+use gaitway::formats::{FileSet, LoadError, load, missing_files, next_preparation, referred_file};
 use zip::write::SimpleFileOptions;
 
 use crate::build_gltf::{Build, one};
@@ -44,6 +44,22 @@ fn check(files: &FileSet) -> Vec<&'static str> {
     let asset = load(files).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!(asset.meshes[0].primitives[0].positions.len(), 3);
     asset.warnings.iter().map(|warning| warning.code()).collect()
+}
+
+#[test]
+fn a_uri_leads_to_the_file_that_loading_finds() {
+    let files = set(&[("a/model.gltf", vec![1]), ("a/skin a.png", vec![2]), ("b/100%.bin", vec![3])]);
+    let found = |uri| referred_file(&files, "a/model.gltf", uri).map(|bytes| bytes[0]);
+    for (uri, file) in [
+        ("skin%20a.png", Some(2)),
+        ("skin a.png", Some(2)),
+        ("../b/100%25.bin", Some(3)),
+        ("textures/SKIN%20A.png", Some(2)),
+        ("other.bin", None),
+        ("https://example.org/a/other.bin", None),
+    ] {
+        assert_eq!(found(uri), file, "{uri}");
+    }
 }
 
 #[test]
@@ -129,6 +145,18 @@ fn an_archive_adds_to_the_other_files() {
     assert_eq!(check(&files), [""; 0]);
 }
 
+/// A copy would need twice the memory for a moment.
+#[test]
+fn a_file_is_not_copied() {
+    let fbx = b"Kaydara FBX Binary  \0".to_vec();
+    let read = fbx.as_ptr();
+    let mut files = FileSet::default();
+    files.add("m.fbx", fbx).expect("no archive");
+    let held = files.get("m.fbx").expect("it was added");
+    let preparation = next_preparation(&files).expect("readable").expect("an .fbx is converted");
+    assert_eq!((held.as_ptr(), preparation.input.as_ptr()), (read, read));
+}
+
 #[test]
 fn broken_archives_report_the_problem() {
     let whole = zipped(&[("m.glb", Build::triangle().glb())]);
@@ -136,7 +164,7 @@ fn broken_archives_report_the_problem() {
     assert!(matches!(cut, LoadError::Archive { .. }) && cut.to_string().contains("a.zip"), "{cut}");
     let empty = unpacked("a.zip", zipped(&[("readme.txt", b"hello".to_vec())])).expect("a readable archive");
     let empty = load(&empty).unwrap_err().to_string();
-    assert!(empty.contains("no model") && empty.contains("readme.txt"), "{empty}");
+    assert!(empty.contains("expected a model") && empty.contains("readme.txt"), "{empty}");
 }
 
 /// The header claims a huge file, so it is refused before anything is unpacked.

@@ -11,6 +11,7 @@ use zip::write::SimpleFileOptions;
 use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
 use crate::mutation::{REAL, damage, generated};
+use crate::numpy::{npz, person, stored};
 use crate::random::Random;
 
 #[path = "../../fuzz/entries.rs"]
@@ -81,6 +82,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
         "gltf" => of_kind(false).map(|(_, bytes)| bytes).collect(),
         "bvh" => of_kind(true).map(|(_, bytes)| bytes).collect(),
         "x" => x_files(),
+        "npz" => vec![npz(&person(22)), stored(&person(52))],
         "exercise" => vec![EXERCISE.to_vec()],
         "archive" => vec![zipped()],
         "map" => vec![MAP.to_vec()],

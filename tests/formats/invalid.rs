@@ -33,6 +33,7 @@ fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
 #[test]
 fn foreign_formats() {
     check_bytes("model.dae", b"<COLLADA/>".to_vec(), &["COLLADA", "Blender"]);
+    check_bytes("sky.exr", b"\x76\x2f\x31\x01".to_vec(), &["OpenEXR", ".hdr"]);
 }
 
 #[test]
@@ -56,6 +57,10 @@ fn invalid_chunks() {
     check_bytes("model.glb", no_json, &["a JSON chunk"]);
     check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON, asset: it ends too soon"]);
     check_bytes("notes.glb", b"notes on a rig".to_vec(), &["expected a GLB", "found text that begins with “n”"]);
+    check_bytes("cat.glb", b"\x89PNG\r\n\x1a\n\0\0".to_vec(), &["cat.glb: expected a GLB", "found a PNG image"]);
+    check_bytes("rig.glb", b"PK\x03\x04".to_vec(), &["a .zip archive; name it .zip"]);
+    check_bytes("rig.glb", b"<!DOCTYPE html>".to_vec(), &["a web page or XML"]);
+    check_bytes("rig.glb", vec![0, 1, 2, 3], &["binary data that begins with byte 0x00"]);
 }
 
 #[test]
@@ -75,7 +80,7 @@ fn invalid_json_is_located_by_line_and_column() {
     check_bytes("model.gltf", text.as_bytes().to_vec(), &["line 2", "column", "-1"]);
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extras\":{}", "[".repeat(100_000));
     check_bytes("model.gltf", deep.into_bytes(), &["not valid JSON"]);
-    check_bytes("model.gltf", Vec::new(), &["it is empty"]);
+    check_bytes("model.gltf", Vec::new(), &["the file is empty"]);
 }
 
 /// No editor shows the JSON inside a GLB, so line numbers would help nobody.

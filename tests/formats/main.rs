@@ -16,6 +16,7 @@ mod lobes;
 mod meshopt;
 mod mtoon;
 mod mutation;
+mod npz;
 mod obj;
 mod playback;
 mod pointer;
@@ -24,14 +25,19 @@ mod sweep;
 mod tangents;
 mod variants;
 mod write;
+mod write_clip;
 mod x;
 
+#[path = "../support/allocations.rs"]
+mod allocations;
 #[path = "../support/build_gltf.rs"]
 mod build_gltf;
 #[path = "../support/coursework.rs"]
 mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
+#[path = "../support/numpy.rs"]
+mod numpy;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/skeletons.rs"]

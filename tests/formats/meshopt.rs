@@ -68,7 +68,11 @@ fn compressed_files_load_like_the_originals() {
         let mut gltf = one("a/model.gltf", json.to_string().into_bytes());
         gltf.insert("a/model.bin", data);
         for files in [&mut glb, &mut gltf] {
+            let name = files.names().next().unwrap().to_owned();
+            let opened = files.get(&name).cloned();
             prepare(files).unwrap();
+            assert_ne!(files.get(&name), opened.as_ref());
+            assert_eq!(files.original(&name), opened.as_ref(), "kept for the validator");
             let asset = load(files).unwrap();
             assert_eq!(asset.meshes[0].primitives[0].positions, original.meshes[0].primitives[0].positions);
             assert_eq!(asset.meshes[0].primitives[0].indices, original.meshes[0].primitives[0].indices);

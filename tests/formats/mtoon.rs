@@ -37,11 +37,13 @@ fn every_value_of_vrm_1_is_read() {
         "outlineWidthMode": "screenCoordinates", "outlineWidthFactor": 0.21,
         "outlineWidthMultiplyTexture": { "index": 2 },
         "outlineColorFactor": [0.22, 0.23, 0.24], "outlineLightingMixFactor": 0.25,
+        "uvAnimationScrollXSpeedFactor": 0.26, "uvAnimationScrollYSpeedFactor": -0.27,
+        "uvAnimationRotationSpeedFactor": 2.8, "uvAnimationMaskTexture": { "index": 9 },
     }));
     assert_eq!(warnings(&asset), [""; 0]);
     let slots = TextureSlot::ALL.map(|slot| texture(&asset.materials[0], slot));
     let start = TextureSlot::ShadeMultiply as usize;
-    assert_eq!(slots[start..], [Some(4), Some(6), Some(13), Some(17), Some(2)]);
+    assert_eq!(slots[start..], [Some(4), Some(6), Some(13), Some(17), Some(2), Some(9)]);
     assert!(slots[..start].iter().all(Option::is_none));
     assert_eq!(asset.materials[0].texture(TextureSlot::ShadingShift).map(|texture| texture.uv_set), Some(1));
     let expected = Toon {
@@ -59,6 +61,8 @@ fn every_value_of_vrm_1_is_read() {
         outline_width: 0.21,
         outline_color: Vec3::new(0.22, 0.23, 0.24),
         outline_lighting_mix: 0.25,
+        uv_scroll: Vec2::new(0.26, -0.27),
+        uv_rotation: 2.8,
         textures: toon(&asset).textures,
     };
     assert_eq!(*toon(&asset), expected);
@@ -101,8 +105,28 @@ fn invalid_values_are_reported_and_replaced_by_the_default() {
         assert!(matches!(&warnings[..], [warning] if warning.starts_with(&place)), "{warnings:?}");
         assert_eq!(asset.materials[0].toon.clone().unwrap_or_default(), Box::default());
     }
-    let moving = warnings(&mtoon(json!({ "uvAnimationScrollXSpeedFactor": 0.5 })));
-    assert!(matches!(&moving[..], [warning] if warning.contains("move")), "{moving:?}");
+}
+
+/// WebGL2 has texture units for eight of the nine.
+#[test]
+fn a_texture_too_many_is_left_out() {
+    let info = json!({ "index": 1 });
+    let names = ["shadeMultiply", "shadingShift", "matcap", "rimMultiply", "outlineWidthMultiply", "uvAnimationMask"];
+    let toon: serde_json::Map<String, Value> =
+        names.iter().map(|name| (format!("{name}Texture"), info.clone())).collect();
+    let asset = triangle_of(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": info },
+        "normalTexture": info,
+        "emissiveTexture": info,
+        "extensions": { "VRMC_materials_mtoon": toon },
+    }))
+    .loaded();
+    let material = &asset.materials[0];
+    let of_toon = TextureSlot::ALL.into_iter().filter(|&slot| slot >= TextureSlot::ShadeMultiply);
+    let left_out: Vec<TextureSlot> = of_toon.filter(|&slot| texture(material, slot).is_none()).collect();
+    assert_eq!(left_out, [TextureSlot::ShadingShift]);
+    let warnings = warnings(&asset);
+    assert!(matches!(&warnings[..], [warning] if warning.contains("shadingShiftTexture")), "{warnings:?}");
 }
 
 /// A VRM 0.x file with a single material that has these properties, and these blend shape groups.
@@ -126,13 +150,14 @@ fn vrm_0_is_converted() {
         "floatProperties": {
             "_Cutoff": 0.3, "_CullMode": 0, "_ShadeShift": 0.2, "_ShadeToony": 0.5, "_IndirectLightIntensity": 0.25,
             "_RimLightingMix": 0.4, "_RimFresnelPower": 3, "_RimLift": 0.1, "_BumpScale": 0.7,
-            "_OutlineWidthMode": 1, "_OutlineWidth": 0.5, "_OutlineColorMode": 1, "_OutlineLightingMix": 0.6 },
+            "_OutlineWidthMode": 1, "_OutlineWidth": 0.5, "_OutlineColorMode": 1, "_OutlineLightingMix": 0.6,
+            "_UvAnimScrollX": 0.1, "_UvAnimScrollY": 0.2, "_UvAnimRotation": 0.3 },
         "vectorProperties": {
             "_Color": [0.5, 1, 0, 0.5], "_ShadeColor": [0.5, 0, 0, 1], "_RimColor": [0, 0.5, 0, 1],
             "_OutlineColor": [0, 0, 0.5, 1], "_EmissionColor": [2, 0, 0, 1], "_MainTex": [0.125, 0.25, 0.5, 0.25] },
         "textureProperties": {
             "_MainTex": 1, "_ShadeTexture": 2, "_BumpMap": 3, "_EmissionMap": 4, "_SphereAdd": 5, "_RimTexture": 6,
-            "_OutlineWidthTexture": 7 },
+            "_OutlineWidthTexture": 7, "_UvAnimMaskTexture": 8 },
         "keywordMap": { "_ALPHATEST_ON": true },
     });
     let group = json!({ "name": "blush", "presetName": "unknown", "binds": [], "materialValues": [
@@ -153,6 +178,7 @@ fn vrm_0_is_converted() {
         TextureSlot::Matcap,
         TextureSlot::RimMultiply,
         TextureSlot::OutlineWidth,
+        TextureSlot::UvAnimationMask,
     ];
     for (number, slot) in slots.into_iter().enumerate() {
         assert_eq!(texture(material, slot), Some(number + 1), "{slot:?}");
@@ -171,6 +197,7 @@ fn vrm_0_is_converted() {
     assert_eq!((toon.rim_fresnel_power, toon.rim_lift, toon.rim_lighting_mix), (3.0, 0.1, 0.4));
     assert_eq!((toon.outline_mode, toon.outline_lighting_mix), (OutlineMode::World, 0.6));
     close(toon.outline_width, 0.005);
+    assert_eq!((toon.uv_scroll, toon.uv_rotation), (Vec2::new(0.1, -0.2), 0.3));
     let colors = [toon.shade_color, toon.rim_color, toon.outline_color];
     assert_eq!(colors, [half * Vec3::X, half * Vec3::Y, half * Vec3::Z]);
     let [bind] = &asset.avatar.expressions[0].materials[..] else { panic!("no colour") };

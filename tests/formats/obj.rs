@@ -62,8 +62,8 @@ fn an_invalid_obj_is_rejected_with_place_and_reason() {
         ("v 0 0 0\nf 1//2 1//2 1//2\n", ["m.obj", "line 2", "one of the 0 normals", "2"]),
         ("v 0 0 0\nf 1/1/1/1 1 1\n", ["m.obj", "line 2", "1/1/1", "“1/1/1/1”"]),
         ("v 0 0 0\nf one two three\n", ["m.obj", "line 2", "1/1/1", "“one”"]),
-        ("v 0 0 0\n", ["m.obj", "the whole file", "a face", "none"]),
-        ("", ["m.obj", "the whole file", "a face", "none"]),
+        ("v 0 0 0\n", ["m.obj", "", "a face", "none"]),
+        ("", ["m.obj", "", "a face", "none"]),
     ];
     for (obj, wanted) in cases {
         check_error(load(&set(&[("m.obj", obj)])), wanted);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gaitway::anim::{Clip, SampleCursor, model_from_joint};
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, Part, load, missing_files, next_preparation};
+use gaitway::formats::{FileSet, Part, load, missing_files, next_preparation, prepare};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, deform, palette_entry, write_palette};
 use glam::{Affine3A, Vec3};
 
@@ -154,4 +154,12 @@ fn a_file_is_known_by_its_content_or_its_extension() {
         let problem = load(&files).unwrap_err().to_string();
         assert!(problem.contains("`prepare`"), "{problem}");
     }
+}
+
+#[test]
+fn only_a_gltf_has_an_original() {
+    let mut files = one("a.x", b"xof 0303txt 0032 Frame root { }".to_vec());
+    prepare(&mut files).unwrap();
+    assert!(files.get("a.x").unwrap().starts_with(b"glTF"));
+    assert_eq!(files.original("a.x"), None);
 }

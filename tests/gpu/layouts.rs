@@ -55,7 +55,8 @@ fn frames_and_draws_have_the_same_layout_in_wgsl_and_rust() {
         shadow_center,
         shadow_x,
         shadow_y,
-        padding_2,
+        time_secs,
+        padding,
         background_center,
         background_edge,
         sky_ahead,
@@ -73,6 +74,7 @@ fn frames_and_draws_have_the_same_layout_in_wgsl_and_rust() {
         vertices,
         influence_stride,
         heat_joint,
+        channel,
         color
     );
 }
@@ -123,6 +125,8 @@ fn materials_have_the_same_layout_in_wgsl_and_rust() {
         rim_lift,
         outline_width,
         outline_on_screen,
+        uv_rotation,
+        uv_scroll,
         uvs
     );
 }

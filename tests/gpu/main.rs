@@ -6,6 +6,7 @@ mod animated;
 #[allow(dead_code)]
 #[path = "../support/build_gltf.rs"]
 mod build_gltf;
+mod channels;
 mod cli;
 #[path = "../support/coursework.rs"]
 mod coursework;

@@ -2,7 +2,7 @@
 
 use gaitway::library::ImageData;
 use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
-use gaitway::render::{RendererOptions, texture_formats};
+use gaitway::render::{Renderer, RendererOptions, texture_formats};
 use gaitway_ktx2::{Format, Formats, Texture as Ktx2, decode, request};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
@@ -187,4 +187,35 @@ fn multisampling_smooths_edges_and_keeps_the_area() {
     let area: f32 = smooth.0.as_chunks::<4>().0.iter().map(|pixel| f32::from(pixel[3]) / 255.0).sum();
     let expected = (SIZE * SIZE / 4) as f32;
     assert!((area - expected).abs() < 0.03 * expected, "{area} of {expected} pixels");
+}
+
+#[test]
+fn thumbnails_show_the_images_as_they_are() {
+    let Some(gpu) = gpu() else { return };
+    let material = Material { base_color_texture: MAP, normal_texture: second(), ..gray() };
+    let textures = [0, 1, 2].map(|image| Texture { image: Some(image), sampler: Sampler::default() });
+    let images = [[200, 100, 50, 255], [128, 40, 250, 0], [1, 2, 3, 255]].map(flat_image).map(Some);
+    let scene = Scene::textured(vec![square(0)], vec![material], textures.to_vec(), images.to_vec());
+    let Gpu { device, queue } = &gpu;
+    let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
+    renderer.upload(device, queue, &scene.model).unwrap();
+    // Nothing uses the third.
+    let thumbnails = renderer.thumbnails(device, queue, scene.model.id);
+    let shown: Vec<Option<[u8; 4]>> = thumbnails
+        .iter()
+        .map(|view| view.as_ref().map(|view| gpu.read(view.texture(), 4)[..4].try_into().unwrap()))
+        .collect();
+    near(shown[0].unwrap(), [200, 100, 50, 255], 1);
+    near(shown[1].unwrap(), [128, 40, 250, 255], 1);
+    assert_eq!((shown.len(), shown[2]), (3, None));
+    // Two images of one texel.
+    let [geometry, images] = renderer.device_bytes();
+    assert!(geometry >= 4 * (24 + 40) && images == 8, "{geometry}, {images}");
+    renderer.retain(&[]);
+    assert_eq!(renderer.device_bytes(), [0, 0]);
+    assert!(renderer.thumbnails(device, queue, scene.model.id).is_empty());
+}
+
+fn second() -> Option<TextureRef> {
+    Some(TextureRef { texture: 1, uv_set: 0, uv_transform: UvTransform::IDENTITY })
 }

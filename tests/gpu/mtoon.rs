@@ -134,6 +134,41 @@ fn rim_and_matcap_are_added() {
     }
 }
 
+/// The formula of @pixiv/three-vrm: texture coordinates turn about their middle, then move, both in proportion to the mask's blue.
+#[test]
+fn texture_coordinates_move_and_turn_with_time() {
+    let Some(gpu) = gpu() else { return };
+    let (red, green, blue, white) = ([255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]);
+    // All texture coordinates are (0.25, 0.25), in the first of four texels.
+    let shown = |first: [u8; 4], has_mask: bool, time_secs: f32, values: Toon| {
+        let mut material = toon(Toon { shading_shift: 3.0, ..values });
+        material.base_color = Vec4::ONE;
+        *material.texture_mut(TextureSlot::BaseColor).unwrap() = MAP;
+        *material.texture_mut(TextureSlot::UvAnimationMask).unwrap() = if has_mask { MAP } else { None };
+        let mut scene = from_right(scene(material, 2, &[first, green, blue, white]));
+        scene.frame.look.time_secs = time_secs;
+        scene.draw(&gpu).at(0.2, 0.1)
+    };
+    let scroll = Toon { uv_scroll: Vec2::new(0.25, 0.0), ..Toon::default() };
+    let turn = Toon { uv_rotation: std::f32::consts::FRAC_PI_2, ..Toon::default() };
+    let both = Toon { uv_scroll: Vec2::new(0.25, 0.0), ..turn };
+    for (values, time_secs, color) in [
+        (scroll, 0.0, red),
+        (scroll, 2.0, green),
+        (Toon { uv_scroll: Vec2::new(0.0, 0.5), ..Toon::default() }, 1.0, blue),
+        (turn, 1.0, blue),
+        (turn, 2.0, white),
+        (turn, 3.0, green),
+        (Toon { uv_rotation: -turn.uv_rotation, ..turn }, 1.0, green),
+        (Toon { uv_scroll: Vec2::new(0.5, 0.0), ..both }, 1.0, white),
+    ] {
+        near(shown(red, false, time_secs, values), color, 1);
+    }
+    // A mask without blue stops it.
+    near(shown(red, true, 2.0, scroll), red, 1);
+    near(shown([255, 0, 255, 255], true, 2.0, scroll), green, 1);
+}
+
 const LINE: Vec3 = Vec3::new(0.0, 0.5, 0.0);
 
 fn outlined(outline_mode: OutlineMode, outline_width: f32) -> Material {

@@ -429,3 +429,29 @@ fn copies_are_drawn_in_one_call_unless_they_have_to_be_sorted() {
         assert_eq!((renderer.stats().draw_calls, renderer.stats().triangles), (calls, 6), "{alpha_mode:?}");
     }
 }
+
+#[test]
+fn surfaces_with_hidden_materials_are_not_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let [red, blue] = [Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 0.0, 1.0, 1.0)];
+    let default = Geometry { material: None, ..square(0) };
+    let mut scene = Scene::new(vec![square(0), default], vec![unlit(red), unlit(blue)]);
+    scene.frame.look.shadow = true;
+    let mut shown = |hidden: &[Option<usize>]| {
+        scene.frame.characters[0].hidden_materials = hidden.to_vec();
+        let Gpu { device, queue } = &gpu;
+        let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
+        renderer.upload(device, queue, &scene.model).unwrap();
+        renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
+        (renderer.stats().triangles, renderer.stats().draw_calls)
+    };
+    let (all, calls) = shown(&[]);
+    assert_eq!(all, 4);
+    for one in [None, Some(0)] {
+        let (triangles, fewer) = shown(&[one]);
+        assert_eq!(triangles, 2, "{one:?}");
+        assert!(fewer + 2 <= calls, "neither in the picture nor in the shadow map: {fewer} of {calls}");
+    }
+    assert_eq!(shown(&[Some(1)]), (all, calls), "nothing has this material");
+    assert_eq!(shown(&[None, Some(0)]).0, 0);
+}

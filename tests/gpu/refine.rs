@@ -1,9 +1,9 @@
 //! Pictures drawn with one sample per pixel are refined to four; lines have no gaps.
 
-use gaitway::mesh::{Geometry, Topology, palette_entry};
+use gaitway::mesh::{Geometry, Lobes, Material, Topology, palette_entry};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
 use gaitway::state::Background;
-use glam::{Affine3A, Vec2, Vec3, Vec4};
+use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
 
 use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, SIZE, Scene, square, unlit};
@@ -14,6 +14,17 @@ fn turned() -> Scene {
     let turn = Affine3A::from_rotation_z(0.3);
     scene.frame.characters[0].palette = vec![palette_entry(&turn, Default::default())];
     scene
+}
+
+/// The same through clear glass, which refracts a copy of the picture so far.
+fn behind_glass() -> Scene {
+    let (mut front, mut back) = (square(0), square(1));
+    front.positions.iter_mut().for_each(|position| position.z = 0.5);
+    let turn = Quat::from_rotation_z(0.3);
+    back.positions.iter_mut().for_each(|position| *position = turn * (0.7 * *position));
+    let lobes = Lobes { transmission: 1.0, specular: 0.0, ..Default::default() };
+    let glass = Material { metallic: 0.0, roughness: 0.0, lobes: Some(Box::new(lobes)), ..Default::default() };
+    Scene::new(vec![front, back], vec![glass, unlit(Vec4::ONE)])
 }
 
 fn pixels(gpu: &Gpu, renderer: &Renderer) -> Vec<u8> {
@@ -44,8 +55,9 @@ fn averaged(fine: &[u8]) -> Vec<u8> {
 fn a_refined_picture_has_four_samples_per_pixel() {
     let Some(gpu) = gpu() else { return };
     let Gpu { device, queue } = &gpu;
-    for panes in [[1, 1], [2, 1]] {
-        let mut scene = turned();
+    for (panes, mut scene) in
+        [([1, 1], turned()), ([2, 1], turned()), ([1, 1], behind_glass()), ([2, 1], behind_glass())]
+    {
         (scene.frame.panes, scene.frame.look.background) = (panes, Background::Color([40, 80, 120]));
         let draw = |samples: u32, is_refined: bool, size: u32| {
             let mut renderer = Renderer::new(device, queue, RendererOptions { samples });

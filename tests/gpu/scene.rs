@@ -1,7 +1,5 @@
 //! Surfaces in front of a camera, drawn into a small picture.
 
-use std::sync::Arc;
-
 use gaitway::asset::{Asset, AssetParts, Image};
 use gaitway::frame::{Character, Draw, Frame, View};
 use gaitway::library::{ImageData, Model, ModelId};
@@ -59,7 +57,7 @@ impl Scene {
         images: Vec<Option<ImageData>>,
     ) -> Self {
         // The pixels are passed separately; only the number of image files matters.
-        let file = Image { name: String::new(), mime: "image/png", bytes: Arc::from([]), width: 1, height: 1 };
+        let file = Image { name: String::new(), mime: "image/png", width: 1, height: 1, ..Image::default() };
         let files = vec![file; images.len()];
         let parts = AssetParts { materials, textures, images: files, ..AssetParts::default() };
         Self::of_parts(geometries, parts, images)

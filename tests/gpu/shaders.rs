@@ -83,7 +83,7 @@ fn every_texture_slot_is_a_map_of_the_shader() {
     }
 }
 
-/// The maps of a lobe, as bits of a [`SurfaceVariant`].
+/// The maps of a lobe, as bits of a [`SurfacePermutation`].
 fn maps_of(lobe: u64) -> u64 {
     let maps: &[u32] = match lobe {
         SurfacePermutation::SPECULAR => &[5, 6],
@@ -103,7 +103,7 @@ fn maps_of(lobe: u64) -> u64 {
 #[test]
 fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
     use SurfacePermutation as Variant;
-    let lobes: Vec<u64> = (24..34).map(|bit| 1 << bit).collect();
+    let lobes: Vec<u64> = (25..35).map(|bit| 1 << bit).collect();
     assert_eq!(lobes.iter().sum::<u64>(), Variant::LOBES);
     let with_needed = |lobes: u64| {
         let needs_transmission = lobes & (Variant::VOLUME | Variant::DISPERSION) != 0;
@@ -138,10 +138,26 @@ fn mtoon_is_valid_and_translates_to_webgl2() {
         (slot < TextureSlot::Specular || slot >= TextureSlot::ShadeMultiply) && !unused.contains(&slot)
     });
     let maps: Vec<u64> = slots.map(|slot| 1 << slot as u32).collect();
-    assert_eq!(maps.len(), 8);
+    assert_eq!(maps.len(), 9);
     for maps in maps.iter().copied().chain([0, maps.iter().sum()]) {
         for overrides in 0..2 {
             check(&Shader::mesh(SurfacePermutation(SurfacePermutation::TOON | maps)), overrides);
+        }
+    }
+}
+
+/// For plain materials, MToon, and every lobe with its maps.
+#[test]
+fn channels_are_valid_and_translate_to_webgl2() {
+    use SurfacePermutation as Variant;
+    let toon = Variant::TOON | 0b1_0111;
+    let with_needed = |lobe| if lobe == Variant::GLOSSINESS { lobe | Variant::SPECULAR } else { lobe };
+    let lobes =
+        [Variant::SPECULAR, Variant::GLOSSINESS, Variant::CLEARCOAT, Variant::ANISOTROPY, Variant::TRANSMISSION];
+    let lobes = lobes.map(with_needed).map(|lobes| lobes | maps_of(Variant::SPECULAR) | 1 << 2);
+    for variant in lobes.into_iter().chain([Variant::PLAIN.0, toon, 0]) {
+        for overrides in 0..2 {
+            check(&Shader::mesh(Variant(variant | Variant::CHANNEL)), overrides);
         }
     }
 }

@@ -3,6 +3,8 @@
 mod data;
 mod facing;
 mod files;
+#[path = "../support/numpy.rs"]
+mod numpy;
 mod proposals;
 mod recognition;
 mod resolving;

@@ -2,10 +2,12 @@
 
 use gaitway::anim::{Joint, JointIndex, Transform};
 use gaitway::asset::Asset;
+use gaitway::formats::{FileSet, load, prepare};
 use gaitway::retarget::{JointMapFile, Proposal, Reason, propose};
 use glam::Vec3;
 
 use crate::data::open;
+use crate::numpy::{npz, person};
 use crate::skeletons;
 
 /// Checks the number of the source joint that each named target follows.
@@ -41,6 +43,42 @@ fn the_dwarf_gets_the_map_of_the_coursework() {
     );
     assert!(proposal.model.by_position && !proposal.model.contradictions.is_empty(), "lhip is on the right");
     assert!(proposal.motion.contradictions.is_empty());
+}
+
+#[test]
+fn joints_of_smpl_are_found() {
+    let Some(xbot) = open("threejs/Xbot.glb") else { return };
+    let mut files = FileSet::default();
+    files.insert("walk.npz", npz(&person(52)));
+    prepare(&mut files).unwrap();
+    let motion = load(&files).unwrap();
+    let proposal = propose(&xbot, &motion);
+    let joints = [
+        ("Hips", 0),
+        ("LeftUpLeg", 1),
+        ("RightUpLeg", 2),
+        ("LeftLeg", 4),
+        ("RightLeg", 5),
+        ("LeftFoot", 7),
+        ("RightFoot", 8),
+        ("LeftToeBase", 10),
+        ("RightToeBase", 11),
+        ("Neck", 12),
+        ("LeftShoulder", 13),
+        ("RightShoulder", 14),
+        ("Head", 15),
+        ("LeftArm", 16),
+        ("RightArm", 17),
+        ("LeftForeArm", 18),
+        ("RightForeArm", 19),
+        ("LeftHand", 20),
+        ("RightHand", 21),
+        ("LeftHandIndex1", 22),
+        ("LeftHandThumb3", 36),
+        ("RightHandPinky2", 44),
+    ];
+    let named = joints.map(|(name, number)| (format!("mixamorig:{name}"), number));
+    check(&xbot, &proposal, &motion, &named.each_ref().map(|(name, number)| (name.as_str(), *number)));
 }
 
 /// A motion that shows no side of its own follows the names of a mirrored model that it was made for.
@@ -196,6 +234,57 @@ fn creatures_follow_the_names_they_share() {
     // Two shared names may be a coincidence.
     let pair = |names: [&str; 2]| skeletons::asset(skeletons::chain(names, Vec3::Y));
     assert!(propose(&pair(["tail", "a"]), &pair(["tail", "b"])).pairs.is_empty());
+}
+
+/// Returns a dragon with meaningless joint names, and the limb of each joint. `joints`: how many joints the tail, the neck and
+/// each wing have.
+fn dragon(prefix: &str, joints: [usize; 3]) -> (Asset, Vec<&'static str>) {
+    let (mut found, mut limbs) = (Vec::new(), Vec::new());
+    let mut chain = |limb, mut parent: Option<usize>, first: Vec3, step: Vec3, count: usize| {
+        for at in 0..count {
+            let step = Transform::from_translation(if at == 0 { first } else { step });
+            found.push(skeletons::joint(&format!("{prefix}{}", 7 * found.len() % 31), parent, step));
+            limbs.push(limb);
+            parent = Some(found.len() - 1);
+        }
+        found.len() - 1
+    };
+    let [tail, neck, wing] = joints;
+    // Only twin bones have equal lengths.
+    let back = 3.0 / tail as f32;
+    let hips = chain("trunk", None, Vec3::Y, Vec3::ZERO, 1);
+    let chest = chain("trunk", Some(hips), Vec3::Z * 0.4, Vec3::Z * 0.4, 2);
+    chain("tail", Some(hips), Vec3::Z * -0.2, Vec3::Z * -back, tail);
+    chain("neck", Some(chest), Vec3::new(0.0, 0.2, 0.2), Vec3::new(0.0, 1.7, 1.7) / neck as f32, neck);
+    for (side, names) in
+        [(1.0, ["left hind", "left front", "left wing"]), (-1.0, ["right hind", "right front", "right wing"])]
+    {
+        for (name, on) in [(names[0], hips), (names[1], chest)] {
+            chain(name, Some(on), Vec3::X * 0.2 * side, Vec3::Y * -0.3, 4);
+        }
+        let out = Vec3::new(6.0 * side, 0.2, 0.0);
+        chain(names[2], Some(chest), Vec3::new(0.15 * side, 0.1, 0.0), out / wing as f32, wing);
+    }
+    (skeletons::asset(found), limbs)
+}
+
+#[test]
+fn wings_legs_and_tail_are_matched_by_shape() {
+    let (model, targets) = dragon("a", [5, 3, 3]);
+    let (motion, sources) = dragon("b", [3, 4, 4]);
+    let proposal = propose(&model, &motion);
+    let limb_of = |asset: &Asset, limbs: &[&'static str], joint| limbs[asset.skeleton.source_index(joint)];
+    let mut matched: Vec<&str> = Vec::new();
+    for pair in &proposal.pairs {
+        let limb = limb_of(&model, &targets, pair.target);
+        assert_eq!(limb_of(&motion, &sources, pair.source), limb);
+        assert!(pair.confidence < 0.5, "{limb}: a guess");
+        matched.push(limb);
+    }
+    for limb in targets {
+        let pairs = matched.iter().filter(|matched| **matched == limb).count();
+        assert!(pairs >= 3, "{pairs} joints of the {limb}");
+    }
 }
 
 #[test]

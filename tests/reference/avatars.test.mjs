@@ -1,5 +1,5 @@
 // Compares pictures of VRM files and of MToon with three-vrm's, drawn in the same run: same camera, same lights, Khronos
-// PBR Neutral, at rest and without springs. The difference is CIEDE2000 over the object.
+// PBR Neutral, in the rest pose and without springs. The difference is CIEDE2000 over the object.
 import assert from "node:assert";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
@@ -11,15 +11,15 @@ import { startReference } from "./draw.mjs";
 let reference;
 
 /**
- * Draws an avatar and checks that expressions and gaze change Gaitway's picture as much as three-vrm's.
+ * Draws an avatar and checks that expressions, gaze and time change Gaitway's picture as much as three-vrm's.
  * @param {import("./avatars.mjs").Avatar} avatar
  */
 async function difference({ name, file, shown }) {
   const pictures = await reference.drawAvatar(file, shown);
   const { mean, share } = meanDifference(pictures.gaitway, pictures.vrm);
   assert.ok(share > 0.005, `${name}: almost nothing is drawn`);
-  if (shown.expressions || shown.look) {
-    const neutral = await reference.drawAvatar(file, { ...shown, expressions: undefined, look: undefined });
+  if (shown.expressions || shown.look || shown.timeSecs) {
+    const neutral = await reference.drawAvatar(file, { ...shown, expressions: undefined, look: undefined, timeSecs: undefined });
     const ours = meanDifference(pictures.gaitway, neutral.gaitway).mean;
     const theirs = meanDifference(pictures.vrm, neutral.vrm).mean;
     assert.ok(theirs > 0.5, `${name}: three-vrm's picture doesn't change`);

@@ -29,13 +29,14 @@ import { roomImage } from "./room.mjs";
  *   gives a white surface facing it, and the direction to it.
  * @property {Record<string, number>} [expressions] Weights by name.
  * @property {Triple} [look] The point that the avatar looks at.
+ * @property {number} [timeSecs] For how long MToon's texture coordinates have moved.
  */
 
 /**
  * How an avatar is shown. `yaw` is the camera's, in degrees; `bounds` is what the picture shows instead of everything.
  * `hasKey`: whether a directional light is added, for MToon only, since three.js compensates other materials for light
- * that leaves them after several reflections.
- * @typedef {Pick<View, "expressions" | "look"> & { yaw?: number, bounds?: Bounds, hasKey?: boolean }} Shown
+ * that leaves them after several reflections. With `timeSecs`, the file's first clip is at that time.
+ * @typedef {Pick<View, "expressions" | "look" | "timeSecs"> & { yaw?: number, bounds?: Bounds, hasKey?: boolean }} Shown
  */
 
 /** @typedef {{ min: Triple, max: Triple }} Bounds */
@@ -86,14 +87,14 @@ export async function startReference(environment = roomImage()) {
       view,
     );
     return {
-      gaitway: await drawGaitway(file, hdr, camera, folder),
+      gaitway: await drawGaitway(file, hdr, camera, folder, words({})),
       khronos: withSrgbCurve(await decoded(khronos)),
       three: await decoded(three),
     };
   };
 
   /**
-   * Draws an avatar at rest, without springs.
+   * Draws an avatar without springs.
    * @param {string} file
    * @param {Shown} [shown]
    * @returns {Promise<Record<"gaitway" | "vrm", Picture>>}
@@ -116,7 +117,7 @@ export async function startReference(environment = roomImage()) {
  * @param {string} origin
  * @param {Shown} [shown]
  */
-async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, look } = {}) {
+async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, look, timeSecs } = {}) {
   const { bounds, lights } = await inspect(file);
   const camera = cameraFor(part ?? bounds, yaw);
   const relative = path.relative(dataFile(""), file);
@@ -135,6 +136,7 @@ async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, l
     key: hasKey ? { strength: KEY.strength, towards: direction(KEY.yaw, KEY.pitch) } : undefined,
     expressions,
     look,
+    timeSecs,
   };
   return { camera, view };
 }
@@ -143,8 +145,8 @@ async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, l
  * Returns what the link says about an avatar.
  * @param {Shown} shown
  */
-function words({ hasKey, expressions, look }) {
-  const words = [];
+function words({ hasKey, expressions, look, timeSecs }) {
+  const words = timeSecs === undefined ? ["clip="] : ["clip=0", `t=${timeSecs}`];
   if (hasKey) words.push(`key=${KEY.strength},${KEY.yaw},${KEY.pitch}`);
   if (look) words.push(`look=${look.join(",")}`);
   if (expressions) {
@@ -203,10 +205,10 @@ function cameraFor({ min, max }, yaw = 25) {
  * @param {string} folder
  * @param {string[]} more Keys of the link.
  */
-async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder, more = []) {
+async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder, more) {
   const out = path.join(folder, "gaitway.png");
   const camera = [yaw, pitch, distance, ...target].join(",");
-  const link = ["clip=", "show=no-shadow", "background=808080", `fov=${FOV}`, `camera=${camera}`, ...more].join("&");
+  const link = ["show=no-shadow", "background=808080", `fov=${FOV}`, `camera=${camera}`, ...more].join("&");
   await run(program, ["render", file, "--out", out, "--size", SIZE.join("x"), "--environment", hdr, "--view", link]);
   return await decoded(fs.readFileSync(out));
 }

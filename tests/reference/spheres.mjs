@@ -72,7 +72,7 @@ export function grid(rows, more) {
  * @param {object} json
  * @param {Buffer} binary Its length is a multiple of 4.
  */
-function glb(json, binary) {
+export function glb(json, binary) {
   const text = Buffer.from(JSON.stringify(json));
   const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, " ")]);
   const header = Buffer.from("glTF\0\0\0\0\0\0\0\0");

@@ -68,6 +68,7 @@ async function loadAvatar(view) {
   vrm?.lookAt?.update(0);
   vrm?.expressionManager?.update();
   vrm?.nodeConstraintManager?.update();
+  for (const material of vrm?.materials ?? []) if (material instanceof MToonMaterial) material.update(view.timeSecs ?? 0);
   return model;
 }
 

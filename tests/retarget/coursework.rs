@@ -206,5 +206,8 @@ fn hips_below_the_root_go_where_the_source_takes_them() {
         assert!(figures.limb_direction_error_degrees_mean.unwrap() < 2.0, "{figures:?}");
         let [ours, theirs] = [figures.foot_slide_metres_per_sec, figures.foot_slide_source_metres_per_sec];
         assert!(ours.unwrap() < 1.5 * theirs.unwrap(), "{figures:?}");
+        // Unplanted, it hovers like the capture.
+        let hover = figures.foot_hover_metres_mean.unwrap().abs() / done.hips_scale.unwrap();
+        assert!((feet == Feet::Off) == (hover > 0.01), "{figures:?}");
     }
 }

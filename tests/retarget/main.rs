@@ -12,6 +12,7 @@ mod real;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
 
+mod change;
 mod coursework;
 mod feet;
 mod figure;
@@ -19,3 +20,4 @@ mod laws;
 mod layers;
 mod pairs;
 mod rests;
+mod soles;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use gaitway::anim::{Clip, Pose, SampleCursor, Skeleton};
+use gaitway::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::asset::{Asset, Humanoid, Slot};
 use gaitway::formats::{FileSet, load};
 use gaitway::retarget::{Body, Feet, Figures, ResolvedMap, Retargeted, Retargeting, propose, recognize};
-use glam::DQuat;
+use glam::{Affine3A, DQuat};
 
 /// A file with a person: its path under the data folder, and the clip to retarget; none for targets only.
 pub struct Person {
@@ -119,7 +119,7 @@ pub struct Outcome {
 }
 
 /// The columns of `docs/retargeting-pairs.tsv` after model and motion, with their decimal places.
-pub const COLUMNS: [(&str, usize); 15] = [
+pub const COLUMNS: [(&str, usize); 17] = [
     ("joints", 0),
     ("coverage", 2),
     ("hips_scale", 3),
@@ -134,6 +134,8 @@ pub const COLUMNS: [(&str, usize); 15] = [
     ("foot_slide_planted_m_per_s", 3),
     ("foot_hover_m", 3),
     ("foot_hover_planted_m", 3),
+    ("sole_penetration_max_m", 3),
+    ("sole_penetration_planted_max_m", 3),
     ("ground_penetration_max_m", 3),
 ];
 
@@ -156,6 +158,8 @@ impl Outcome {
             self.planted.as_ref().and_then(|planted| planted.foot_slide_metres_per_sec),
             figures.foot_hover_metres_mean,
             self.planted.as_ref().and_then(|planted| planted.foot_hover_metres_mean),
+            figures.sole_penetration_metres_max,
+            self.planted.as_ref().and_then(|planted| planted.sole_penetration_metres_max),
             figures.ground_penetration_metres_max,
         ]
     }
@@ -229,6 +233,26 @@ pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &Resolve
         before = now;
     }
     largest
+}
+
+/// The share of a clip's time, at 30 frames per second, in which the left ankle is to the right of the right one, along the line
+/// through both hip joints. `None` if the body has no legs.
+pub fn crossed_share(skeleton: &Skeleton, clip: &Clip, slots: &Humanoid) -> Option<f64> {
+    let legs = [Slot::LeftUpperLeg, Slot::RightUpperLeg, Slot::LeftFoot, Slot::RightFoot];
+    let [Some(left_hip), Some(right_hip), Some(left_ankle), Some(right_ankle)] = legs.map(|slot| slots.joint(slot))
+    else {
+        return None;
+    };
+    let frames = (clip.duration_secs() * 30.0) as usize;
+    let (mut pose, mut cursor, mut world) = (Pose::default(), SampleCursor::default(), Vec::new());
+    let crossed = (0..=frames).filter(|&frame| {
+        pose.copy_from(skeleton.rest());
+        clip.sample(skeleton, frame as f32 / 30.0, &mut cursor, &mut pose);
+        model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
+        let at = |joint: JointIndex| world[joint.get()].translation;
+        (at(left_ankle) - at(right_ankle)).dot(at(left_hip) - at(right_hip)) < 0.0
+    });
+    Some(crossed.count() as f64 / (frames + 1) as f64)
 }
 
 /// Model-space rotations of all joints, in double precision.

@@ -135,6 +135,7 @@ fn retarget_reports_the_documented_keys() {
         "foot_slide_source_metres_per_sec",
         "ground_penetration_metres_max",
         "foot_hover_metres_mean",
+        "sole_penetration_metres_max",
         "coverage",
     ] {
         assert!(report["figures"].get(key).is_some(), "{key}");
@@ -263,4 +264,102 @@ fn one_of_several_files_in_a_folder_is_named_with_it() {
         1,
         "“c.bvh” is not among the files (a.bvh, b.bvh, walker.glb)",
     );
+}
+
+/// The extension of the output chooses the format; what can't be written in it fails before anything is.
+#[test]
+fn clips_are_written_as_bvh_and_vrma() {
+    let (folder, motion) = folder("clips");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let inspect = |file: &str| document(&["inspect", file, "--json"]);
+    let (bvh, vrma, again) = (path("out.bvh"), path("out.vrma"), path("again.vrma"));
+    for out in [&bvh, &vrma] {
+        let call = ["retarget", "--model", "sample:walker", "--motion", &motion, "--out", out, "--json"];
+        assert_eq!(document(&call)["clip"], "walk");
+    }
+    assert!(run(&["convert", &bvh, "--out", &again]).status.success());
+    let (bvh, vrma, again) = (inspect(&bvh), inspect(&vrma), inspect(&again));
+    assert_eq!([&bvh["format"], &vrma["format"], &again["format"]], ["bvh", "vrma", "vrma"]);
+    for written in [&bvh, &vrma, &again] {
+        assert_eq!(written["clips"][0]["duration_secs"], 0.5);
+    }
+    assert_eq!(vrma["extensions_used"], json!(["VRMC_vrm_animation"]));
+    let out = path("own.bvh");
+    assert!(run(&["convert", &motion, "--clip", "walk", "--out", &out]).status.success());
+    let pose = |file: &str| document(&["pose", file, "--clip", "0", "--time", "0.25", "--json"])["nodes"].clone();
+    let (own, written) = (pose(&motion), pose(&out));
+    for (one, other) in own.as_array().expect("nodes").iter().zip(written.as_array().expect("nodes")) {
+        for (a, b) in one["world"].as_array().expect("16").iter().zip(other["world"].as_array().expect("16")) {
+            assert!((a.as_f64().expect("a number") - b.as_f64().expect("a number")).abs() < 2e-5, "{one} {other}");
+        }
+    }
+    check_fails(&["convert", &motion, "--clip", "Fly", "--out", &out], 1, "Fly");
+    check_fails(&["convert", &motion, "--clip", "walk", "--out", &path("own.glb")], 1, "a .glb has all clips");
+}
+
+/// `pose --json` of the first clip: world positions by node.
+fn places(file: &str, clip: &str, time: &str) -> Vec<[f64; 3]> {
+    let document = document(&["pose", file, "--clip", clip, "--time", time, "--json"]);
+    let place = |node: &Value| [12, 13, 14].map(|at| node["world"][at].as_f64().expect("a number"));
+    document["nodes"].as_array().expect("nodes").iter().map(place).collect()
+}
+
+#[test]
+fn clips_are_changed_on_the_way() {
+    let (folder, motion) = folder("changes");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let (mirrored, twice, reversed, model) = (path("1.bvh"), path("2.bvh"), path("3.bvh"), path("4.glb"));
+    assert!(run(&["convert", &motion, "--mirror", "--out", &mirrored]).status.success());
+    assert!(run(&["convert", &mirrored, "--mirror", "--out", &twice]).status.success());
+    assert!(run(&["convert", &motion, "--reverse", "--speed", "2", "--out", &reversed]).status.success());
+    let near = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4);
+    let (own, once, back) = (places(&motion, "0", "0.5"), places(&mirrored, "0", "0.5"), places(&twice, "0", "0.5"));
+    assert!(own.iter().zip(&back).all(|(a, b)| near(a, b)), "twice is the clip");
+    // In file order: 5 is the left foot, 8 the right one.
+    let in_mirror = |at: &[f64; 3]| [-at[0], at[1], at[2]];
+    assert!(near(&in_mirror(&own[5]), &once[8]) && near(&in_mirror(&own[8]), &once[5]), "{own:?} {once:?}");
+    assert!(!near(&own[5], &once[5]));
+    let start = places(&motion, "0", "0");
+    assert!(
+        places(&reversed, "0", "0.25").iter().zip(&start).all(|(a, b)| near(a, b)),
+        "ends where it began, in half the time"
+    );
+    // A whole model keeps its clips, and the changed one is added.
+    assert!(run(&["convert", &motion, "--turn", "90", "--offset", "1,-2", "--out", &model]).status.success());
+    let names: Vec<Value> = document(&["inspect", &model, "--json"])["clips"]
+        .as_array()
+        .expect("clips")
+        .iter()
+        .map(|clip| clip["name"].clone())
+        .collect();
+    assert_eq!(names, ["walk", "walk (changed)"]);
+    let moved = places(&model, "1", "0");
+    assert!((moved[0][0] - start[0][0] - 1.0).abs() < 1e-5 && (moved[0][2] - start[0][2] + 2.0).abs() < 1e-5);
+    let out = path("5.glb");
+    let report = document(&[
+        "retarget",
+        "--model",
+        "sample:walker",
+        "--motion",
+        &motion,
+        "--mirror",
+        "--make-loop",
+        "0.1",
+        "--out",
+        &out,
+        "--clip-only",
+        "--json",
+    ]);
+    assert_eq!(report["changed"]["changes"]["mirror"], true);
+    assert!(report["changed"]["seam"]["degrees_max"].as_f64().expect("a number") > 10.0, "{}", report["changed"]);
+    assert_eq!(
+        report["warnings"].as_array().map(|list| list.iter().filter(|one| one["code"] == "nothing-to-swap").count()),
+        Some(0)
+    );
+    check_fails(&["convert", &motion, "--trim", "1,0.5", "--out", &out], 2, "START,END");
+    let beyond = "--trim: expected an end within the 0.500 s of clip “walk”, found 0.9 s";
+    check_fails(&["convert", &motion, "--trim", "0.2,0.9", "--out", &out], 1, beyond);
+    // Durations are printed in milliseconds.
+    assert!(run(&["convert", &motion, "--trim", "0.2,0.5004", "--out", &out]).status.success());
+    check_fails(&["convert", &motion, "--speed", "0", "--out", &out], 2, "0.1 to 10");
 }

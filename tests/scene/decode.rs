@@ -1,7 +1,5 @@
 //! Decoding a model's images: one that cannot be decoded gives a warning, never an error.
 
-use std::sync::Arc;
-
 use gaitway::asset::{Asset, AssetParts, Image};
 use gaitway::files::{decode_images, encode_png};
 use gaitway::library::ImageData;
@@ -16,7 +14,7 @@ fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
 }
 
 fn decode_as(mime: &'static str, bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
-    let image = Image { name: "skin".to_owned(), mime, bytes: Arc::from(bytes), width: 2, height: 1 };
+    let image = Image { name: "skin".to_owned(), mime, bytes: bytes.into(), width: 2, height: 1 };
     let parts = AssetParts { images: vec![image], ..AssetParts::default() };
     let mut asset = Asset::new(parts).expect("indices in range");
     let mut images = decode_images(&mut asset);

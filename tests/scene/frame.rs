@@ -105,10 +105,10 @@ fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     model_from_joint(&skeleton, frame.pose(), Affine3A::IDENTITY, &mut world_from_joint);
     assert_eq!(world_from_joint, frame.characters[0].world_from_joint);
     assert_eq!(frame.pose().morph_weights, frame.characters[0].morph_weights);
-    assert_eq!(frame.clip, Some(2));
+    assert_eq!((frame.clip, frame.look.time_secs), (Some(2), 1.3));
     state.playhead.clip = ClipChoice::RestPose;
     evaluate(&library, &state, 1.5, &mut frame);
-    assert_eq!(frame.clip, None);
+    assert_eq!((frame.clip, frame.look.time_secs), (None, 0.0));
     library = Library::default();
     evaluate(&library, &state, 1.5, &mut frame);
     assert_eq!((frame.clip, frame.pose()), (None, &Pose::default()));

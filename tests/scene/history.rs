@@ -39,6 +39,48 @@ fn a_gesture_is_one_step() {
     assert_eq!(state.display.exposure, 1.0);
 }
 
+/// A double click after a step, its first click moving a slider to `first`, the second one resetting it: undoing it leads back to
+/// the step.
+fn check_double_click(first: Option<f32>) {
+    let mut library = walker();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    for moved_to in [Some(1.0), first, None] {
+        history.pointer_pressed();
+        if let Some(stops) = moved_to {
+            history.apply(&mut state, &library, Command::SetExposure(stops));
+        }
+        history.end_gesture();
+    }
+    history.continue_gesture();
+    history.apply(&mut state, &library, Command::SetExposure(0.0));
+    assert_eq!(history.steps(), 2);
+    assert!(undo(&mut history, &mut state, &mut library));
+    assert_eq!(state.display.exposure, 1.0);
+}
+
+#[test]
+fn a_double_click_is_one_step() {
+    check_double_click(Some(0.4));
+}
+
+#[test]
+fn a_double_click_whose_first_click_changes_nothing_leaves_older_steps_alone() {
+    check_double_click(None);
+}
+
+#[test]
+fn a_gesture_that_ends_where_it_began_is_no_step() {
+    let mut library = walker();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    for stops in [0.5, 0.0] {
+        history.apply(&mut state, &library, Command::SetExposure(stops));
+    }
+    assert!(!history.can_undo());
+    history.apply(&mut state, &library, Command::SetExposure(0.7));
+    assert!(undo(&mut history, &mut state, &mut library));
+    assert_eq!(state.display.exposure, 0.0);
+}
+
 #[test]
 fn undo_keeps_time_and_camera() {
     let mut library = walker();

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions, RootPart,
-    SourceRef, Unmapped,
+    ClipChanges, ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions,
+    RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Display, EnvironmentChoice, Fade, KeyLight, LinkError, LookTarget, MotionMap,
-    NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources, ToneMap, UpAxis,
-    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
+    LookTarget, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources,
+    ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -124,13 +124,40 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("playback.loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
         ("playhead.range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
         ("display.skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
+        (
+            "edits.hidden",
+            with(&|state| {
+                let (nodes, materials) = (BTreeSet::from([3, 12]), BTreeSet::from([None, Some(0)]));
+                state.edits.hidden = Hidden { nodes, materials };
+            }),
+        ),
         ("edits.expressions", with(&|state| state.edits.expressions = BTreeMap::from([("a b,:".to_owned(), 0.5)]))),
         ("display.look_at", with(&|state| state.display.look_at = LookTarget::Camera)),
+        ("display.channel", with(&|state| state.display.channel = Channel::VertexColor)),
         ("display.springs", with(&|state| state.display.springs = true)),
         ("edits.morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
         (
             "edits.pose",
             with(&|state| state.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])),
+        ),
+        (
+            "edits.clips",
+            with(&|state| {
+                let trim = Some(TimeRange { start_secs: 0.25, end_secs: 1.5 });
+                let all = ClipChanges {
+                    mirror: true,
+                    trim,
+                    reverse: true,
+                    speed: 1.5,
+                    loop_secs: Some(0.2),
+                    offset: [1.0, -0.5],
+                    turn_degrees: 90.0,
+                };
+                let mirrored = ClipChanges { mirror: true, ..ClipChanges::default() };
+                let looped = ClipChanges { loop_secs: Some(0.0), ..ClipChanges::default() };
+                let clips = [("Walk: fast, 100 % & more", all), ("3", mirrored), ("歩", looped)];
+                state.edits.clips = clips.into_iter().map(|(clip, changes)| (clip.to_owned(), changes)).collect();
+            }),
         ),
         (
             "edits.names",

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
-use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{ClipChanges, ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, EnvironmentChoice, Fade, Inspect, KeyLight, LightSetup, LinkError,
-    LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState,
-    from_link, from_object, to_link, to_object,
+    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
+    LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice,
+    ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -104,7 +104,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..36 {
+        for field in 0..39 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -133,6 +133,11 @@ impl Random {
         }
     }
 
+    fn clips(&mut self) -> BTreeMap<String, ClipChanges> {
+        let changes = ClipChanges { reverse: true, mirror: self.often(), ..ClipChanges::default() };
+        (0..self.below(4)).map(|_| (self.text(), changes.clone())).collect()
+    }
+
     fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
         match field {
             32 => {
@@ -143,6 +148,12 @@ impl Random {
                 let point = LookTarget::Point(Vec3::new(self.number(), self.number(), self.number()));
                 state.display.look_at = self.one(&[LookTarget::Camera, point]);
             }
+            35 => {
+                let nodes = (0..self.below(4)).map(|_| self.below(300)).collect();
+                let materials = (0..self.below(4)).map(|_| self.often().then(|| self.below(9))).collect();
+                state.edits.hidden = Hidden { nodes, materials };
+            }
+            34 => state.display.channel = self.one(&Channel::ALL),
             _ => state.display.springs = self.often(),
         }
     }
@@ -192,6 +203,7 @@ impl Random {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
+            37 => state.edits.clips = self.clips(),
             26 => state.camera_options.turntable = self.number(),
             27 => {
                 state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();
@@ -202,7 +214,7 @@ impl Random {
             }
             22 if self.often() => state.edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
-            32..=34 => self.set_avatar(state, field),
+            32..=36 => self.set_avatar(state, field),
             _ => state.page.embed = self.often(),
         }
     }

@@ -10,6 +10,7 @@ mod avatar;
 #[path = "../support/build_gltf.rs"]
 mod build_gltf;
 mod cli;
+mod cli_batch;
 mod cli_motion;
 mod cli_output;
 #[path = "../support/coursework.rs"]
@@ -22,9 +23,11 @@ mod data_folder;
 mod decode;
 mod editor;
 mod extent;
+mod findings;
 mod frame;
 mod framing;
 mod generator_animations;
+mod hidden;
 mod history;
 mod instancing;
 mod link;

@@ -101,7 +101,7 @@ fn compared_rests_have_one_pane_each_with_the_clip_that_the_map_gives_with_that_
     let state = ViewerState { inspect: Inspect { rests: true, ..Inspect::default() }, ..state };
     let map = {
         let (model, motion) = (library.active().expect("a model"), &library.motions()[0]);
-        map_for(&model.asset, &motion.asset, None).0
+        map_for(model, motion, None).0
     };
     for chosen in RestChoice::ALL {
         let borrow = |library: &mut Library, rest| {

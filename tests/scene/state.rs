@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::Library;
+use gaitway::retarget::ClipChanges;
 use gaitway::state::{
     CameraChoice, CameraOptions, ClipChoice, Command, NameKind, OrbitCamera, Playback, Playhead, UnknownName,
     ViewerState, active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
@@ -144,6 +145,26 @@ fn a_new_clip_starts_at_its_beginning() {
     let wave = ClipChoice::Named("Wave".to_owned());
     let state = after(&library, [Command::Seek(0.5), Command::SetRange(range), Command::SetClip(wave.clone())]);
     assert_eq!((state.playhead.time_secs, state.playhead.range, state.playhead.clip), (0.0, None, wave));
+}
+
+#[test]
+fn a_change_of_speed_keeps_the_pose_and_the_range() {
+    let library = walker();
+    let range = |start_secs, end_secs| Some(TimeRange { start_secs, end_secs });
+    let change = |clip, changes| Command::ChangeClip { clip, changes: Box::new(changes) };
+    let mut state = after(&library, [Command::Seek(0.5), Command::SetRange(range(0.25, 0.75))]);
+    let check = |state: &ViewerState, time_secs, range| {
+        assert_eq!((state.playhead.time_secs, state.playhead.range), (time_secs, range));
+    };
+    apply(&mut state, &library, change(1, ClipChanges { speed: 4.0, ..ClipChanges::NONE }));
+    check(&state, 0.5, range(0.25, 0.75));
+    apply(&mut state, &library, change(0, ClipChanges { speed: 2.0, ..ClipChanges::NONE }));
+    check(&state, 0.25, range(0.125, 0.375));
+    apply(&mut state, &library, change(0, ClipChanges { speed: 0.5, mirror: true, ..ClipChanges::NONE }));
+    check(&state, 1.0, range(0.5, 1.5));
+    // The part in the range is somewhere else now.
+    apply(&mut state, &library, change(0, ClipChanges { speed: 0.5, reverse: true, ..ClipChanges::NONE }));
+    check(&state, 1.0, None);
 }
 
 #[test]

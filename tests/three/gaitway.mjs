@@ -10,7 +10,7 @@ export const program = (() => {
   const target = process.env.CARGO_TARGET_DIR ?? path.join(repository, "target");
   const name = process.platform === "win32" ? "gaitway.exe" : "gaitway";
   const built = ["release", "debug"].map((profile) => path.join(target, profile, name)).filter((file) => fs.existsSync(file));
-  if (built.length === 0) throw new Error("no gaitway binary: run `cargo build --release --no-default-features`, or set GAITWAY_CLI");
+  if (built.length === 0) throw new Error("no gaitway binary: run `cargo build`, or set GAITWAY_CLI");
   return built.sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs)[0];
 })();
 

@@ -39,7 +39,7 @@ export async function startPart(part) {
  */
 export function runNatively(part, input) {
   const file = path.join(path.dirname(program), `gaitway-${part}${path.extname(program)}`);
-  if (!fs.existsSync(file)) throw new Error(`no ${file}: run \`cargo build --release --package gaitway-${part}\``);
+  if (!fs.existsSync(file)) throw new Error(`no ${file}: run \`cargo build --workspace\``);
   return decode(execFileSync(file, { input, maxBuffer: 1 << 30 }));
 }
 

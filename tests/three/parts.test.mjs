@@ -1,4 +1,4 @@
-// The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the
+// The decoders of compressed glTF, and the readers of FBX, .x and .npz: the page's modules and the native programs give the
 // same bytes. The decoders also give the same bytes as those that three.js ships: meshoptimizer, Draco and Basis
 // Universal.
 import assert from "node:assert/strict";
@@ -11,6 +11,7 @@ import { dataFile, dataFiles, gltfFiles, readGltf, repository, skipWithoutData }
 import { decode as decodeDraco } from "./draco.mjs";
 import { run } from "./gaitway.mjs";
 import { RGBA32, startTranscoder } from "./ktx2.mjs";
+import { walkingPerson } from "./npz.mjs";
 import { runNatively, startPart } from "./part.mjs";
 
 const MESHOPT = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -109,6 +110,16 @@ describe("the .x reader gives the same bytes as a module", { skip: skipWithoutDa
       assert.ok(native.bytes.equals(module.bytes), "the files differ");
       assert.deepEqual(native.warnings, module.warnings);
     });
+});
+
+test("the .npz reader gives the same bytes as a module", async () => {
+  const module = await startPart("npz");
+  for (const joints of [22, 55]) {
+    const file = walkingPerson(joints);
+    const [answer, native] = [await module(file), runNatively("npz", file)];
+    assert.ok(native.bytes.equals(answer.bytes), `${joints} joints: the files differ`);
+    assert.deepEqual([native.warnings, answer.warnings], [[], []]);
+  }
 });
 
 describe("meshopt views are decoded as by meshoptimizer", { skip: skipWithoutData }, () => {

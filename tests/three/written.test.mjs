@@ -19,6 +19,7 @@ const PAIRS = [
   ["misc/godot_mannequiny.glb", "vrm/chatvrm_idle_loop.vrma"],
   ["vrm/vrm0_cryptovoxels.vrm", "vrm/three-vrm_test.vrma"],
   ["vrm/vrm0_EmissionMigration_v0.107.0.vrm", "bvh/threejs_pirouette.bvh"],
+  ["vrm/vrm1_VRMC_vrm_expressions_isBinary_Overridden.vrm", "vrm/three-vrm_test.vrma"],
   ["khronos/CesiumMan/glTF/CesiumMan.gltf", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb"],
   ["mesh2motion/human-male.glb", "bvh/animateddrawings_fair1_dab.bvh"],
 ];

@@ -98,6 +98,7 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 if !output.commands.is_empty() || !output.actions.is_empty() {
                     ui.ctx().request_repaint();
                 }
+                ui::begin_gestures(ui, editor);
                 for command in output.commands {
                     commands.push(command.clone());
                     editor.apply(command);
@@ -110,9 +111,7 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                     };
                 }
                 actions.extend(output.actions);
-                if ui.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
-                    editor.end_gesture();
-                }
+                ui::end_gestures(ui, editor);
             },
             bench,
         );

@@ -3,6 +3,7 @@
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::editor::ClipFormat;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
@@ -23,6 +24,20 @@ fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
     harness.state_mut().panels.joint_card.is_posing = true;
     harness.run();
     harness
+}
+
+#[test]
+fn the_viewport_says_that_joints_are_posed_and_ends_it() {
+    for size in [WIDE, NARROW] {
+        let mut harness = turning(size);
+        harness.state_mut().panels.layout.tab = Tab::Info;
+        harness.run();
+        assert!(harness.query_by_label(text::POSE_MANUALLY).is_none());
+        assert!(harness.query_by_label(text::POSING).is_some());
+        press(&mut harness, text::DONE_POSING);
+        assert!(harness.query_by_label(text::POSING).is_none());
+        assert!(!harness.state().panels.joint_card.is_posing);
+    }
 }
 
 fn place_of_joint(bench: &Bench) -> Pos2 {
@@ -169,7 +184,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     press(&mut harness, text::FIT);
     assert!(harness.query_by_label(text::NOTHING_TO_MEASURE).is_some());
     press(&mut harness, text::FILES);
-    for label in [text::SAVE_GLB, text::SAVE_CLIP, text::SHOW_SOURCE] {
+    for label in [text::SAVE_GLB, text::save_clip(ClipFormat::Glb), text::SHOW_SOURCE] {
         assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label}: the clip is the model's own");
     }
     press(&mut harness, text::FIT);

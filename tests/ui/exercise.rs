@@ -2,10 +2,10 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::editor::{Editor, Export};
+use gaitway::editor::{Contents, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{Library, Model};
-use gaitway::state::{Command, Show, VertexChoice, ViewerState};
+use gaitway::library::Model;
+use gaitway::state::{Command, Show, VertexChoice};
 use gaitway::ui::text::FormulaRow;
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
@@ -79,9 +79,8 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
 fn a_model_without_meshes_has_no_vertices_to_look_at() {
     let mut harness = strip(WIDE);
     reach(&mut harness, text::VERTEX_PROBE);
-    let mut library = Library::default();
-    library.add(model_with_clips(2));
-    harness.state_mut().editor = Editor::new(library, ViewerState::default());
+    let contents = Contents { models: vec![model_with_clips(2).into()], ..Contents::default() };
+    harness.state_mut().editor.open(contents, None, &mut |_| Ok(())).expect("fits");
     harness.run();
     assert!(harness.query_by_label(text::VERTEX_PROBE).is_none());
 }

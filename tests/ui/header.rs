@@ -3,7 +3,7 @@
 use egui::ThemePreference;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::editor::Export;
+use gaitway::editor::{ClipFormat, Export};
 use gaitway::library::{Library, Model};
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, Show};
@@ -12,7 +12,7 @@ use gaitway::ui::{Saved, Tab, UiAction, text};
 use crate::bench::{Bench, NARROW, WIDE, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench};
 
 /// Presses an entry of a menu.
-fn choose(harness: &mut Harness<'_, Bench>, menu: &str, entry: &str) {
+pub fn choose(harness: &mut Harness<'_, Bench>, menu: &str, entry: &str) {
     press(harness, menu);
     press(harness, entry);
 }
@@ -66,13 +66,18 @@ fn export_offers_what_the_view_has() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, text::EXPORT);
     assert!(harness.query_by_label(text::SAVE_MAP).is_none(), "the clip is the model's own");
-    press(&mut harness, text::SAVE_CLIP);
+    press(&mut harness, text::save_clip(ClipFormat::Glb));
     harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Named("3".to_owned())));
     harness.run();
-    for entry in [text::SAVE_GLB, text::SAVE_MAP] {
+    for entry in [text::SAVE_GLB, text::SAVE_MAP, text::save_clip(ClipFormat::Bvh)] {
         choose(&mut harness, text::EXPORT, entry);
     }
-    let files = [Export::Clip { clip: 0 }, Export::Model { clip: 3 }, Export::Map { motion: 0 }];
+    let files = [
+        Export::Clip { clip: 0, format: ClipFormat::Glb },
+        Export::Model { clip: 3 },
+        Export::Map { motion: 0 },
+        Export::Clip { clip: 3, format: ClipFormat::Bvh },
+    ];
     assert_eq!(harness.state().actions, files.map(|file| UiAction::Save(Saved::File(file))));
     harness.state_mut().actions.clear();
     choose(&mut harness, text::EXPORT, text::SAVE_IMAGE);
@@ -114,6 +119,22 @@ fn the_menu_leads_to_everything_else() {
 }
 
 #[test]
+fn the_page_describes_itself_as_the_program_does() {
+    let (page, manifest) = (include_str!("../../web/index.html"), include_str!("../../web/manifest.webmanifest"));
+    let description = env!("CARGO_PKG_DESCRIPTION");
+    let heading = text::TAGLINE.trim_end_matches('.');
+    for expected in [
+        format!("<p>{}</p>", text::TAGLINE),
+        format!("<h2 id=\"gallery-title\">{heading}</h2>"),
+        format!("<meta name=\"description\" content=\"{description} "),
+        format!("<meta property=\"og:description\" content=\"{description}\">"),
+    ] {
+        assert!(page.contains(&expected), "{expected}");
+    }
+    assert!(manifest.contains(&format!("\"description\": \"{description}\"")), "{description}");
+}
+
+#[test]
 fn keys_of_an_open_menu_do_nothing_else() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, text::MENU);
@@ -134,6 +155,9 @@ fn an_open_model_lends_its_motion() {
     let mut harness = bench_of(WIDE, library);
     assert!(harness.query_by_label(&text::borrow_from("still.glb")).is_none(), "it has no clips");
     let dancer = harness.state().library().models()[1].id;
+    let [borrow, close] = [text::borrow_from("dancer.glb"), text::close_model("dancer.glb")]
+        .map(|label| harness.get_by_label(&label).rect());
+    assert!(borrow.width() < 60.0 && borrow.right() < close.left(), "{borrow} {close}");
     press(&mut harness, &text::borrow_from("dancer.glb"));
     assert_eq!(harness.state().actions, [UiAction::BorrowFrom(dancer)]);
     let editor = &mut harness.state_mut().editor;

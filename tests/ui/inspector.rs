@@ -1,20 +1,25 @@
 //! The right panel and its tabs.
 
+use egui::accesskit::Role;
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton};
-use gaitway::asset::{Asset, AssetParts, Panorama};
+use gaitway::asset::{Asset, AssetParts, Image, MeshInstance, Panorama, Warning};
 use gaitway::avatar::{Avatar, Expression, LookAt, LookAtKind, Override, RangeMaps, SpringJoint, Springs};
-use gaitway::library::{Environment, Library, Model};
-use gaitway::mesh::{Material, SkinningMode};
+use gaitway::editor::{ValidatorGroup, ValidatorReport};
+use gaitway::library::{Environment, ImageData, Library, Model, ModelId};
+use gaitway::mesh::{
+    AlphaMode, Geometry, Lobes, Material, Mesh, Sampler, SkinningMode, Texture, TextureRef, UvTransform,
+};
 use gaitway::samples;
 use gaitway::state::{
-    Background, CameraChoice, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, LookTarget, Show, ToneMap,
-    UpAxis,
+    Background, CameraChoice, Command, EnvironmentChoice, Hidden, Inspect, KeyLight, LightSetup, LookTarget, Show,
+    ToneMap, UpAxis,
 };
-use gaitway::ui::{Tab, text};
+use gaitway::ui::{FrameTimes, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
-use crate::bench::{WIDE, bench, bench_of, model_with_clips, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, press, sample_bench};
 use crate::motion::reach;
 
 #[test]
@@ -257,4 +262,211 @@ fn selecting_a_joint_moves_no_row() {
         let name = |label: &str| harness.query_all_by_label(label).map(|node| node.rect()).next();
         assert_eq!(name(joint), Some(before), "{joint}");
     }
+}
+
+#[test]
+fn eyes_hide_nodes_and_materials_and_alt_solos_them() {
+    // Tall enough for the whole tree.
+    let mut harness = sample_bench([1280.0, 1800.0]);
+    let nodes = |nodes: &[usize]| Hidden { nodes: nodes.iter().copied().collect(), ..Hidden::default() };
+    assert!(harness.query_by_label(&text::eye("Hips", true)).is_none(), "nothing to hide on a bone");
+    assert_eq!(press(&mut harness, &text::eye("Body", true)), [Command::SetHidden(nodes(&[22]))]);
+    assert_eq!(press(&mut harness, &text::eye("Body", false)), [Command::SetHidden(Hidden::default())]);
+    harness.state_mut().commands.clear();
+    harness.get_by_label(&text::eye("Eyes", true)).click_modifiers(egui::Modifiers::ALT);
+    harness.run();
+    assert_eq!(harness.state().commands, [Command::SetHidden(nodes(&[22]))], "all others");
+    assert_eq!(press(&mut harness, text::SHOW_ALL), [Command::SetHidden(Hidden::default())]);
+    assert!(harness.query_by_label(text::SHOW_ALL).is_none());
+    // The card has the same as buttons.
+    press(&mut harness, "Eyes");
+    assert_eq!(press(&mut harness, text::SOLO), [Command::SetHidden(nodes(&[22]))]);
+    assert_eq!(press(&mut harness, text::SOLO), [Command::SetHidden(Hidden::default())]);
+    press(&mut harness, Tab::Info.label());
+    let materials = Hidden { materials: [Some(1)].into(), ..Hidden::default() };
+    assert_eq!(reach(&mut harness, &text::eye("Visor", true)), [Command::SetHidden(materials)]);
+}
+
+#[test]
+fn warnings_lead_to_their_nodes_and_have_badges() {
+    let joint = |name: &str| Joint { name: name.to_owned(), ..Joint::default() };
+    let skeleton = Skeleton::new(vec![joint("First"), joint("Second")]).expect("two joints");
+    let mut asset = Asset::from(skeleton);
+    asset.warnings.push(Warning::MatrixNotDecomposable { node: "nodes[1]".to_owned() });
+    let mut harness = bench(WIDE, Model::new("two.glb".to_owned(), asset, Vec::new()));
+    let badge = |harness: &Harness<'_, Bench>| {
+        let tab = harness.get_by_label(Tab::Info.label());
+        tab.accesskit_node().data().description().map(str::to_owned)
+    };
+    assert_eq!(badge(&harness), Some(text::warning_count(1)));
+    press(&mut harness, Tab::Info.label());
+    assert_eq!(reach(&mut harness, &text::go_to("Second")), [Command::SelectJoint(Some(1))]);
+    assert_eq!(harness.state().panels.layout.tab, Tab::Scene);
+    let harness = sample_bench(WIDE);
+    assert_eq!(badge(&harness), None);
+}
+
+#[test]
+fn the_validator_reports_beside_the_warnings_and_leads_to_nodes() {
+    let joint = |name: &str| Joint { name: name.to_owned(), ..Joint::default() };
+    let skeleton = Skeleton::new(vec![joint("First"), joint("Second")]).expect("two joints");
+    let mut harness = bench([1280.0, 1600.0], Model::new("two.glb".to_owned(), Asset::from(skeleton), Vec::new()));
+    press(&mut harness, Tab::Info.label());
+    assert!(harness.query_by_label(&text::KHRONOS_VALIDATOR.to_uppercase()).is_none(), "only where there is one");
+    harness.state_mut().panels.host.has_validator = true;
+    harness.run();
+    assert!(harness.query_by_label(text::NO_GLTF).is_some() && harness.query_by_label(text::VALIDATE).is_none());
+    harness.state_mut().panels.host.has_gltf = true;
+    harness.run();
+    press(&mut harness, text::VALIDATE);
+    assert_eq!(harness.state().actions, [UiAction::Validate]);
+
+    let id = harness.state().library().active().unwrap().id;
+    let show = |harness: &mut Harness<'_, Bench>, of, validation| {
+        harness.state_mut().panels.host.validation = Some((of, validation));
+        harness.run();
+    };
+    show(&mut harness, id, Validation::Running);
+    assert!(harness.query_by_label(text::VALIDATING).is_some());
+    show(&mut harness, id, Validation::Failed("no connection".to_owned()));
+    assert!(harness.query_by_label(&text::validator_failed("no connection")).is_some());
+    press(&mut harness, text::VALIDATE_AGAIN);
+    assert_eq!(harness.state().actions, [UiAction::Validate, UiAction::Validate]);
+    show(&mut harness, id, Validation::Done(ValidatorReport::default()));
+    assert!(harness.query_by_label(text::NO_FINDINGS).is_some());
+
+    let group = |severity, code: &str, count, findings: &[(&str, Option<JointIndex>)]| ValidatorGroup {
+        severity,
+        code: code.to_owned(),
+        count,
+        findings: findings.iter().map(|(text, joint)| ((*text).to_owned(), *joint)).collect(),
+    };
+    let long = "ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION";
+    let groups = vec![
+        group(0, long, 1, &[("/skins/0: long", None)]),
+        group(0, "BAD", 3, &[("/nodes/1: bad", Some(JointIndex(1))), ("/asset: worse", None)]),
+        group(3, "BAD", 1, &[("/nodes/0: hint", Some(JointIndex(0)))]),
+    ];
+    let report = ValidatorReport { counts: [3, 0, 0, 1], is_truncated: false, groups };
+    show(&mut harness, id, Validation::Done(report.clone()));
+    for label in ["3 errors, 1 hint", "Error: BAD (3)", "/nodes/1: bad", "/asset: worse", "and 1 more", "Hint: BAD (1)"]
+    {
+        assert!(harness.query_by_label(label).is_some(), "{label}");
+    }
+    assert!(harness.query_by_label("/nodes/0: hint").is_none(), "hints are collapsed");
+    let edge = |label: &str| harness.get_by_label(label).rect().right();
+    assert!(edge(&format!("Error: {long} (1)")) <= edge(text::VALIDATE_AGAIN), "wrapped");
+    press(&mut harness, "Hint: BAD (1)");
+    assert!(harness.query_by_label(&text::go_to("First")).is_some());
+    assert_eq!(reach(&mut harness, &text::go_to("Second")), [Command::SelectJoint(Some(1))]);
+    assert_eq!(harness.state().panels.layout.tab, Tab::Scene);
+
+    press(&mut harness, Tab::Info.label());
+    show(&mut harness, ModelId(99), Validation::Done(report));
+    assert!(harness.query_by_label(text::VALIDATE).is_some() && harness.query_by_label("/asset: worse").is_none());
+}
+
+#[test]
+fn materials_and_images_are_listed_with_what_they_are() {
+    let skeleton = Skeleton::new(vec![Joint { name: "Cloak".to_owned(), ..Joint::default() }]).expect("one joint");
+    let map = Some(TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY });
+    let lobes = Lobes { clearcoat: 1.0, ..Lobes::default() };
+    let cloth = Material {
+        name: "Cloth".to_owned(),
+        alpha_mode: AlphaMode::Blend,
+        double_sided: true,
+        base_color_texture: map,
+        emissive_texture: map,
+        lobes: Some(Box::new(lobes)),
+        ..Material::default()
+    };
+    let image = Image { name: "weave".to_owned(), mime: "image/png", width: 8, height: 4, ..Image::default() };
+    let triangle = |material| Geometry {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        indices: vec![0, 1, 2],
+        file_vertices: 3,
+        material,
+        ..Geometry::default()
+    };
+    let asset = Asset::new(AssetParts {
+        skeleton,
+        meshes: vec![Mesh { primitives: vec![triangle(Some(0)), triangle(None)], ..Mesh::default() }],
+        instances: vec![MeshInstance::new(JointIndex(0), 0, None)],
+        materials: vec![cloth],
+        textures: vec![Texture { image: Some(0), sampler: Sampler::default() }],
+        images: vec![image],
+        ..AssetParts::default()
+    });
+    let pixels = ImageData::Rgba8 { width: 8, height: 4, pixels: vec![9; 128] };
+    let model = Model::new("cloak.glb".to_owned(), asset.expect("indices in range"), vec![Some(pixels)]);
+    // Tall enough for the whole tab.
+    let mut harness = bench([1280.0, 2000.0], model);
+    press(&mut harness, Tab::Info.label());
+    for line in [
+        "Cloth",
+        "blended, double-sided, base colour, emissive",
+        "KHR_materials_clearcoat",
+        "Default material",
+        "weave",
+        "PNG, 8 × 4, 0.0 MB, base colour, emissive",
+    ] {
+        assert!(harness.query_by_label(line).is_some(), "{line}");
+    }
+    assert_eq!(harness.query_all_by_label("on Cloak").count(), 2);
+    assert!(harness.query_by_label(&text::labelled(text::INFLUENCES, "up to 0")).is_some());
+    assert!(harness.query_by_label(&text::labelled(text::FRAME_TIME, text::NO_FRAMES)).is_some());
+    assert_eq!(harness.state().panels.info_model, Some(harness.state().library().active().unwrap().id));
+    let drawn = &mut harness.state_mut().panels.host.drawn;
+    (drawn.draw_calls, drawn.triangles) = (7, 4321);
+    (0..200).for_each(|_| drawn.frames.push(0.02));
+    assert_eq!(drawn.frames.iter().count(), FrameTimes::CAPACITY);
+    harness.run();
+    assert!(harness.query_by_label(&text::labelled(text::DRAW_CALLS, "7")).is_some());
+    assert!(harness.query_by_label(&text::labelled(text::FRAME_TIME, &text::frame_time(0.02))).is_some());
+    assert!(harness.query_by_label(&text::frame_graph(FrameTimes::CAPACITY, 60.0, 0.05)).is_some());
+}
+
+#[test]
+fn a_double_click_on_a_slider_resets_it_in_one_step() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Camera.label());
+    harness.get_by_role_and_label(egui::accesskit::Role::Slider, text::EXPOSURE).set_value_accesskit(1.0);
+    harness.run();
+    let bar = harness.get_by_role_and_label(egui::accesskit::Role::Slider, text::EXPOSURE).rect();
+    let pos = bar.left_center() + egui::vec2(0.2 * bar.width(), 0.0);
+    harness.event(egui::Event::PointerMoved(pos));
+    // The click on the tab is too long ago to count.
+    harness.run_steps(30);
+    for pressed in [true, false, true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        harness.step();
+        if pressed {
+            assert_eq!(harness.state().editor.undo_steps(), 2);
+            assert!(harness.state().state().display.exposure < 0.0, "the first click moves it");
+        }
+    }
+    assert_eq!(harness.state().state().display.exposure, 0.0);
+    assert_eq!(harness.state().editor.undo_steps(), 2);
+    assert!(harness.state_mut().editor.undo());
+    assert_eq!(harness.state().state().display.exposure, 1.0);
+}
+
+#[test]
+fn a_control_that_takes_the_focus_comes_into_sight() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    let heights =
+        |harness: &Harness<'_, Bench>, name: &str| harness.get_by_role_and_label(Role::Slider, name).rect().y_range();
+    let panel = harness.state().viewport.y_range();
+    let below = heights(&harness, "Blink");
+    assert!(below.min > panel.max, "out of sight: {below:?}");
+    // A slider in the row below the panel lies where the panel's contents go on.
+    harness.get_by_role_and_label(Role::Slider, text::SPEED).focus();
+    harness.run();
+    assert_eq!(heights(&harness, "Blink"), below);
+    harness.get_by_role_and_label(Role::Slider, "Blink").focus();
+    harness.run();
+    let slider = heights(&harness, "Blink");
+    assert!(panel.contains(slider.min) && panel.contains(slider.max), "{slider:?} in {panel:?}");
 }

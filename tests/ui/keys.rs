@@ -3,7 +3,7 @@
 use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::state::{CameraChoice, ClipChoice, Command};
+use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
 use gaitway::ui::{KEY_TABLE, UiAction, text};
 
 use crate::bench::{Bench, WIDE, press, press_key, sample_bench};
@@ -31,6 +31,21 @@ fn keys_do_what_the_help_says() {
         assert_eq!(press_key(&mut harness, key), [expected], "{key:?}");
     }
     assert!(press_key(&mut harness, Key::Num9).is_empty(), "there are three clips");
+}
+
+#[test]
+fn one_key_cycles_through_channels_and_shift_goes_back() {
+    let mut harness = sample_bench(WIDE);
+    let shown = |harness: &Harness<'_, Bench>| harness.state().state().display.channel;
+    for channel in Channel::ALL.into_iter().skip(1).chain([Channel::Shaded]) {
+        press_key(&mut harness, Key::V);
+        assert_eq!(shown(&harness), channel);
+    }
+    for channel in [Channel::Wireframe, Channel::Influences] {
+        harness.key_press_modifiers(egui::Modifiers::SHIFT, Key::V);
+        harness.run();
+        assert_eq!(shown(&harness), channel);
+    }
 }
 
 #[test]

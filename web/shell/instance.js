@@ -11,6 +11,7 @@ import { showGallery } from "./gallery.js";
 import { heldItems, heldMotionsAndLight } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
+import { Mirror } from "./mirror.js";
 import { keepOffline } from "./offline.js";
 import { showOpenDialog } from "./open-dialog.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
@@ -19,6 +20,7 @@ import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { cancelRecording, download, record } from "./recording.js";
 import { session } from "./session.js";
 import { addressOf, share } from "./share.js";
+import { validate } from "./validation.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -36,6 +38,12 @@ let backend = "webgl2";
  * @type {Bindings | null}
  */
 let current = null;
+
+/**
+ * The mirror of the current instance.
+ * @type {Mirror | null}
+ */
+let mirror = null;
 
 /**
  * Aborts a start that is under way.
@@ -111,7 +119,8 @@ function graphicsToTry(renderer) {
  */
 async function startOn(bindings, renderer, [items, motionItems]) {
   const canvas = newCanvas();
-  byId("stage").replaceChildren(canvas);
+  mirror = new Mirror(bindings);
+  byId("stage").replaceChildren(canvas, mirror.root);
   [backend, current] = [renderer, bindings];
   canvas.addEventListener("webglcontextlost", () => current === bindings && stopped("The browser took the graphics context away."));
   /** @type {Promise<never>} */
@@ -144,8 +153,8 @@ async function startOn(bindings, renderer, [items, motionItems]) {
 
 function newCanvas() {
   const canvas = document.createElement("canvas");
-  canvas.setAttribute("role", "application");
-  canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
+  // Assistive technology reads its mirror instead.
+  canvas.setAttribute("aria-hidden", "true");
   // A visible canvas would make the whole page wait for the device until the first frame is drawn.
   canvas.style.visibility = "hidden";
   return canvas;
@@ -167,8 +176,11 @@ async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
   await frames(2);
   if (session.stopReason !== null) throw new Error(session.stopReason);
   canvas.style.visibility = "";
-  // egui receives text through a hidden input.
-  byId("stage").querySelector("input")?.setAttribute("aria-label", "Text input of the viewport");
+  // egui makes its canvas a stop of the Tab key, and receives text through a hidden input while it has the keyboard.
+  canvas.tabIndex = -1;
+  const agent = byId("stage").querySelector(":scope > input");
+  agent?.setAttribute("aria-hidden", "true");
+  agent?.setAttribute("tabindex", "-1");
 }
 
 /**
@@ -184,6 +196,7 @@ function callsFor(bindings) {
     save: download,
     record: (name, width, height, framesPerSec, frameCount, isTransparent) => record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }),
     cancelRecording,
+    validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),
     share,
     visit: (address) => void open(address.startsWith("#") ? addressOf(address.slice(1)) : address, "_blank", "noopener"),
     hasFullscreen,
@@ -196,6 +209,8 @@ function callsFor(bindings) {
       console.warn(message);
       sayProblem(message);
     },
+    // Deferred: the program borrows its side of the mirror during this call, and moving the focus would call it back.
+    mirror: (tree) => queueMicrotask(() => isCurrent() && mirror?.show(tree)),
     stopped: (message) => isCurrent() && stopped(message),
   };
 }
@@ -245,6 +260,7 @@ function stopOnTrap(error) {
   if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`);
 }
 
+byId("stage").addEventListener("keydown", (event) => mirror?.leaveCanvas(event), true);
 addEventListener("error", ({ error }) => stopOnTrap(error));
 addEventListener("unhandledrejection", ({ reason }) => stopOnTrap(reason));
 button("stopped-again").addEventListener("click", () => launch(backend));

@@ -1,6 +1,6 @@
 // Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in
 // the sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the
-// conversion. One is a script that encodes videos (recording.js).
+// conversion. Two are scripts: one encodes videos (recording.js), one validates glTF files (validation.js).
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));
@@ -11,8 +11,8 @@ const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta
 const files = JSON.parse(meta?.content ?? "{}");
 
 const MAX_SECS = 60;
-/** A module's URL ends with the beginning of its SHA-256 and the extension. */
-const HASHED = /-([0-9a-f]+)\.wasm$/;
+/** A part's URL ends with the beginning of its SHA-256 and the extension. */
+const HASHED = /-([0-9a-f]+)\.\w+$/;
 /** The first byte of an answer other than an error. */
 const CONVERTED = 1;
 /** That byte and the length of the warnings. */
@@ -32,25 +32,86 @@ async function work({ data: { module, input } }) {
   postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
 }
 
-/** The error's name if a module isn't the one that the page was built with; then nothing is wrong with the file. */
+/** The error's name if a part isn't the one that the page was built with; then nothing is wrong with the file. */
 const CHANGED = "ChangedPart";
 
 /**
- * Throws if a module isn't the one that the page was built with: cut short, changed on its way, or damaged in a cache.
+ * Throws if a part isn't the one that the page was built with: cut short, changed on its way, or damaged in a cache.
  * @param {string} file
- * @param {Uint8Array<ArrayBuffer>} module
+ * @param {Uint8Array<ArrayBuffer>} content
  */
-async function check(file, module) {
+async function check(file, content) {
   const expected = HASHED.exec(file)?.[1];
   // Browsers compute no hashes for pages without HTTPS.
   if (expected === undefined || crypto.subtle === undefined) return;
-  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", module));
+  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
   const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, expected.length);
   if (found === expected) return;
   const hint = "reload the page, and if that doesn't help, clear this site's data in the browser first";
   const error = new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; ${hint}`);
   error.name = CHANGED;
   throw error;
+}
+
+/**
+ * @param {string} name
+ * @param {AbortSignal} [signal]
+ */
+async function fetched(name, signal) {
+  const response = await fetch(new URL(files[name] ?? name, document.baseURI), { signal });
+  if (!response.ok) throw new Error(`${response.url}: the server answered ${response.status}`);
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+/**
+ * Keeps a part that was downloaded, unless it is damaged.
+ * @param {string} name
+ * @param {Uint8Array<ArrayBuffer>} content
+ */
+async function accept(name, content) {
+  const file = files[name];
+  if (file === undefined) return;
+  await check(file, content);
+  keepOffline([file]);
+}
+
+/**
+ * Downloads a part, for as long as one may run.
+ * @param {string} name
+ */
+export async function download(name) {
+  const content = await fetched(name, AbortSignal.timeout(1000 * MAX_SECS));
+  await accept(name, content);
+  return content;
+}
+
+/**
+ * Runs a script in a worker that ends with its answer. Rejects if it fails or takes too long.
+ * @param {BlobPart} script
+ * @param {unknown} input
+ * @param {Transferable[]} transfer
+ * @param {(request: string) => unknown} [reply] Answers what the worker asks for as `{ ask }`.
+ */
+export async function inWorker(script, input, transfer, reply) {
+  // A sandboxed frame may start a worker from a blob, but not from a file.
+  const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+  const worker = new Worker(url);
+  let timer = 0;
+  try {
+    return await new Promise((resolve, reject) => {
+      timer = window.setTimeout(() => reject(new Error(`it took longer than ${MAX_SECS} seconds`)), 1000 * MAX_SECS);
+      worker.onmessage = ({ data }) => (data.ask === undefined ? resolve(data) : worker.postMessage(reply?.(data.ask)));
+      worker.onerror = (event) => {
+        event.preventDefault();
+        reject(new Error(event.message.replace(/^Uncaught (Error: )?/, "")));
+      };
+      worker.postMessage(input, transfer);
+    });
+  } finally {
+    clearTimeout(timer);
+    worker.terminate();
+    URL.revokeObjectURL(url);
+  }
 }
 
 export const parts = {
@@ -63,9 +124,7 @@ export const parts = {
    * @param {Uint8Array<ArrayBuffer>} input
    */
   async convert(name, input) {
-    const response = await fetch(new URL(files[name] ?? name, document.baseURI));
-    if (!response.ok) throw new Error(`${response.url}: the server answered ${response.status}`);
-    const answer = await parts.run(name, new Uint8Array(await response.arrayBuffer()), input);
+    const answer = await parts.run(name, await fetched(name), input);
     if (answer[0] !== CONVERTED) throw new Error(new TextDecoder().decode(answer.subarray(1)));
     const warnings = new DataView(answer.buffer, answer.byteOffset).getUint32(1, true);
     return answer.subarray(HEADER_BYTES + warnings);
@@ -80,31 +139,9 @@ export const parts = {
    * @returns {Promise<Uint8Array>}
    */
   async run(name, module, input) {
-    const file = files[name];
-    if (file !== undefined) {
-      await check(file, module);
-      keepOffline([file]);
-    }
-    // A sandboxed frame may start a worker from a blob, but not from a file.
+    await accept(name, module);
     // An error inside the promise doesn't reach `onerror` by itself.
     const script = `onmessage = (event) => (${work})(event).catch((error) => setTimeout(() => { throw error; }));`;
-    const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-    const worker = new Worker(url);
-    let timer = 0;
-    try {
-      return await new Promise((resolve, reject) => {
-        timer = window.setTimeout(() => reject(new Error(`it took longer than ${MAX_SECS} seconds`)), 1000 * MAX_SECS);
-        worker.onmessage = ({ data }) => resolve(data);
-        worker.onerror = (event) => {
-          event.preventDefault();
-          reject(new Error(event.message));
-        };
-        worker.postMessage({ module, input }, [module.buffer, input.buffer]);
-      });
-    } finally {
-      clearTimeout(timer);
-      worker.terminate();
-      URL.revokeObjectURL(url);
-    }
+    return await inWorker(script, { module, input }, [module.buffer, input.buffer]);
   },
 };

@@ -29,14 +29,20 @@ export async function record(name, video) {
   return file;
 }
 
+/** Number of failed attempts to load the encoder. */
+let failures = 0;
+
 /** @param {import("../video.js").Video} video */
 async function encode(video) {
   const file = parts.url("video") ?? "";
   /** @type {typeof import("../video.js")} */
   let part;
   try {
-    part = await import(new URL(file, document.baseURI).href);
+    // Some browsers remember that a module couldn't be loaded, so another try needs another address.
+    const { href } = new URL(failures === 0 ? file : `${file}?${failures}`, document.baseURI);
+    part = await import(href);
   } catch (error) {
+    failures++;
     throw new Error(`the encoder can't be loaded. Check the connection and try again. (${messageOf(error)})`, { cause: error });
   }
   keepOffline([file]);

@@ -35,6 +35,7 @@ export interface ShellCalls {
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
   record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean): Promise<string | undefined>;
   cancelRecording(): void;
+  validate(model: number): Promise<string>;
   share(link: string): void;
   visit(address: string): void;
   hasFullscreen(): boolean;
@@ -44,7 +45,31 @@ export interface ShellCalls {
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
   warn(message: string): void;
+  mirror(tree: string): void;
   stopped(message: string): void;
+}
+
+/** Something that the panels show; see src/app/mirror.rs. */
+export interface MirrorEntry {
+  id: string;
+  role: string;
+  in?: string;
+  name?: string;
+  value?: string;
+  description?: string;
+  now?: number;
+  min?: number;
+  max?: number;
+  checked?: "true" | "false" | "mixed";
+  expanded?: boolean;
+  disabled?: true;
+  focusable?: true;
+  level?: number;
+  at?: number;
+  of?: number;
+  row?: number;
+  /** Left, top, width and height in CSS pixels. */
+  rect?: [number, number, number, number];
 }
 
 /** The program's exports as wasm-bindgen writes them; see src/web. Documents are JSON text. */
@@ -61,6 +86,9 @@ export interface Bindings {
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;
+  mirror_act(id: string, action: "focus" | "click" | "more" | "less" | "set", value?: number | string): void;
+  mirror_key(name: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
+  mirror_focus(hasFocus: boolean): void;
   open(items: ReadItem[], role: Role, isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
@@ -72,6 +100,7 @@ export interface Bindings {
   summary(): string;
   screenshot(): Promise<Uint8Array<ArrayBuffer>>;
   video_frame(index: number): Promise<Uint8Array<ArrayBuffer>>;
+  gltf_file(model: number, uri?: string): Uint8Array<ArrayBuffer>;
   linked_files(link: string): string;
   shown_files(link: string): string;
   public_link(link: string, local: string[]): string;
@@ -95,6 +124,7 @@ export interface InspectDocument {
   clips: { index: number; name: string; duration_secs: number; channels: number }[];
   borrowed_clips?: { name: string }[];
   bounds: { min: number[]; max: number[] };
+  warnings: { code: string; message: string; where: string }[];
 }
 
 /** The document that `gaitway pose --json` prints. */
@@ -125,6 +155,8 @@ export interface State {
   t: number;
   play: boolean;
   show: string;
+  channel: string;
+  hidden: string;
   camera: string;
   pose: string;
   names: string;

@@ -55,9 +55,11 @@ const minified = async (file, options) => (await transform(text(file), { minify:
 /**
  * Bundles modules into one file, so that they take one request.
  * @param {string} entry
+ * @param {import("esbuild").Format} format
+ * @param {string} js What to append.
  */
-async function bundled(entry) {
-  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", minify: true, target: TARGET, write: false, logLevel: "warning" });
+async function bundled(entry, format = "esm", js = "") {
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format, footer: { js }, minify: true, target: TARGET, write: false, logLevel: "warning" });
   return outputFiles[0].text;
 }
 
@@ -80,7 +82,10 @@ function putParts() {
 
 fs.rmSync(dist, { recursive: true, force: true });
 const [webgpu, webgl2] = await Promise.all(["webgpu", "webgl2"].map(putProgram));
-const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")) };
+// With the licences of the validator and its dependencies, as they require.
+const licences = ["LICENSE", "NOTICES"].map((file) => text(`node_modules/gltf-validator/${file}`));
+const validator = await bundled("web/validator/worker.js", "iife", `/*!\n${licences.join("\n")}*/`);
+const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")), validator: put("parts", "validator", ".js", validator) };
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(

@@ -37,8 +37,8 @@ export function renderScenes(wanted, samples) {
     return { scene, link, file: path.join(folder, `${hash.digest("hex").slice(0, 32)}.png`) };
   });
   const missing = images.filter(({ file }) => !fs.existsSync(file));
-  if (missing.length > 0) run("cargo", ["build", "--release"]);
-  const program = path.join(TARGET, "release", process.platform === "win32" ? "gaitway.exe" : "gaitway");
+  if (missing.length > 0) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
+  const program = path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
   for (const { scene, link, file } of missing)
     run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
   return images.map(({ file }) => file);

@@ -5,19 +5,32 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use anyhow::{Context, anyhow};
+use wasm_bindgen_cli_support::Bindgen;
 
-use crate::process::{repository, run, target_folder};
+use crate::process::{Step, repository, run, run_with, target_folder};
 use crate::setup;
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
 /// The packages in parts/ that are built as separate modules.
-const PARTS: [&str; 6] = ["draco", "fbx", "ktx2", "meshopt", "qr", "x"];
+const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-const FOR_THE_PAGE: [&str; 5] = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", "web"];
+/// Compiles the standard library with the program, for minimum size; ARCHITECTURE.md says what that saves.
+const FOR_THE_PAGE: [&str; 7] = [
+    "--locked",
+    "--target",
+    "wasm32-unknown-unknown",
+    "--profile",
+    "web",
+    "-Zbuild-std=std,panic_abort",
+    "-Zbuild-std-features=optimize_for_size",
+];
+
+/// Makes a released Rust accept unstable options. They can change with every version; `rust-toolchain.toml` pins ours.
+const UNSTABLE: (&str, &str) = ("RUSTC_BOOTSTRAP", "1");
 
 /// WebAssembly features that rustc uses today. Every browser with SIMD supports them.
 const WASM_FEATURES: [&str; 8] = [
@@ -68,12 +81,17 @@ fn programs() -> PathBuf {
 fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
     let features = [&["viewer", back_end], features].concat().join(",");
     let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..]].concat();
-    run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())?;
-    let built = compiled("gaitway");
-    let folder = programs();
-    let bind =
-        ["--target", "web", "--no-typescript", "--out-name", back_end, "--out-dir", text(&folder)?, text(&built)?];
-    run("wasm-bindgen", &bind)
+    run_with("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat(), &[UNSTABLE])?;
+    bind(back_end)
+}
+
+/// Writes the program's JavaScript, and the wasm that goes with it.
+fn bind(back_end: &str) -> anyhow::Result<()> {
+    let step = Step::start("wasm-bindgen", &[back_end], &[]);
+    let mut bindgen = Bindgen::new();
+    bindgen.input_path(compiled("gaitway")).out_name(back_end).typescript(false);
+    let bound = bindgen.web(true).and_then(|bindgen| bindgen.generate(programs()));
+    step.end(bound)
 }
 
 fn optimize(back_end: &str) -> anyhow::Result<()> {
@@ -110,7 +128,7 @@ fn build_part(part: &str) -> anyhow::Result<()> {
     }
     let package = format!("gaitway-{part}");
     let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..]].concat();
-    run("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat())?;
+    run_with("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat(), &[UNSTABLE])?;
     wasm_opt(&compiled(&package), &wasm)
 }
 

@@ -1,10 +1,9 @@
-//! Runs other programs from the repository's root, with the repository's own tools on the path, and records their
-//! times.
+//! Runs other programs from the repository's root and records their times.
 
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -33,18 +32,8 @@ pub fn target_folder() -> PathBuf {
     }
 }
 
-/// Programs installed for this repository alone, so that nobody's own versions are replaced.
-pub fn tools_folder() -> PathBuf {
-    target_folder().join("tools")
-}
-
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let folders = std::iter::once(tools_folder().join("bin")).chain(std::env::split_paths(&path));
-    if let Ok(path) = std::env::join_paths(folders) {
-        command.env("PATH", path);
-    }
     command.env("CARGO_TARGET_DIR", target_folder()).current_dir(repository());
     command
 }
@@ -58,7 +47,7 @@ pub fn run(program: &str, arguments: &[&str]) -> anyhow::Result<()> {
 pub fn run_with(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> anyhow::Result<()> {
     let step = Step::start(program, arguments, variables);
     let status = command(program).args(arguments).envs(variables.iter().copied()).status();
-    step.end(status)
+    step.end(succeeded(status))
 }
 
 /// A running command, for callers that need more than [`run_with`] offers.
@@ -75,19 +64,22 @@ impl Step {
         Self { shown, start: Instant::now() }
     }
 
-    /// Records the time and turns a failure into an error that names the command.
-    pub fn end(self, status: std::io::Result<std::process::ExitStatus>) -> anyhow::Result<()> {
+    /// Records the time. An error says which command failed.
+    pub fn end(self, outcome: anyhow::Result<()>) -> anyhow::Result<()> {
         let took = self.start.elapsed();
-        let status = status.with_context(|| format!("couldn't run {}", self.shown))?;
         eprintln!("  {:.1} s", took.as_secs_f32());
-        if !status.success() {
-            bail!("{}: {status}", self.shown);
-        }
+        outcome.with_context(|| self.shown.clone())?;
         if let Ok(mut times) = TIMES.lock() {
             times.push((self.shown, took));
         }
         Ok(())
     }
+}
+
+/// Turns the end of a program into an error unless it succeeded.
+pub fn succeeded(status: std::io::Result<ExitStatus>) -> anyhow::Result<()> {
+    let status = status.context("couldn't run it")?;
+    if status.success() { Ok(()) } else { bail!("{status}") }
 }
 
 static TIMES: Mutex<Vec<(String, Duration)>> = Mutex::new(Vec::new());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use crate::process::{is_ci, output, repository, run, tools_folder};
+use crate::process::{is_ci, output, repository, run};
 
 const WASM: &str = "wasm32-unknown-unknown";
 
@@ -15,7 +15,10 @@ pub fn page() -> anyhow::Result<()> {
         run("rustup", &["target", "add", WASM])
             .context("Rust's wasm32-unknown-unknown target is missing and rustup couldn't add it")?;
     }
-    wasm_bindgen()?;
+    if !has_rust_source() {
+        run("rustup", &["component", "add", "rust-src"])
+            .context("the standard library's source (rust-src) is missing and rustup couldn't add it")?;
+    }
     npm_packages()
 }
 
@@ -81,47 +84,9 @@ fn has_wasm_target() -> bool {
     output("rustc", &["--print", "target-libdir", "--target", WASM]).is_some_and(|folder| Path::new(&folder).exists())
 }
 
-/// Makes sure that wasm-bindgen has the library's version: uses one that is on the path, else downloads a binary if
-/// cargo-binstall is installed, else compiles it, which takes a minute or two.
-fn wasm_bindgen() -> anyhow::Result<()> {
-    let version = locked_version("wasm-bindgen")?;
-    if has_wasm_bindgen(&version) {
-        return Ok(());
-    }
-    let tools = tools_folder();
-    let tools = tools.to_str().context("the target folder's path is not UTF-8")?;
-    let [download, compile] = wasm_bindgen_installations(&version, tools);
-    if output("cargo", &["binstall", "-V"]).is_some() {
-        match run("cargo", &download) {
-            Ok(()) if has_wasm_bindgen(&version) => return Ok(()),
-            Ok(()) => eprintln!("cargo binstall left no wasm-bindgen {version}; compiling it"),
-            Err(error) => eprintln!("{error:#}; compiling wasm-bindgen instead"),
-        }
-    }
-    run("cargo", &compile)
-}
-
-/// The arguments of cargo that download wasm-bindgen into a folder, and those that compile it.
-fn wasm_bindgen_installations<'a>(version: &'a str, tools: &'a str) -> [Vec<&'a str>; 2] {
-    // Without `--locked`: its own lock file has an older library.
-    let package = ["--version", version, "--root", tools, "wasm-bindgen-cli"];
-    [&["binstall", "--no-confirm"][..], &["install"]].map(|first| [first, &package].concat())
-}
-
-fn has_wasm_bindgen(version: &str) -> bool {
-    output("wasm-bindgen", &["--version"]).is_some_and(|printed| reports_version(&printed, version))
-}
-
-/// `wasm-bindgen 0.2.130 (…)`.
-fn reports_version(printed: &str, version: &str) -> bool {
-    printed.split_whitespace().nth(1) == Some(version)
-}
-
-fn locked_version(package: &str) -> anyhow::Result<String> {
-    let lock = fs::read_to_string(repository().join("Cargo.lock")).context("Cargo.lock")?;
-    let entry = lock.split("[[package]]").find(|entry| entry.contains(&format!("name = \"{package}\"\n")));
-    let version = entry.and_then(|entry| entry.split("version = \"").nth(1)).and_then(|rest| rest.split('"').next());
-    version.map(str::to_owned).with_context(|| format!("Cargo.lock has no {package}"))
+fn has_rust_source() -> bool {
+    let source = "lib/rustlib/src/rust/library/std/Cargo.toml";
+    output("rustc", &["--print", "sysroot"]).is_some_and(|folder| Path::new(&folder).join(source).exists())
 }
 
 fn npm_packages() -> anyhow::Result<()> {
@@ -144,42 +109,4 @@ fn has_library(name: &str) -> bool {
     let folders =
         ["/usr/lib", "/lib", "/usr/lib64", "/usr/local/lib", "/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu"];
     folders.iter().any(|folder| Path::new(folder).join(name).exists())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_tool_of_another_version_does_not_count() {
-        assert!(reports_version("wasm-bindgen 0.2.130", "0.2.130"));
-        assert!(reports_version("wasm-bindgen 0.2.130 (0123abc 2026-01-01)", "0.2.130"));
-        assert!(!reports_version("wasm-bindgen 0.2.13", "0.2.130"));
-        assert!(!reports_version("wasm-bindgen", "0.2.130"));
-    }
-
-    /// Calls a `cargo-binstall` that writes down its arguments.
-    #[cfg(unix)]
-    #[test]
-    fn cargo_binstall_is_asked_for_the_librarys_version() {
-        use std::os::unix::fs::PermissionsExt;
-
-        let folder = tools_folder().join(format!("binstall-test-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        let (script, arguments) = (folder.join("cargo-binstall"), folder.join("arguments"));
-        fs::write(&script, format!("#!/bin/sh\necho \"$*\" > '{}'\n", arguments.display())).unwrap();
-        fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        let path = std::env::join_paths([folder.clone()].into_iter().chain(std::env::split_paths(&path))).unwrap();
-        let version = locked_version("wasm-bindgen").unwrap();
-        let [download, compile] = wasm_bindgen_installations(&version, "/tools");
-        let status = std::process::Command::new("cargo").args(download).env("PATH", path).status().unwrap();
-        let written = fs::read_to_string(&arguments);
-        fs::remove_dir_all(&folder).unwrap();
-        assert!(status.success());
-        let expected = format!("--version {version} --root /tools wasm-bindgen-cli");
-        // Cargo passes the name of the subcommand on.
-        assert_eq!(written.unwrap().trim(), format!("binstall --no-confirm {expected}"));
-        assert_eq!(compile.join(" "), format!("install {expected}"));
-    }
 }

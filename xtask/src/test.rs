@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 use anyhow::Context;
 
-use crate::process::{self, Step, command, repository, run_with, target_folder, time_table};
+use crate::process::{self, Step, command, repository, run_with, succeeded, target_folder, time_table};
 use crate::{page, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
@@ -26,19 +26,19 @@ fn check_scripts() -> anyhow::Result<()> {
 
 fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["fmt", "--all", "--check"])?;
-    let clippy = ["clippy", "--workspace", "--all-targets"];
-    process::run("cargo", &[&clippy[..], &["--", "-D", "warnings"]].concat())?;
-    let wasm = ["clippy", "--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
-    process::run("cargo", &[&wasm[..], &["--", "-D", "warnings"]].concat())?;
+    // The core alone has no code of its own, so it is only compiled.
+    let core = ["--no-default-features", "--all-targets"];
+    let wasm = ["--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
+    for targets in [&["--workspace", "--all-targets"][..], &core, &wasm] {
+        process::run("cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())?;
+    }
     let doc = ["doc", "--no-deps", "--package", "gaitway", "--package", "gaitway-core"];
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
-    process::run("cargo", &["test", "--no-default-features"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    // The parts by themselves are only for the tests.
-    let packages = ["gaitway", "gaitway-ktx2", "gaitway-x"].map(|package| ["--package", package]);
-    process::run("cargo", &[&["build", "--release"], packages.as_flattened()].concat())
+    // Node's tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them.
+    process::run("cargo", &["build", "--workspace"])
 }
 
 /// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
@@ -46,7 +46,7 @@ fn node_tests() -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let target = target_folder();
-    let program = target.join("release").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
+    let program = target.join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
     let program = program.to_str().context("the target folder's path is not UTF-8")?;
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
     let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
@@ -67,7 +67,7 @@ fn node_tests() -> anyhow::Result<()> {
     let step = Step::start("node", &arguments, &variables);
     let mut node = command("node").args(&arguments).envs(variables).stdout(Stdio::piped()).spawn()?;
     let summary = node.stdout.take().map(print_up_to_summary).transpose()?;
-    let outcome = step.end(node.wait());
+    let outcome = step.end(succeeded(node.wait()));
     println!("{}", time_table());
     print!("{}", summary.unwrap_or_default());
     outcome

@@ -13,7 +13,8 @@ use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapped};
 use crate::state::{
-    Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
+    Background, CameraChoice, Channel, ClipChoice, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
+    VertexChoice,
 };
 use crate::state::{EnvironmentChoice, KeyLight, LightSetup, LookTarget, ToneMap, ViewerState, map_code};
 
@@ -33,6 +34,21 @@ pub(super) const SKINNING_MODES: [(&str, SkinningMode); 3] = [
 
 pub(super) const TONE_MAPS: [(&str, ToneMap); 4] =
     [("neutral", ToneMap::Neutral), ("aces", ToneMap::Aces), ("agx", ToneMap::Agx), ("none", ToneMap::None)];
+
+pub(super) const CHANNELS: [(&str, Channel); Channel::ALL.len()] = [
+    ("shaded", Channel::Shaded),
+    ("base-color", Channel::BaseColor),
+    ("normal", Channel::Normal),
+    ("tangent", Channel::Tangent),
+    ("roughness", Channel::Roughness),
+    ("metallic", Channel::Metallic),
+    ("occlusion", Channel::Occlusion),
+    ("emissive", Channel::Emissive),
+    ("uv", Channel::Uv),
+    ("vertex-color", Channel::VertexColor),
+    ("influences", Channel::Influences),
+    ("wireframe", Channel::Wireframe),
+];
 
 pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("x", UpAxis::X),
@@ -321,8 +337,13 @@ pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
 }
 
 pub(super) fn write_names(names: &BTreeMap<usize, String>) -> Written {
-    let name = |(joint, name): (&usize, &String)| format!("{joint}:{}", utf8_percent_encode(name, IN_NAMES));
+    let name = |(joint, name): (&usize, &String)| format!("{joint}:{}", escaped_name(name));
     Written::Text(joined(names.iter().map(name)))
+}
+
+/// Escapes a name among the separators of a value.
+pub(super) fn escaped_name(name: &str) -> String {
+    utf8_percent_encode(name, IN_NAMES).to_string()
 }
 
 /// Names are escaped a second time because of the separators between them.
@@ -334,6 +355,28 @@ pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
         is_line.then_some((joint.trim().parse().ok()?, name.into_owned()))
     };
     each(text, named)
+}
+
+/// Writes nodes, then materials as `m` and their index. `m` alone is the default material.
+pub(super) fn write_hidden(hidden: &Hidden) -> Written {
+    let nodes = hidden.nodes.iter().map(ToString::to_string);
+    let materials = hidden.materials.iter().map(|material| match material {
+        Some(index) => format!("m{index}"),
+        None => "m".to_owned(),
+    });
+    Written::Text(joined(nodes.chain(materials)))
+}
+
+pub(super) fn read_hidden(text: &str) -> Option<Hidden> {
+    let mut hidden = Hidden::default();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        match part.strip_prefix('m') {
+            Some("") => _ = hidden.materials.insert(None),
+            Some(index) => _ = hidden.materials.insert(Some(index.parse().ok()?)),
+            None => _ = hidden.nodes.insert(part.parse().ok()?),
+        }
+    }
+    Some(hidden)
 }
 
 pub(super) fn vertex_text(choice: &VertexChoice) -> String {

@@ -75,6 +75,7 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         foot_slide_source_metres_per_sec,
         ground_penetration_metres_max,
         foot_hover_metres_mean,
+        sole_penetration_metres_max,
         coverage,
     } = *figures;
     let degrees = |name, value: Option<f64>| figure(name, value.map(|value| format!("{value:.2}°")));
@@ -98,7 +99,8 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         speed("Slide", foot_slide_metres_per_sec),
         speed("Slide of the source", foot_slide_source_metres_per_sec),
         length("Mean height of the soles", foot_hover_metres_mean),
-        length("Max. ground penetration", ground_penetration_metres_max),
+        length("Max. sole penetration", sole_penetration_metres_max),
+        length("Max. joint penetration", ground_penetration_metres_max),
     ];
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));

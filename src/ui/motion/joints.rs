@@ -11,6 +11,7 @@ use super::{Contents, MotionTab, Pairing, detail};
 use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
+use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, controls, style, text};
 
 const ROW_HEIGHT: f32 = 44.0;
@@ -337,6 +338,7 @@ fn show_row(
     let role = egui::accesskit::Role::Button;
     target.widget_info(|| WidgetInfo::selected(role, true, chosen, text::edit_joint(&row.target)));
     source.widget_info(|| WidgetInfo::labeled(role, true, &row.follows));
+    [&target, &source].into_iter().for_each(|half| accessible::cell(half, row.number));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         if chosen {

@@ -273,7 +273,7 @@ fn body(
 ) {
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Section::Options => options::show(ui, shown.state.inspect, pairing, map, contents, out),
+        Section::Options => options::show(ui, shown, pairing, map, contents, out),
         Section::Figures => figures::show(ui, shown, pairing, contents, tab),
         Section::Files => options::files(ui, shown, pairing, out),
     }

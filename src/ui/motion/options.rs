@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use egui::{RichText, Ui};
 
 use super::{Contents, Pairing};
-use crate::editor::Export;
+use crate::editor::{ClipFormat, Export};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
-use crate::ui::{Output, Saved, Shown, UiAction, style, text};
+use crate::ui::{Output, Saved, Shown, UiAction, change, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
@@ -18,13 +18,14 @@ const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, text::AUTOMATIC), (Keep::Keep, te
 
 pub(super) fn show(
     ui: &mut Ui,
-    inspect: Inspect,
+    shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
     contents: &Contents,
     out: &mut Output,
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
+    let inspect = shown.state.inspect;
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, text::PLANT_FEET, planted) {
@@ -61,7 +62,7 @@ pub(super) fn show(
     }
     controls::hint(ui, "Automatic keeps them when both skeletons are the same. The hips always travel.");
 
-    controls::section(ui, "CHANGING CLIPS");
+    controls::section(ui, "SWITCHING CLIPS");
     let settings =
         controls::SliderSettings { range: (0.0, 2.0), default: 0.0, decimals: 2, suffix: " s", logarithmic: false };
     if let Some(secs) = controls::slider(ui, text::CROSSFADE, map.crossfade_secs, settings) {
@@ -78,9 +79,10 @@ pub(super) fn show(
             }
         }
     }
+    change::section(ui, shown, out);
 }
 
-/// What happens to each part of the root motion.
+/// The choices for each part of the root motion.
 fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
     let set = |root: RootOptions| Command::SetRoot(Some(root));
     controls::section(ui, capitals!(text::ROOT_HORIZONTAL));
@@ -102,7 +104,7 @@ fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
     }
 }
 
-/// Which channels of the motion are ignored; `None` if none are.
+/// Says how many joints of the motion have ignored channels; `None` if none has.
 pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
     let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
@@ -112,7 +114,7 @@ pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
     }
 }
 
-/// Opening, saving and removing files.
+/// Buttons that open, save and remove files.
 pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
     let wide = |ui: &mut Ui, enabled: bool, text: &str| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
@@ -128,7 +130,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
-    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
+    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.is_derived(clip));
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
     if wide(ui, clip.is_some(), text::SAVE_GLB)
@@ -136,15 +138,18 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     {
         out.actions.push(UiAction::Save(Saved::File(Export::Model { clip })));
     }
-    if wide(ui, clip.is_some(), text::SAVE_CLIP)
-        && let Some(clip) = clip
-    {
-        out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip })));
+    for format in ClipFormat::ALL.into_iter().filter(|format| format.fits(pairing.model)) {
+        if wide(ui, clip.is_some(), text::save_clip(format))
+            && let Some(clip) = clip
+        {
+            out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip, format })));
+        }
     }
     controls::section(ui, "MOTION");
     let show = shown.state.display.show;
-    // The source of no other clip is shown.
-    if wide(ui, clip.is_some(), if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE }) {
+    // Only a borrowed clip has a source to show.
+    let is_borrowed = clip.is_some_and(|clip| pairing.model.borrowed(clip).is_some());
+    if wide(ui, is_borrowed, if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE }) {
         out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
     }
     if wide(ui, true, text::OPEN_INSTEAD) {
@@ -175,7 +180,7 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
     pressed
 }
 
-/// What joints without a source can do, with display texts.
+/// The policies for joints without a source, with their labels.
 pub(super) fn policies(pairing: &Pairing<'_>) -> Vec<(Unmapped, String)> {
     let mut policies = vec![(Unmapped::Rest, text::REST.to_owned())];
     for index in 0..pairing.model.asset.clips.len() {

@@ -118,6 +118,7 @@ fn list(
         if found.is_empty() {
             controls::hint(ui, "No joint of the motion has this name or number.");
         }
+        controls::follow_focus(ui);
     });
 }
 

@@ -5,9 +5,9 @@ use egui::Ui;
 use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{Command, Inspect, Show, active_clip, active_variant};
+use crate::state::{Channel, Command, Inspect, Show, active_clip, active_variant};
 use crate::ui::controls::{self, SliderSettings};
-use crate::ui::{Output, Shown, text};
+use crate::ui::{Output, Shown, change, text};
 
 const MODES: [(SkinningMode, &str); 3] = [
     (SkinningMode::Linear, "Linear"),
@@ -53,6 +53,10 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     overlays(ui, shown, out);
     special_overlays(ui, shown, out);
     source(ui, shown, out);
+    // Otherwise the Motion tab has it among its options.
+    if shown.library.motions().is_empty() {
+        change::section(ui, shown, out);
+    }
     if let Some(model) = model.filter(|_| !morphs_first) {
         avatar::controls(ui, shown, model, out);
         morphs(ui, shown, model, out);
@@ -94,6 +98,7 @@ fn overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
     let show = state.display.show;
     controls::section(ui, "SHOW");
+    channel(ui, state.display.channel, out);
     let mut flip = |ui: &mut Ui, label: &str, on: bool, flipped: Show| {
         if controls::switch(ui, label, on) {
             out.commands.push(Command::SetShow(flipped));
@@ -119,6 +124,23 @@ fn overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if flip_weights {
         out.commands.push(Command::SetInspect(Inspect { weights: !weights, ..state.inspect }));
     }
+}
+
+/// The choice of what surfaces show.
+fn channel(ui: &mut Ui, now: Channel, out: &mut Output) {
+    let combo = egui::ComboBox::from_id_salt("channel").width(ui.available_width()).height(400.0);
+    let combo = combo.selected_text(text::labelled(text::CHANNEL, text::channel(now)));
+    let response = combo
+        .show_ui(ui, |ui| {
+            for channel in Channel::ALL {
+                if ui.selectable_label(channel == now, text::channel(channel)).clicked() {
+                    out.commands.push(Command::SetChannel(channel));
+                }
+            }
+        })
+        .response;
+    response.accessible_name(text::CHANNEL);
+    ui.add_space(2.0);
 }
 
 /// Overlays that only some models or views have a use for.

@@ -23,9 +23,21 @@ pub struct JointCard {
     renaming: Option<(usize, String)>,
 }
 
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
+/// `has_content`: the node or one below has a mesh or a light, which can be hidden.
+pub fn show(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    joint: JointIndex,
+    has_content: bool,
+    card: &mut JointCard,
+    out: &mut Output,
+) {
     let asset = &model.asset;
     header(ui, shown, asset, joint, card, out);
+    if has_content {
+        hide_buttons(ui, shown, asset, joint, out);
+    }
     if !shown.frame.is_visible(joint) {
         controls::hint(ui, text::NODE_HIDDEN);
     }
@@ -69,6 +81,21 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card
                 card.renaming = Some((asset.skeleton.source_index(joint), name));
             }
         });
+    });
+}
+
+/// Hides or solos the meshes and lights of the node and below.
+fn hide_buttons(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, out: &mut Output) {
+    let hidden = &shown.state.edits.hidden;
+    let number = asset.skeleton.source_index(joint);
+    ui.horizontal_wrapped(|ui| {
+        let label = if hidden.nodes.contains(&number) { text::SHOW } else { text::HIDE };
+        if ui.button(label).clicked() {
+            out.commands.push(Command::SetHidden(hidden.clone().with_node_toggled(number)));
+        }
+        if ui.button(text::SOLO).on_hover_text(text::SOLO_HINT).clicked() {
+            out.commands.push(Command::SetHidden(hidden.clone().with_node_soloed(asset, joint)));
+        }
     });
 }
 

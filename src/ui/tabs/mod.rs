@@ -4,17 +4,23 @@ mod animated;
 mod avatar;
 pub mod display;
 pub mod formula;
+mod hiding;
 mod joint_card;
+mod lists;
+mod materials;
+mod performance;
 pub mod report;
 mod scene_tree;
+mod validation;
 mod view_options;
 
 use egui::Ui;
 
-use super::{Output, Shown, UiState, controls, motion};
+use super::{Output, Shown, UiState, controls, motion, text};
 
 pub use formula::VertexProbe;
 pub use joint_card::JointCard;
+pub use lists::Lists;
 pub use scene_tree::SceneTree;
 pub use view_options::PictureSettings;
 
@@ -50,7 +56,9 @@ impl Tab {
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
-    if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count]) {
+    let findings = shown.library.active().map_or(0, |model| model.findings().len());
+    let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::warning_count(findings));
+    if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {
         local.layout.tab = tab;
     }
     ui.add_space(6.0);
@@ -58,7 +66,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         // Has a scroll area of its own.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
-        Tab::Info => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
+        Tab::Info => controls::scrolled(ui, "file", |ui| report::show(ui, shown, local, out)),
         Tab::Motion => motion::show(ui, shown, local, out),
         Tab::Camera => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }

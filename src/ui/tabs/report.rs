@@ -5,36 +5,43 @@ use std::collections::BTreeMap;
 use egui::{RichText, Ui};
 
 use super::formula::fixed;
-use super::{animated, avatar};
-use crate::asset::{Asset, Warning};
+use super::{animated, avatar, materials, performance, validation};
+use crate::anim::JointIndex;
+use crate::asset::Asset;
 use crate::editor::Export;
-use crate::library::Model;
+use crate::library::{Finding, Model};
 use crate::mesh::{Geometry, Mesh};
-use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
+use crate::state::{Command, title};
+use crate::ui::{Layout, Output, Saved, Shown, Tab, UiAction, UiState, controls, style, text};
 
 /// Further parts are not listed.
 const MAX_PARTS: usize = 100;
 
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
+    // The app makes the thumbnails before the next frame.
+    if local.info_model.replace(model.id).is_none() && local.host.thumbnails_of != Some(model.id) {
+        ui.ctx().request_repaint();
+    }
     contents(ui, model);
+    warnings(ui, shown, model, &mut local.layout, out);
+    validation::show(ui, shown, model, local, out);
+    let lists = local.lists.of(model);
     avatar::facts(ui, shown, model);
     animated::show(ui, shown, model);
     parts(ui, asset);
     save(ui, asset, out);
+    performance::show(ui, lists, &local.host);
+    materials::show(ui, shown, model, lists, out);
+    materials::images(ui, model, lists, &local.host);
     extensions(ui, asset);
-    warnings(ui, asset);
 }
 
 fn contents(ui: &mut Ui, model: &Model) {
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let size = model.rest_bounds().size();
-    let images = match model.texture_bytes() {
-        0 => grouped(asset.images.len()),
-        bytes => format!("{} ({:.1} MB of GPU memory)", grouped(asset.images.len()), bytes as f64 / 1e6),
-    };
     let rows = [
         (text::FORMAT, format_name(asset.format)),
         (text::NODES, grouped(asset.skeleton.len())),
@@ -45,7 +52,7 @@ fn contents(ui: &mut Ui, model: &Model) {
         ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
         ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
         ("Materials", grouped(asset.materials.len())),
-        ("Images", images),
+        ("Images", grouped(asset.images.len())),
         (text::CLIPS, grouped(asset.clips.len())),
         ("Cameras", grouped(asset.cameras.len())),
         ("Lights", grouped(asset.lights.len())),
@@ -76,24 +83,43 @@ fn extensions(ui: &mut Ui, asset: &Asset) {
     });
 }
 
-fn warnings(ui: &mut Ui, asset: &Asset) {
-    controls::section(ui, "WARNINGS");
-    if asset.warnings.is_empty() {
-        controls::hint(ui, "No problems found");
+fn warnings(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layout: &mut Layout, out: &mut Output) {
+    controls::section(ui, text::WARNINGS);
+    if model.findings().is_empty() {
+        controls::hint(ui, text::NO_WARNINGS);
         return;
     }
-    let mut by_code: BTreeMap<&str, Vec<&Warning>> = BTreeMap::new();
-    for warning in asset.warnings.iter() {
-        by_code.entry(warning.code()).or_default().push(warning);
+    let mut by_code: BTreeMap<&str, Vec<&Finding>> = BTreeMap::new();
+    for finding in model.findings() {
+        by_code.entry(finding.warning.code()).or_default().push(finding);
     }
     let color = style::palette(ui).warning;
-    for (code, warnings) in by_code {
-        let title = RichText::new(text::counted(code, warnings.len())).color(color);
-        egui::CollapsingHeader::new(title).id_salt(code).default_open(warnings.len() <= 3).show(ui, |ui| {
-            for warning in warnings {
-                controls::hint(ui, warning.to_string());
+    for (code, findings) in by_code {
+        let title = RichText::new(text::counted(code, findings.len())).color(color);
+        egui::CollapsingHeader::new(title).id_salt(code).default_open(findings.len() <= 3).show(ui, |ui| {
+            for finding in findings {
+                about_node(ui, shown, model, &finding.warning.to_string(), finding.joint, layout, out);
             }
         });
+    }
+}
+
+/// Shows the text of a finding, and a button that leads to the node it is about.
+pub(super) fn about_node(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    finding: &str,
+    joint: Option<JointIndex>,
+    layout: &mut Layout,
+    out: &mut Output,
+) {
+    controls::hint(ui, finding);
+    let Some(joint) = joint else { return };
+    let name = title(Some(shown.state), &model.asset, joint);
+    if ui.add(egui::Button::new(text::go_to(&name)).small().truncate()).clicked() {
+        out.commands.push(Command::SelectJoint(Some(model.asset.skeleton.source_index(joint))));
+        layout.show_tab(Tab::Scene);
     }
 }
 
@@ -170,7 +196,7 @@ fn size_text(size: [f32; 3]) -> String {
 }
 
 /// Formats a number with thin spaces between thousands.
-fn grouped(number: usize) -> String {
+pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

@@ -1,14 +1,15 @@
 //! The Scene tab: every node of the file as a tree, and below it the selected joint and vertex.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use egui::{Color32, Rect, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::joint_card;
+use super::{hiding, joint_card};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
-use crate::state::{Command, ViewerState, title};
+use crate::state::{Command, ViewerState, joints_with_content, title};
+use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
 const ROW_HEIGHT: f32 = 26.0;
@@ -25,12 +26,26 @@ pub struct SceneTree {
     collapsed: HashSet<usize>,
     /// The joint that the tree last scrolled to.
     scrolled_to: Option<usize>,
+    /// By joint.
+    nodes: Vec<Node>,
+    /// `None` at first and after a row is expanded or collapsed.
+    rows: Option<Rows>,
+}
+
+/// What the tree shows of a node besides its name.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    kind: Kind,
+    /// It or a node below has a mesh or a light, which its eye hides.
+    has_content: bool,
+    /// A warning in the Info tab is about it.
+    has_warning: bool,
 }
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     if local.scene_tree.model != Some(model.id) {
-        local.scene_tree = SceneTree { model: Some(model.id), ..SceneTree::default() };
+        local.scene_tree = SceneTree { model: Some(model.id), nodes: nodes(model), ..SceneTree::default() };
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
@@ -40,6 +55,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);
         ui.add_space(2.0);
         ui.allocate_ui(vec2(ui.available_width(), height), |ui| local.scene_tree.show(ui, shown, model, out));
+        hiding::show_all(ui, shown, out);
         ui.add_space(6.0);
         cards(ui, shown, model, selected, local, out);
     });
@@ -60,7 +76,11 @@ fn cards(
         vertex(ui, shown, model, local, out);
     }
     match selected {
-        Some(joint) => controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, &mut local.joint_card, out)),
+        Some(joint) => {
+            let has_content = local.scene_tree.nodes.get(joint.get()).is_some_and(|node| node.has_content);
+            let card = &mut local.joint_card;
+            controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, has_content, card, out));
+        }
         None => controls::hint(ui, "Select a joint here or in the viewport to see its transforms."),
     }
     if !vertex_first {
@@ -81,7 +101,16 @@ fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, ou
     }
 }
 
+/// Cached rows and the inputs they depend on, besides the collapsed joints.
+#[derive(Debug)]
+struct Rows {
+    search: String,
+    names: BTreeMap<usize, String>,
+    rows: Vec<Row>,
+}
+
 /// One row of the tree.
+#[derive(Debug)]
 struct Row {
     joint: JointIndex,
     depth: usize,
@@ -91,14 +120,26 @@ struct Row {
 impl SceneTree {
     fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
         let asset = &model.asset;
-        let rows = self.rows(asset, shown.state);
-        if rows.is_empty() {
+        let names = &shown.state.edits.names;
+        let kept = self.rows.take().filter(|kept| kept.search == self.search && kept.names == *names);
+        let kept = kept.unwrap_or_else(|| {
+            let rows = self.rows(asset, shown.state);
+            Rows { search: self.search.clone(), names: names.clone(), rows }
+        });
+        let is_folded = !kept.rows.is_empty() && self.show_rows(ui, shown, model, &kept.rows, out);
+        if kept.rows.is_empty() {
             controls::hint(ui, text::no_node_found(&self.search));
-            return;
         }
-        let kinds = kinds(model);
+        self.rows = (!is_folded).then_some(kept);
+    }
+
+    /// Returns whether a row was expanded or collapsed.
+    fn show_rows(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, rows: &[Row], out: &mut Output) -> bool {
+        let asset = &model.asset;
+        let hidden = &shown.state.edits.hidden;
+        let mut is_folded = false;
         let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, false]);
-        if let Some(offset) = self.scroll_offset(ui, shown, asset, &rows) {
+        if let Some(offset) = self.scroll_offset(ui, shown, asset, rows) {
             area = area.vertical_scroll_offset(offset);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
@@ -106,24 +147,45 @@ impl SceneTree {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
             for row in rows.get(visible).unwrap_or_default() {
                 let number = asset.skeleton.source_index(row.joint);
+                let Some(&Node { kind, has_content, has_warning }) = self.nodes.get(row.joint.get()) else { continue };
                 let line = Line {
                     name: &title(Some(shown.state), asset, row.joint),
-                    kind: kinds[row.joint.get()],
+                    kind,
                     is_selected: shown.state.selection.joint == Some(number),
                     is_collapsed: self.collapsed.contains(&number),
+                    is_shown: has_content.then(|| !hidden.nodes.contains(&number)),
+                    has_warning,
+                    is_dimmed: has_content && !shown.frame.is_visible(row.joint),
                 };
                 match tree_row(ui, row, &line) {
                     Some(Pressed::Row) => {
                         self.scrolled_to = Some(number);
                         out.commands.push(Command::SelectJoint((!line.is_selected).then_some(number)));
                     }
-                    Some(Pressed::Triangle) if line.is_collapsed => _ = self.collapsed.remove(&number),
-                    Some(Pressed::Triangle) => _ = self.collapsed.insert(number),
+                    Some(Pressed::Eye(pressed)) => {
+                        let hidden = match pressed {
+                            hiding::Pressed::Toggle => hidden.clone().with_node_toggled(number),
+                            hiding::Pressed::Solo => hidden.clone().with_node_soloed(asset, row.joint),
+                        };
+                        out.commands.push(Command::SetHidden(hidden));
+                    }
+                    Some(Pressed::Triangle) => {
+                        is_folded = true;
+                        self.fold(number);
+                    }
                     None => {}
                 }
             }
         });
         ui.spacing_mut().item_spacing.y = spacing;
+        is_folded
+    }
+
+    /// Expands or collapses a joint.
+    fn fold(&mut self, joint: usize) {
+        if !self.collapsed.remove(&joint) {
+            self.collapsed.insert(joint);
+        }
     }
 
     /// The rows that the search and the collapsed joints leave.
@@ -172,26 +234,30 @@ impl SceneTree {
     }
 }
 
-/// What each node is, for its mark.
-fn kinds(model: &Model) -> Vec<Kind> {
+fn nodes(model: &Model) -> Vec<Node> {
     let asset = &model.asset;
-    let mut kinds = vec![Kind::Empty; asset.skeleton.len()];
-    for joint in asset.skeleton.joints().filter(|&joint| model.rig().is_real(joint)) {
-        kinds[joint.get()] = Kind::Joint;
-    }
+    let rig = model.rig();
+    let node = |(joint, has_content)| {
+        let kind = if rig.is_real(joint) { Kind::Joint } else { Kind::Empty };
+        Node { kind, has_content, has_warning: false }
+    };
+    let mut nodes: Vec<Node> = asset.skeleton.joints().zip(joints_with_content(asset, true)).map(node).collect();
     for camera in &asset.cameras {
-        kinds[camera.joint.get()] = Kind::Camera;
+        nodes[camera.joint.get()].kind = Kind::Camera;
     }
     for light in &asset.lights {
-        kinds[light.joint.get()] = Kind::Light;
+        nodes[light.joint.get()].kind = Kind::Light;
     }
     for instance in &asset.instances {
-        kinds[instance.joint.get()] = Kind::Mesh;
+        nodes[instance.joint.get()].kind = Kind::Mesh;
     }
-    kinds
+    for joint in model.findings().iter().filter_map(|finding| finding.joint) {
+        nodes[joint.get()].has_warning = true;
+    }
+    nodes
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Empty,
     Joint,
@@ -206,10 +272,16 @@ struct Line<'a> {
     kind: Kind,
     is_selected: bool,
     is_collapsed: bool,
+    /// Whether it is hidden by its eye; `None` if there is nothing to hide.
+    is_shown: Option<bool>,
+    has_warning: bool,
+    /// Has content that isn't shown, for whatever reason.
+    is_dimmed: bool,
 }
 
 enum Pressed {
     Row,
+    Eye(hiding::Pressed),
     Triangle,
 }
 
@@ -218,6 +290,8 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
     let role = egui::accesskit::Role::TreeItem;
     response.widget_info(|| WidgetInfo::selected(role, true, is_selected, name));
+    let is_expanded = row.has_children.then_some(!line.is_collapsed);
+    let is_toggled = accessible::tree_item(ui, &response, row.depth, is_expanded);
     let palette = style::palette(ui);
     let fill = if is_selected {
         palette.chosen
@@ -232,14 +306,25 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
     let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
     let mut pressed = response.clicked().then_some(Pressed::Row);
-    if row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
+    if is_toggled || row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
         pressed = Some(Pressed::Triangle);
     }
+    if let Some(is_shown) = line.is_shown
+        && let Some(eye) = hiding::eye(ui, rect, ui.scope_id().with(("eye", row.joint.0)), name, is_shown)
+    {
+        pressed = Some(Pressed::Eye(eye));
+    }
     kind_mark(ui, kind, pos2(x + 20.0, rect.center().y), palette);
-    let text = Rect::from_min_max(pos2(x + 32.0, rect.top()), rect.right_bottom() - vec2(6.0, 0.0));
+    let eye_width = if line.is_shown.is_some() { hiding::EYE_WIDTH } else { 6.0 };
+    let dot_width = if line.has_warning { 12.0 } else { 0.0 };
+    if line.has_warning {
+        let at = rect.right_center() - vec2(eye_width + 4.0, 0.0);
+        ui.painter().circle_filled(at, 3.0, palette.warning);
+    }
+    let text = Rect::from_min_max(pos2(x + 32.0, rect.top()), rect.right_bottom() - vec2(eye_width + dot_width, 0.0));
     let color = if is_selected {
         palette.accent
-    } else if kind == Kind::Empty {
+    } else if kind == Kind::Empty || line.is_dimmed {
         palette.weak_text
     } else {
         palette.text

@@ -43,7 +43,10 @@ pub const REDO_STEP: &str = "Redo step (Ctrl+Y)";
 /// Button of an embedded view.
 pub const OPEN_PAGE: &str = "Open in Gaitway";
 
-/// Returns the name of the button that borrows the clips of an open model.
+/// Button that borrows the clips of an open model.
+pub const BORROW: &str = "Borrow";
+
+/// Returns the accessible name and tooltip of that button.
 pub fn borrow_from(model: &str) -> String {
     format!("Borrow the motion of {model}")
 }

@@ -1,5 +1,6 @@
 //! Texts of controls that tests look for, so that each can change in one place. By subject; shared ones are here.
 
+mod change;
 mod clips;
 mod header;
 mod motion;
@@ -7,6 +8,7 @@ mod properties;
 mod tabs;
 mod viewport;
 
+pub use change::*;
 pub use clips::*;
 pub use header::*;
 pub use motion::*;

@@ -1,5 +1,6 @@
 //! The Motion tab.
 
+use crate::editor::ClipFormat;
 use crate::retarget::RestChoice;
 
 // Parts of the tab
@@ -264,8 +265,6 @@ pub const LOAD_MAP: &str = "Load map";
 pub const REMOVE_MOTION: &str = "Remove motion";
 /// Button that saves the model's file with the current clip.
 pub const SAVE_GLB: &str = "Save GLB";
-/// Button that saves the current clip with its skeleton, without the meshes.
-pub const SAVE_CLIP: &str = "Save the clip alone";
 /// Button that shows the motion's skeleton.
 pub const SHOW_SOURCE: &str = "Show it beside the model";
 /// The same button while the skeleton is shown.
@@ -286,6 +285,15 @@ pub const USE_ALL_CHANNELS: &str = "Use all channels";
 pub const ROTATION_OFFSET: &str = "Rotation offset";
 /// Button that removes the rotation offset.
 pub const RESET_OFFSET: &str = "Reset";
+
+/// Returns the name of the button that saves the current clip with its skeleton, without the meshes.
+pub fn save_clip(format: ClipFormat) -> &'static str {
+    match format {
+        ClipFormat::Glb => "Save clip (GLB)",
+        ClipFormat::Bvh => "Save clip (BVH)",
+        ClipFormat::Vrma => "Save clip (VRMA)",
+    }
+}
 
 /// Returns the accessible name of the rotation offset field for an axis.
 pub fn rotation_offset_about(axis: &str) -> String {

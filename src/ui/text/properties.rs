@@ -15,7 +15,7 @@ pub const VISIBILITY: &str = "visibility";
 
 /// Returns the name of a material property that a clip can animate.
 pub fn material_property(property: MaterialProperty) -> Cow<'static, str> {
-    let of_texture = |slot, what: &str| format!("{} texture {what}", texture(slot)).into();
+    let of_texture = |slot, what: &str| format!("{} texture {what}", map_name(slot)).into();
     match property {
         MaterialProperty::BaseColor => BASE_COLOR.into(),
         MaterialProperty::Metallic => "metallic".into(),
@@ -33,7 +33,8 @@ pub fn material_property(property: MaterialProperty) -> Cow<'static, str> {
     }
 }
 
-fn texture(slot: TextureSlot) -> &'static str {
+/// Returns the name of a material's map.
+pub fn map_name(slot: TextureSlot) -> &'static str {
     match slot {
         TextureSlot::BaseColor => BASE_COLOR,
         TextureSlot::MetallicRoughness => "metallic-roughness",
@@ -59,6 +60,7 @@ fn texture(slot: TextureSlot) -> &'static str {
         TextureSlot::Matcap => "matcap",
         TextureSlot::RimMultiply => "rim multiply",
         TextureSlot::OutlineWidth => "outline width",
+        TextureSlot::UvAnimationMask => "UV animation mask",
     }
 }
 

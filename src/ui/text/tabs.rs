@@ -1,12 +1,31 @@
 //! The inspector's tabs except for Motion.
 
+use crate::editor::ValidatorReport;
+use crate::state::Channel;
+
 // Scene tab
 /// Hint in the search field of the node tree.
 pub const SEARCH_NODES: &str = "Search nodes";
 /// Card of a joint whose mesh or light is not shown.
-pub const NODE_HIDDEN: &str = "Not shown: hidden by the file or the clip, or part of another scene.";
+pub const NODE_HIDDEN: &str = "Not shown: hidden here, by the file or by the clip, or part of another scene.";
+/// Button of the selected joint's card that hides all other meshes, or shows them again.
+pub const SOLO: &str = "Solo";
+/// What that button does.
+pub const SOLO_HINT: &str = "Hides all other meshes. Press again to show them.";
+/// Button of the selected joint's card that hides the meshes and lights of the node and below.
+pub const HIDE: &str = "Hide";
+/// The same button once they are hidden.
+pub const SHOW: &str = "Show";
+/// Button that shows all hidden nodes and materials.
+pub const SHOW_ALL: &str = "Show all";
+/// Tooltip of an eye.
+pub const ALT_SOLO: &str = "Alt-click to solo";
 /// Close button of the selected joint's card.
 pub const DESELECT_JOINT: &str = "Deselect joint";
+/// Shown in the viewport while joints are posed manually.
+pub const POSING: &str = "Posing manually";
+/// Button beside it that stops that.
+pub const DONE_POSING: &str = "Done posing";
 /// Button that starts renaming the selected joint.
 pub const RENAME: &str = "Rename";
 /// Accessible name of the field for the joint's new name.
@@ -31,6 +50,11 @@ pub const UNPIN_VERTEX: &str = "Unpin";
 /// Returns the note shown when the search matches no node.
 pub fn no_node_found(search: &str) -> String {
     format!("No node matches “{search}”.")
+}
+
+/// Returns the accessible name of the button that hides something or, once it is hidden, shows it again.
+pub fn eye(name: &str, is_shown: bool) -> String {
+    format!("{} {name}", if is_shown { HIDE } else { SHOW })
 }
 
 /// Returns the name of a collapsed tree row's triangle.
@@ -133,6 +157,31 @@ pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
 pub const JOINT_WEIGHTS_HINT: &str = "Select a joint in the viewport or in the Scene tab to see its influence.";
 /// Below the scale of the weights, in the viewport.
 pub const WEIGHT_LEGEND: &str = "weight (grey: none)";
+/// Below the scale of the numbers of influences, in the viewport.
+pub const INFLUENCES_LEGEND: &str = "influences per vertex (grey: none)";
+/// The choice of what surfaces show.
+pub const CHANNEL: &str = "Surface";
+/// Help for the keys that cycle through channels.
+pub const CYCLE_CHANNELS: &str = "Next surface channel, previous surface channel";
+
+/// Returns the name of a channel, in its choice and in the viewport.
+pub fn channel(channel: Channel) -> &'static str {
+    match channel {
+        Channel::Shaded => "Shaded",
+        Channel::BaseColor => "Base colour",
+        Channel::Normal => "Normals (world)",
+        Channel::Tangent => "Tangents (world)",
+        Channel::Roughness => "Roughness",
+        Channel::Metallic => "Metallic",
+        Channel::Occlusion => "Occlusion",
+        Channel::Emissive => "Emissive",
+        Channel::Uv => "UV checker (set 0)",
+        Channel::VertexColor => "Vertex colours",
+        Channel::Influences => "Number of influences",
+        Channel::Wireframe => "Wireframe",
+    }
+}
+
 /// Switch that computes normals for meshes without any.
 pub const SMOOTH_SURFACE: &str = "Smooth surface";
 /// Button that undoes all edits of the morph sliders.
@@ -254,6 +303,152 @@ pub fn frames_done(done: u32, count: u32) -> String {
 }
 
 // Info tab
+/// Section with the file's warnings and the lints.
+pub const WARNINGS: &str = "WARNINGS";
+/// Shown if there are none.
+pub const NO_WARNINGS: &str = "No problems found";
+
+/// Returns the badge of the Info tab.
+pub fn warning_count(count: usize) -> String {
+    if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") }
+}
+
+/// Returns the accessible name of the button beside a warning that selects the node it is about.
+pub fn go_to(node: &str) -> String {
+    format!("Go to {node}")
+}
+
+/// Name of the validator: the heading of its section, and in front of its notices.
+pub const KHRONOS_VALIDATOR: &str = "Khronos validator";
+/// Shown for models of other formats, and for those without a file.
+pub const NO_GLTF: &str = "Checks only glTF files: .gltf, .glb, .vrm and .vrma.";
+/// Button that starts it.
+pub const VALIDATE: &str = "Check with the Khronos validator";
+/// The same button while the validator runs.
+pub const VALIDATING: &str = "Checking…";
+/// The same button afterwards.
+pub const VALIDATE_AGAIN: &str = "Check again";
+/// The kinds of its findings, in front of their codes.
+pub const SEVERITIES: [&str; 4] = ["Error", "Warning", "Info", "Hint"];
+
+/// Its summary without findings.
+pub const NO_FINDINGS: &str = "No findings";
+
+/// Returns how many findings of each kind it has.
+pub fn validator_summary(report: &ValidatorReport) -> String {
+    let counted = |(&count, kind): (&u64, &str)| match count {
+        0 => None,
+        1 => Some(format!("1 {kind}")),
+        count => Some(format!("{count} {kind}s")),
+    };
+    let counts = report.counts.iter().zip(["error", "warning", "info", "hint"]);
+    let counts: Vec<String> = counts.filter_map(counted).collect();
+    match (counts.is_empty(), report.is_truncated) {
+        (true, _) => NO_FINDINGS.to_owned(),
+        (false, true) => format!("{}; the validator stopped there", counts.join(", ")),
+        (false, false) => counts.join(", "),
+    }
+}
+
+/// Returns why there is no report.
+pub fn validator_failed(error: &str) -> String {
+    format!("Couldn't check the file: {error}")
+}
+
+/// Returns how many findings are not listed.
+pub fn more_findings(count: u64) -> String {
+    format!("and {count} more")
+}
+
+/// Section with counts and times of drawing.
+pub const DRAWING: &str = "DRAWING";
+/// Row: draw calls of the last image.
+pub const DRAW_CALLS: &str = "Draw calls";
+/// Row: triangles of the last image.
+pub const DRAWN_TRIANGLES: &str = "Triangles drawn";
+/// Row: memory of vertices, indices and morph targets.
+pub const GEOMETRY_MEMORY: &str = "GPU memory, geometry";
+/// Row: memory of images with their mip levels.
+pub const IMAGE_MEMORY: &str = "GPU memory, images";
+/// Row: the mean time between frames.
+pub const FRAME_TIME: &str = "Frame time";
+/// Its value until something has moved.
+pub const NO_FRAMES: &str = "measured while playing";
+/// Row: influences per vertex.
+pub const INFLUENCES: &str = "Influences per vertex";
+/// Section with the images.
+pub const IMAGES: &str = "IMAGES";
+/// Alpha mode of a material.
+pub const OPAQUE: &str = "opaque";
+/// Alpha mode of a material.
+pub const MASKED: &str = "masked";
+/// Alpha mode of a material.
+pub const BLENDED: &str = "blended";
+/// A material whose back faces are drawn.
+pub const DOUBLE_SIDED: &str = "double-sided";
+
+/// Returns an amount of memory.
+pub fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", bytes as f64 / 1e6)
+}
+
+/// Returns a mean time between frames with its rate.
+pub fn frame_time(secs: f32) -> String {
+    format!("{:.1} ms ({:.0} fps)", 1000.0 * secs, 1.0 / secs.max(1e-6))
+}
+
+/// Returns what the graph of frame times shows: how many of them, the rate at its line, and the time at its full height.
+pub fn frame_graph(count: usize, line_fps: f32, full_secs: f32) -> String {
+    let full_ms = 1000.0 * full_secs;
+    format!("The last {count} frames of playback. The line marks {line_fps} fps; the full height is {full_ms:.0} ms.")
+}
+
+/// Returns the maximum number of influences of a vertex, and how many vertices have more than the four that engines usually read.
+pub fn influences(max: usize, over_four: usize) -> String {
+    match over_four {
+        0 => format!("up to {max}"),
+        1 => format!("up to {max}, 1 vertex over 4"),
+        count => format!("up to {max}, {count} vertices over 4"),
+    }
+}
+
+/// Returns where a material is used: the first `max` nodes, and how many more there are.
+pub fn used_by(nodes: &[String], max: usize) -> String {
+    let mut names: Vec<&str> = nodes.iter().take(max).map(String::as_str).collect();
+    let more = format!("{} more", nodes.len().saturating_sub(max));
+    if nodes.len() > max {
+        names.push(&more);
+    }
+    if names.is_empty() { "unused".to_owned() } else { format!("on {}", names.join(", ")) }
+}
+
+/// Returns what an image without a name is called.
+pub fn image(index: usize) -> String {
+    format!("Image {index}")
+}
+
+/// Returns an image's format, size in pixels, GPU memory and the maps it is used as.
+pub fn image_facts(mime: &str, [width, height]: [u32; 2], bytes: u64, maps: &[&str]) -> String {
+    let format = mime.strip_prefix("image/").map_or_else(|| "unavailable".to_owned(), str::to_uppercase);
+    let maps = if maps.is_empty() { "unused".to_owned() } else { maps.join(", ") };
+    match bytes {
+        0 => format!("{format}, {width} × {height}, {maps}"),
+        bytes => format!("{format}, {width} × {height}, {}, {maps}", megabytes(bytes)),
+    }
+}
+
+/// Section with the materials that surfaces use.
+pub const MATERIALS: &str = "MATERIALS";
+
+/// Returns what a material is called: its name, else its number in the file. `None` is glTF's default material.
+pub fn material(index: Option<usize>, name: &str) -> String {
+    match (index, name) {
+        (None, _) => "Default material".to_owned(),
+        (Some(index), "") => format!("Material {index}"),
+        (Some(_), name) => name.to_owned(),
+    }
+}
+
 /// Row of the file report: the format of the file.
 pub const FORMAT: &str = "Format";
 /// Row of the file report: the number of nodes.

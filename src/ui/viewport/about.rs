@@ -28,7 +28,7 @@ fn contents(ui: &mut Ui, out: &mut Output) -> bool {
         for (label, url) in
             [(text::DOCUMENTATION, concat!(env!("CARGO_PKG_REPOSITORY"), "#readme")), (text::SOURCE_CODE, REPOSITORY)]
         {
-            // A fork may not say where it is.
+            // Cargo.toml may not name a repository.
             if !REPOSITORY.is_empty() && ui.link(label).clicked() {
                 out.actions.push(UiAction::OpenUrl(url));
             }

@@ -1,4 +1,4 @@
-//! The button in the upper right corner of the viewport.
+//! The buttons in the upper right corner of the viewport.
 
 use egui::{Align, Layout, Rect, Ui, vec2};
 
@@ -6,7 +6,7 @@ use crate::state::Command;
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::{Output, Shown, UiAction, UiState, style, text};
 
-pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &UiState, out: &mut Output) {
+pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let is_embedded = shown.state.page.embed;
     if is_embedded && !local.host.has_gallery {
         return;
@@ -25,4 +25,13 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &UiState, out: &m
             out.commands.push(Command::FrameAll);
         }
     });
+    // Its switch may be out of sight, and the gizmo takes the drags that would orbit.
+    if local.joint_card.is_posing && !is_embedded {
+        pill.show(&mut bar, |ui| {
+            if ui.button(text::DONE_POSING).clicked() {
+                local.joint_card.is_posing = false;
+            }
+            ui.label(text::POSING);
+        });
+    }
 }

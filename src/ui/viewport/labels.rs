@@ -1,8 +1,9 @@
 //! Labels in the viewport: joint names, and what each pane of a comparison shows.
 
-use egui::{Align2, Color32, Mesh, Painter, Rect, Ui, pos2, vec2};
+use egui::{Painter, Rect, Ui, pos2, vec2};
 
 use super::hover::partner;
+use super::legend;
 use super::panes::{pane_at, pane_rects, to_screen};
 use crate::frame::PickedJoint;
 use crate::state::{Comparison, compared_rests, source_on_stage, title};
@@ -17,9 +18,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     }
     let painter = ui.painter_at(rect);
     pane_labels(ui, &painter, rect, &shown);
-    if shown.state.inspect.weights && shown.state.selection.joint.is_some() {
-        weight_legend(ui, &painter, rect);
-    }
+    legend::show(ui, &painter, rect, shown.state);
     if local.motion.is_clicking() {
         return;
     }
@@ -98,39 +97,4 @@ fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
             painter.hline(pane.x_range(), pane.top(), egui::Stroke::new(1.0, palette.line));
         }
     }
-}
-
-/// Colours of the heat map (`heat_color` in shaders/surface.wgsl) at equal distances, from little weight to 1.
-const WEIGHT_COLORS: [Color32; 4] = [
-    Color32::from_rgb(48, 111, 225),
-    Color32::from_rgb(56, 194, 111),
-    Color32::from_rgb(249, 225, 48),
-    Color32::from_rgb(231, 48, 39),
-];
-
-/// What the colours of the heat map mean, in the lower right corner.
-fn weight_legend(ui: &Ui, painter: &Painter, rect: Rect) {
-    let palette = style::palette(ui);
-    let frame = Rect::from_min_max(rect.right_bottom() - vec2(206.0, 44.0), rect.right_bottom() - vec2(12.0, 12.0));
-    painter.rect_filled(frame, 6.0, palette.panel.gamma_multiply(0.86));
-    let bar = Rect::from_min_size(frame.min + vec2(26.0, 6.0), vec2(142.0, 8.0));
-    let mut mesh = Mesh::default();
-    for (at, color) in WEIGHT_COLORS.into_iter().enumerate() {
-        let x = egui::lerp(bar.x_range(), at as f32 / (WEIGHT_COLORS.len() - 1) as f32);
-        mesh.colored_vertex(pos2(x, bar.top()), color);
-        mesh.colored_vertex(pos2(x, bar.bottom()), color);
-        if let Some(left) = (2 * at as u32).checked_sub(2) {
-            mesh.add_triangle(left, left + 1, left + 2);
-            mesh.add_triangle(left + 1, left + 2, left + 3);
-        }
-    }
-    painter.add(mesh);
-    let font = egui::FontId::proportional(11.0);
-    for (x, align, text) in
-        [(bar.left() - 6.0, Align2::RIGHT_CENTER, "0"), (bar.right() + 6.0, Align2::LEFT_CENTER, "1")]
-    {
-        painter.text(pos2(x, bar.center().y), align, text, font.clone(), palette.text);
-    }
-    let below = pos2(bar.center().x, frame.bottom() - 9.0);
-    painter.text(below, Align2::CENTER_CENTER, text::WEIGHT_LEGEND, font, palette.weak_text);
 }

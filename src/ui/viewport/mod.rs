@@ -9,6 +9,7 @@ mod gizmo;
 pub mod help;
 mod hover;
 pub mod labels;
+mod legend;
 pub mod notices;
 pub mod overlays;
 pub mod panes;
@@ -30,13 +31,15 @@ pub struct ViewportState {
     pub aspect: f32,
     /// Number in the file of the model's joint under the pointer, or of the one that follows the source's joint there.
     pub hovered_joint: Option<usize>,
+    /// The viewport has the keyboard focus: keys do the same as without any focus.
+    pub(in crate::ui) has_focus: bool,
     hovered: Option<PickedJoint>,
     grab: Option<gizmo::Grab>,
 }
 
 impl Default for ViewportState {
     fn default() -> Self {
-        Self { aspect: DEFAULT_ASPECT, hovered_joint: None, hovered: None, grab: None }
+        Self { aspect: DEFAULT_ASPECT, hovered_joint: None, has_focus: false, hovered: None, grab: None }
     }
 }
 
@@ -76,6 +79,12 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
     local.viewport.aspect = rect.width() / rect.height().max(1.0);
     let response = ui.interact(rect, ui.scope_id().with("viewport"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, text::VIEWPORT));
+    local.viewport.has_focus = response.has_focus();
+    if response.has_focus() {
+        let filter =
+            egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    }
     if !gizmo::show(ui, painter, &response, shown, local, out) {
         camera::show(ui, &response, shown, out);
     }

@@ -1,5 +1,6 @@
 //! Controls that all panels share: section titles, switches, segmented buttons, labelled sliders, rows and cards.
 
+use egui::accesskit::Role;
 use egui::{Color32, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use super::style;
@@ -51,7 +52,7 @@ pub fn hint(ui: &mut Ui, text: impl Into<RichText>) {
 /// A row with a label on the left and a switch on the right; returns true when it was flipped.
 pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 28.0), Sense::click());
-    let role = egui::accesskit::Role::CheckBox;
+    let role = Role::CheckBox;
     response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, label));
     let palette = style::palette(ui);
     let painter = ui.painter_at(rect.expand(2.0));
@@ -84,35 +85,53 @@ pub fn segmented_about<T: Copy + PartialEq>(
     chosen: Option<T>,
     choices: &[(T, &str)],
 ) -> Option<T> {
-    segments(ui, about, chosen, choices, false)
+    segments(ui, chosen, choices, Segments::Choice { about })
 }
 
-/// The tabs of a panel, of which one is open, above a line; returns the one that was pressed.
-pub fn tabs<T: Copy + PartialEq>(ui: &mut Ui, open: T, tabs: &[(T, &str)]) -> Option<T> {
-    segments(ui, "", Some(open), tabs, true)
+/// The tabs of a panel, of which one is open, above a line; returns the one that was pressed. Some have a badge: a text about
+/// them, shown as a dot and its tooltip.
+pub fn tabs<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    open: T,
+    tabs: &[(T, &str)],
+    badge: impl Fn(T) -> Option<String>,
+) -> Option<T> {
+    segments(ui, Some(open), tabs, Segments::Tabs { badge: &badge })
+}
+
+/// What a row of segments is.
+#[derive(Clone, Copy)]
+enum Segments<'a, T> {
+    /// Values to choose from, with the topic of [`segmented_about`].
+    Choice { about: &'a str },
+    /// Tabs, with their badges.
+    Tabs { badge: &'a dyn Fn(T) -> Option<String> },
 }
 
 fn segments<T: Copy + PartialEq>(
     ui: &mut Ui,
-    about: &str,
     chosen: Option<T>,
     choices: &[(T, &str)],
-    are_tabs: bool,
+    row: Segments<'_, T>,
 ) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
     let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
-    if are_tabs {
-        ui.painter().hline(bar.x_range(), bar.bottom() + 3.0, Stroke::new(1.0, palette.line));
-    } else {
-        ui.painter().rect_filled(bar, style::CORNER, palette.surface);
-    }
+    let (role, about) = match row {
+        Segments::Choice { about } => {
+            ui.painter().rect_filled(bar, style::CORNER, palette.surface);
+            (Role::RadioButton, about)
+        }
+        Segments::Tabs { .. } => {
+            ui.painter().hline(bar.x_range(), bar.bottom() + 3.0, Stroke::new(1.0, palette.line));
+            (Role::Tab, "")
+        }
+    };
     let width = bar.width() / choices.len().max(1) as f32;
     for (index, (value, label)) in choices.iter().enumerate() {
         let cell = Rect::from_min_size(bar.min + vec2(index as f32 * width, 0.0), vec2(width, bar.height()));
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
-        let role = egui::accesskit::Role::RadioButton;
         response.widget_info(|| {
             let name = if about.is_empty() { (*label).to_owned() } else { text::labelled(about, label) };
             WidgetInfo::selected(role, ui.is_enabled(), on, name)
@@ -120,6 +139,13 @@ fn segments<T: Copy + PartialEq>(
         segment(ui, cell, &response, on, label);
         if response.clicked() {
             pressed = Some(*value);
+        }
+        if let Segments::Tabs { badge } = row
+            && let Some(badge) = badge(*value)
+        {
+            ui.painter().circle_filled(cell.right_top() + vec2(-8.0, 8.0), 3.0, palette.warning);
+            response.ctx.accesskit_node_builder(response.id, |node| node.set_description(badge.clone()));
+            response.on_hover_text(badge);
         }
     }
     pressed
@@ -157,10 +183,15 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
     if response.changed() {
         new = bar;
     }
-    if response.double_clicked() {
+    if is_double_clicked(&response) {
         new = settings.default;
     }
     (new != value).then_some(new)
+}
+
+/// Whether a slider was double-clicked; by itself it senses drags only.
+pub fn is_double_clicked(slider: &Response) -> bool {
+    slider.interact(Sense::click()).double_clicked()
 }
 
 /// Draws the knobs of all further sliders in this `Ui` as rings in the accent colour.
@@ -191,15 +222,31 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
         let (rect, _) = ui.allocate_exact_size(vec2(width, 24.0), Sense::hover());
         elided(ui, rect, label, style::palette(ui).text);
         ui.spacing_mut().interact_size.y = 24.0;
-        let span = settings.range.1 - settings.range.0;
+        let (min, max) = settings.range;
+        let before = *value;
+        // When a field loses the focus, egui sets the number that it shows, rounded and clamped, even if nothing was typed.
+        let shown = egui::emath::round_to_decimals(before, settings.decimals);
+        let typed = move |text: &str| {
+            let text: String = text.replace('−', "-").split_whitespace().collect();
+            text.parse().ok().filter(|&typed: &f64| typed != shown)
+        };
         let field = ui.add_sized(
             [field_width, 24.0],
             egui::DragValue::new(value)
-                .speed(span / 300.0)
-                .range(settings.range.0..=settings.range.1)
+                .speed((max - min) / 300.0)
+                .range(min..=max)
+                // A link's value may lie outside and stays until it is edited.
+                .clamp_existing_to_range(false)
                 .fixed_decimals(settings.decimals)
+                // What is typed is one edit, not one per key.
+                .update_while_editing(false)
+                .custom_parser(typed)
                 .suffix(settings.suffix),
         );
+        if *value != before {
+            // Arrow keys don't stop at the range.
+            *value = value.clamp(min, max);
+        }
         named(&field, || text::value_of(label));
     });
 }
@@ -223,7 +270,7 @@ pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
 /// A selectable full-width row: a name, and a short text on the right.
 pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::click());
-    let role = egui::accesskit::Role::Button;
+    let role = Role::Button;
     response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), chosen, name));
     let mut cut = false;
     if ui.is_rect_visible(rect) {
@@ -274,5 +321,18 @@ pub fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut
         ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH);
         contents(ui);
         ui.add_space(12.0);
+        follow_focus(ui);
     });
+}
+
+/// Scrolls to a control that has just taken the focus and may be out of sight, which egui doesn't. Call it in a scroll area, after
+/// its contents.
+pub fn follow_focus(ui: &Ui) {
+    let Some(focused) = ui.memory(egui::Memory::focused).and_then(|id| ui.ctx().read_response(id)) else { return };
+    // What is in sight of a control elsewhere, such as in the row below the panel, isn't within this panel's clip.
+    let is_inside = ui.min_rect().contains_rect(focused.rect)
+        && (!focused.interact_rect.is_positive() || ui.clip_rect().contains_rect(focused.interact_rect));
+    if focused.gained_focus() && is_inside {
+        focused.scroll_to_me(None);
+    }
 }

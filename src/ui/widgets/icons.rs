@@ -21,11 +21,12 @@ pub enum Icon {
     Sliders,
     Open,
     Share,
-    Borrow,
     Close,
     MarkIn,
     MarkOut,
     Frame,
+    Eye,
+    EyeClosed,
     Undo,
     Redo,
 }
@@ -131,7 +132,6 @@ const SHARE: &[Mark] = &[
     Line(&[(0.5, 0.65), (0.5, 0.2)]),
     Arrow((0.5, 0.02), (0.0, -1.0)),
 ];
-const BORROW: &[Mark] = &[Dot((0.16, 0.5), 0.14), Line(&[(0.3, 0.5), (0.75, 0.5)]), Arrow((0.98, 0.5), (1.0, 0.0))];
 const CLOSE: &[Mark] = &[Line(&[(0.15, 0.15), (0.85, 0.85)]), Line(&[(0.85, 0.15), (0.15, 0.85)])];
 const MARK_IN: &[Mark] = &[Line(&[(0.7, 0.08), (0.35, 0.08), (0.35, 0.92), (0.7, 0.92)])];
 const MARK_OUT: &[Mark] = &[Line(&[(0.3, 0.08), (0.65, 0.08), (0.65, 0.92), (0.3, 0.92)])];
@@ -141,6 +141,14 @@ const FRAME: &[Mark] = &[
     Line(&[(0.33, 0.95), (0.05, 0.95), (0.05, 0.67)]),
     Line(&[(0.67, 0.95), (0.95, 0.95), (0.95, 0.67)]),
     Dot((0.5, 0.5), 0.14),
+];
+const EYE: &[Mark] =
+    &[Arc((0.5, 0.12), 0.58, (40.0, 140.0)), Arc((0.5, 0.88), 0.58, (220.0, 320.0)), Dot((0.5, 0.5), 0.14)];
+const EYE_CLOSED: &[Mark] = &[
+    Arc((0.5, 0.12), 0.58, (40.0, 140.0)),
+    Line(&[(0.5, 0.7), (0.5, 0.9)]),
+    Line(&[(0.22, 0.63), (0.12, 0.78)]),
+    Line(&[(0.78, 0.63), (0.88, 0.78)]),
 ];
 const TURN_BACK: &[(f32, f32)] =
     &[(0.1, 0.36), (0.62, 0.36), (0.8, 0.43), (0.88, 0.6), (0.8, 0.77), (0.62, 0.84), (0.36, 0.84)];
@@ -162,11 +170,12 @@ impl Icon {
             Self::Sliders => SLIDERS,
             Self::Open => OPEN,
             Self::Share => SHARE,
-            Self::Borrow => BORROW,
             Self::Close => CLOSE,
             Self::MarkIn => MARK_IN,
             Self::MarkOut => MARK_OUT,
             Self::Frame => FRAME,
+            Self::Eye => EYE,
+            Self::EyeClosed => EYE_CLOSED,
             // Redo is its mirror image.
             Self::Undo | Self::Redo => UNDO,
         }

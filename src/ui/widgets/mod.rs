@@ -1,5 +1,6 @@
 //! The building blocks of the panels: buttons, switches, sliders, icons, the scrub bar, and the style they share.
 
+pub mod accessible;
 pub mod controls;
 pub mod icons;
 pub mod scrub;

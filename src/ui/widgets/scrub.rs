@@ -2,7 +2,7 @@
 
 use egui::{Color32, FontId, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::style;
+use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
 use crate::library::ModelId;
 use crate::ui::text;
@@ -134,7 +134,9 @@ pub fn show(
     let seek = ui.interact(seek_area, ui.scope_id().with("seek"), Sense::click_and_drag());
     seek.widget_info(|| WidgetInfo::slider(true, scrub.time_secs, text::TIME));
     let is_held = seek.is_pointer_button_down_on();
-    let mut scrubbed = None;
+    let step_secs = 1.0 / scrub.frames_per_sec;
+    let requested = accessible::slider(ui, &seek, scrub.time_secs, duration_secs, step_secs);
+    let mut scrubbed = requested.map(Scrubbed::Seek);
     if is_held && let Some(pointer) = seek.interact_pointer_pos() {
         // No request while the pointer rests, so that nothing is redrawn.
         let secs = bar.secs_at(pointer.x);
@@ -143,8 +145,8 @@ pub fn show(
     let start = |secs: f64| TimeRange { start_secs: secs.min(range.end_secs), ..range };
     let end = |secs: f64| TimeRange { end_secs: secs.max(range.start_secs), ..range };
     let dragged = [
-        handle(ui, &bar, text::IN_POINT, range.start_secs, -1.0, scrub.range.is_some()).map(start),
-        handle(ui, &bar, text::OUT_POINT, range.end_secs, 1.0, scrub.range.is_some()).map(end),
+        handle(ui, &bar, text::IN_POINT, range.start_secs, -1.0, scrub).map(start),
+        handle(ui, &bar, text::OUT_POINT, range.end_secs, 1.0, scrub).map(end),
     ];
     for range in dragged.into_iter().flatten() {
         scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
@@ -156,21 +158,22 @@ pub fn show(
 }
 
 /// A handle of the range; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point.
-fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, has_range: bool) -> Option<f64> {
+fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
     let x = bar.x_of(secs);
     let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 8.0), vec2(18.0, 18.0));
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
     handle.widget_info(|| WidgetInfo::slider(true, secs, label));
+    let requested = accessible::slider(ui, &handle, secs, bar.duration_secs, 1.0 / scrub.frames_per_sec);
     let pointer = handle.interact_pointer_pos().filter(|_| handle.dragged());
-    let color = match (handle.hovered() || handle.dragged(), has_range) {
+    let color = match (handle.hovered() || handle.dragged(), scrub.range.is_some()) {
         (true, _) => palette.accent,
         (false, true) => palette.text,
         (false, false) => palette.weak_text.gamma_multiply(0.6),
     };
     flag(ui.painter(), x, bar.rect.top() + 3.0, side, bar.rail.bottom(), color);
     handle.on_hover_cursor(egui::CursorIcon::ResizeHorizontal).on_hover_text(format!("{label}. Drag to set."));
-    pointer.map(|pointer| bar.secs_at(pointer.x))
+    pointer.map(|pointer| bar.secs_at(pointer.x)).or(requested)
 }
 
 fn paint_rail(ui: &Ui, bar: &Bar, range: TimeRange, time_secs: f64, marks: &KeyMarks) {

@@ -203,6 +203,11 @@ impl Clip {
         &self.name
     }
 
+    /// Returns the clip under another name.
+    pub fn with_name(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
     /// Time of the last key of any channel, in seconds.
     pub fn duration_secs(&self) -> f32 {
         self.duration_secs

@@ -154,12 +154,14 @@ pub enum TextureSlot {
     RimMultiply,
     /// Multiplied with the width of MToon's outline, in green.
     OutlineWidth,
+    /// Multiplied with the time of MToon's UV animation, in blue.
+    UvAnimationMask,
 }
 
 impl TextureSlot {
     /// All slots in declaration order: core glTF, then lobes from [`Self::Specular`] on, then MToon from
     /// [`Self::ShadeMultiply`] on.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::BaseColor,
         Self::MetallicRoughness,
         Self::Normal,
@@ -184,6 +186,7 @@ impl TextureSlot {
         Self::Matcap,
         Self::RimMultiply,
         Self::OutlineWidth,
+        Self::UvAnimationMask,
     ];
 
     /// Whether the texture holds sRGB colours rather than linear data.

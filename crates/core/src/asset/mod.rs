@@ -106,6 +106,9 @@ impl MeshInstance {
     }
 }
 
+/// The content of a file, shared by those who hold it. Not an `Arc<[u8]>`, which would copy what was read.
+pub type SharedBytes = Arc<Vec<u8>>;
+
 /// An encoded image, its size already read from the header and within bounds.
 #[derive(Debug, Clone, Default)]
 pub struct Image {
@@ -114,7 +117,7 @@ pub struct Image {
     /// By content: `image/png`, `image/jpeg`, `image/webp`, `image/avif` or `image/ktx2`. Empty if the image is unavailable.
     pub mime: &'static str,
     /// As encoded. Empty if the image is unavailable.
-    pub bytes: Arc<[u8]>,
+    pub bytes: SharedBytes,
     /// In pixels. 0 if the image is unavailable.
     pub width: u32,
     /// In pixels. 0 if the image is unavailable.

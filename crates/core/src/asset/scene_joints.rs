@@ -1,7 +1,8 @@
-//! Visibility of a scene's joints: all are visible except those that the file or a clip hides, and their descendants.
+//! Visibility of a scene's joints: all are visible except those that the file, a clip or the user hides, and their
+//! descendants.
 
 use super::Asset;
-use crate::anim::{PropertyTarget, PropertyValues};
+use crate::anim::{JointIndex, PropertyTarget, PropertyValues};
 
 /// Flags for all joints of an asset. Reused between frames.
 #[derive(Debug, Clone, Default)]
@@ -12,6 +13,8 @@ pub struct SceneJoints {
     pub visible: Vec<bool>,
     /// [`Self::visible`] at rest.
     pub visible_at_rest: Vec<bool>,
+    /// Hidden whatever the file and the clip say.
+    hidden: Vec<JointIndex>,
     /// `visible` may differ from `visible_at_rest`.
     is_animated: bool,
 }
@@ -26,13 +29,22 @@ impl SceneJoints {
         joints
     }
 
+    /// Sets the joints that are hidden whatever the file and the clip say. Takes effect with [`Self::show`].
+    pub fn hide(&mut self, joints: impl Iterator<Item = JointIndex> + Clone) {
+        if !joints.clone().eq(self.hidden.iter().copied()) {
+            self.hidden.clear();
+            self.hidden.extend(joints);
+            self.is_animated = true;
+        }
+    }
+
     /// Applies animated visibility; costs nothing if there is none.
     pub fn show(&mut self, asset: &Asset, values: &PropertyValues) {
         let was_animated = std::mem::replace(&mut self.is_animated, values.has_visibility());
         if !was_animated && !self.is_animated {
             return;
         }
-        let Self { in_scene, visible, .. } = self;
+        let Self { in_scene, visible, hidden, .. } = self;
         visible.clear();
         visible.resize(in_scene.len(), true);
         for joint in &asset.hidden {
@@ -42,6 +54,9 @@ impl SceneJoints {
             if let PropertyTarget::Visibility(joint) = target {
                 visible[joint.get()] = value.x != 0.0;
             }
+        }
+        for joint in hidden {
+            visible[joint.get()] = false;
         }
         for joint in asset.skeleton.joints() {
             visible[joint.get()] &= asset.skeleton.parent(joint).is_none_or(|parent| visible[parent.get()]);

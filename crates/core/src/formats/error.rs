@@ -8,7 +8,7 @@ use crate::mesh::GeometryError;
 pub enum LoadError {
     /// No file of the set is a model or motion.
     #[error(
-        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .fbx, .x, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
+        "expected a model or a motion, found {}; Gaitway opens .glb, .gltf with its files, .vrm, .vrma, .fbx, .x, .bvh, .npz, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
         listed(found)
     )]
     NoModel {
@@ -30,14 +30,14 @@ pub enum LoadError {
         found: Vec<String>,
     },
     /// There is no model, but a file in a known format that Gaitway cannot read.
-    #[error(
-        "{file}: {format} files cannot be read; open it in Blender (File › Import), then export glTF 2.0 (.glb) and drop that"
-    )]
+    #[error("{file}: {format} files cannot be read; {advice}")]
     UnsupportedFormat {
         /// Name of the file in the set.
         file: String,
         /// The format as the user knows it, such as "COLLADA".
         format: &'static str,
+        /// How to convert the file.
+        advice: &'static str,
     },
     /// The glTF has no version, has one other than 2.x, or has a `minVersion` other than 2.0.
     #[error(
@@ -70,11 +70,12 @@ pub enum LoadError {
         problem: String,
     },
     /// Something else in the file is malformed, cut short or inconsistent.
-    #[error("{file}: {place}: expected {expected}, found {found}")]
+    #[error("{file}: {}expected {expected}, found {found}", prefix(place))]
     Invalid {
         /// Name of the file in the set.
         file: String,
-        /// Where in the file: a JSON path such as `accessors[3].count`, or a line of a text format.
+        /// Where in the file: a JSON path such as `accessors[3].count`, or a line of a text format. Empty if it concerns
+        /// the whole file.
         place: String,
         /// What a valid file has there.
         expected: String,
@@ -109,6 +110,11 @@ pub enum LoadError {
     },
 }
 
+/// Returns a place as the start of a message.
+fn prefix(place: &str) -> String {
+    if place.is_empty() { String::new() } else { format!("{place}: ") }
+}
+
 /// Files above the model's folder are not searched for, so they may well exist.
 fn where_missing(uri: &str) -> &'static str {
     if uri.split(['/', '\\']).any(|part| part == "..") || uri.starts_with('/') {
@@ -121,7 +127,7 @@ fn where_missing(uri: &str) -> &'static str {
 fn listed(names: &[String]) -> String {
     const MAX_NAMES: usize = 8;
     if names.is_empty() {
-        return "there are none".to_owned();
+        return "no files".to_owned();
     }
     let mut text = names.iter().take(MAX_NAMES).cloned().collect::<Vec<_>>().join(", ");
     if names.len() > MAX_NAMES {

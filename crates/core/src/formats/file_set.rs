@@ -1,10 +1,13 @@
 //! A set of named files in memory: dropped, picked, unpacked from an archive, read from disk or fetched.
 
 use std::io::{Cursor, Read};
-use std::sync::Arc;
 
 use super::LoadError;
 use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
+use crate::asset::SharedBytes;
+
+/// How a zip archive begins.
+const ZIP: &[u8] = b"PK\x03\x04";
 
 /// Maximum compression ratio of Deflate.
 const MAX_COMPRESSION: u64 = 1032;
@@ -12,7 +15,7 @@ const MAX_COMPRESSION: u64 = 1032;
 /// Files by path, with `/` between folders, in the order they were added.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FileSet {
-    files: Vec<(String, Arc<[u8]>)>,
+    files: Vec<(String, SharedBytes)>,
     conversions: Vec<(String, Conversion)>,
 }
 
@@ -25,24 +28,26 @@ pub(super) struct Conversion {
     pub extensions: Vec<String>,
     /// What could not be carried over.
     pub warnings: Vec<String>,
+    /// A glTF as it was added; `None` for other formats. Set by [`FileSet::convert`].
+    pub original: Option<SharedBytes>,
 }
 
 /// The file that a reference resolves to, and whether only its bare name matched.
 pub(super) struct Found<'a> {
     pub name: &'a str,
-    pub bytes: &'a Arc<[u8]>,
+    pub bytes: &'a SharedBytes,
     pub by_bare_name: bool,
 }
 
 impl FileSet {
-    /// Adds a file, or the files inside it if it is a zip archive. Returns its normalized name.
+    /// Adds a file, or the files inside it if it is a zip archive other than an .npz. Returns its normalized name.
     ///
     /// # Errors
     /// If the archive cannot be read, or unpacks to more than is kept in memory. Some of its files may already have
     /// been added.
-    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Result<String, LoadError> {
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Result<String, LoadError> {
         let (name, bytes) = (join("", &name.into()), bytes.into());
-        if bytes.starts_with(b"PK\x03\x04") {
+        if bytes.starts_with(ZIP) && !is_npz(&bytes) {
             self.unpack(&name, &bytes)?;
         } else {
             self.insert(name.clone(), bytes);
@@ -52,16 +57,19 @@ impl FileSet {
 
     /// Adds a file as it is, replacing any file of the same name. Archives are not unpacked, so their contents are not
     /// found.
-    pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
-        let (name, bytes) = (join("", &name.into()), bytes.into());
+    pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
+        let (name, mut bytes) = (join("", &name.into()), bytes.into());
+        // Files of unknown length are read with room to spare.
+        bytes.shrink_to_fit();
         match self.files.iter_mut().find(|(other, _)| *other == name) {
-            Some(file) => file.1 = bytes,
-            None => self.files.push((name, bytes)),
+            Some(file) => file.1 = bytes.into(),
+            None => self.files.push((name, bytes.into())),
         }
     }
 
-    /// Replaces a file with what it was converted into.
-    pub(super) fn convert(&mut self, name: &str, bytes: impl Into<Arc<[u8]>>, conversion: Conversion) {
+    /// Replaces a file with what it was converted into. The original of a glTF is kept.
+    pub(super) fn convert(&mut self, name: &str, bytes: Vec<u8>, mut conversion: Conversion) {
+        conversion.original = self.get(name).filter(|_| conversion.format.is_none()).cloned();
         self.insert(name, bytes);
         let known = self.conversions.iter_mut().find(|(of, _)| of == name);
         match known {
@@ -79,8 +87,13 @@ impl FileSet {
     }
 
     /// Returns the contents of the file with exactly this normalized name.
-    pub fn get(&self, name: &str) -> Option<&Arc<[u8]>> {
+    pub fn get(&self, name: &str) -> Option<&SharedBytes> {
         self.files.iter().find(|(other, _)| other == name).map(|(_, bytes)| bytes)
+    }
+
+    /// Returns a file as it was added, without the conversions of compressed glTFs; `None` if it was of another format.
+    pub fn original(&self, name: &str) -> Option<&SharedBytes> {
+        self.conversion(name).map_or_else(|| self.get(name), |conversion| conversion.original.as_ref())
     }
 
     /// Returns the normalized names, in the order the files were added.
@@ -99,7 +112,7 @@ impl FileSet {
     }
 
     /// Returns the normalized names and contents, in the order the files were added.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &SharedBytes)> {
         self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }
 
@@ -156,6 +169,14 @@ impl FileSet {
         }
         Ok(())
     }
+}
+
+/// Returns whether a zip archive holds NumPy arrays, so that it stays one file. Its first member's name decides.
+pub(super) fn is_npz(bytes: &[u8]) -> bool {
+    // A member begins with 30 bytes, among them the length of its name, which follows.
+    let length = bytes.get(26..).and_then(|rest| rest.first_chunk()).map(|length| u16::from_le_bytes(*length));
+    let name = length.and_then(|length| bytes.get(30..30 + usize::from(length)));
+    bytes.starts_with(ZIP) && name.is_some_and(|name| name.ends_with(b".npy"))
 }
 
 pub(super) fn bare_name(path: &str) -> &str {

@@ -1,5 +1,5 @@
-//! Loads files in memory as an [`Asset`], and writes GLB. Knows neither disk nor network: callers ask [`missing_files`] what
-//! else a file refers to, add it to the [`FileSet`], then call [`load`].
+//! Loads files in memory as an [`Asset`], and writes GLB, BVH and VRM animations. Knows neither disk nor network: callers ask
+//! [`missing_files`] what else a file refers to, add it to the [`FileSet`], then call [`load`].
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load, missing_files};
@@ -33,7 +33,6 @@ mod obj;
 mod prepare;
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
@@ -43,8 +42,10 @@ pub use hdr::{HdrError, is_hdr, read_hdr};
 pub use prepare::prepare;
 pub use prepare::{Part, Preparation, next_preparation};
 
-use crate::anim::{Clip, Skeleton};
-use crate::asset::{Asset, Image};
+use glam::Vec3;
+
+use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::asset::{Asset, Humanoid, Image, SharedBytes};
 pub use file_set::file_stem;
 use file_set::{bare_name, without_query};
 
@@ -66,6 +67,17 @@ pub fn missing_files(files: &FileSet) -> Vec<String> {
     }
     missing
 }
+
+/// Returns the file that the glTF `name` refers to by a URI, as its buffers and images are found.
+pub fn referred_file<'a>(files: &'a FileSet, name: &str, uri: &str) -> Option<&'a SharedBytes> {
+    gltf::find_file(files, name, uri).map(|found| found.bytes)
+}
+
+/// Extensions of glTF files, in lower case; [`AssetParts::format`](crate::asset::AssetParts::format) uses the same words.
+pub const GLTF_EXTENSIONS: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
+
+/// Extensions of other files with a skeleton or clips, in lower case.
+pub const OTHER_MOTION_EXTENSIONS: [&str; 4] = ["bvh", "fbx", "npz", "x"];
 
 /// What a file does not state but the user may know.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -147,6 +159,23 @@ pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Resu
     gltf::write_motion(asset, skeleton, clips)
 }
 
+/// Writes `joints` of a skeleton, in ascending order, and how a clip of it moves them as BVH: in metres, Y up, one frame per key if
+/// all keys are frames, else `frames_per_sec`. Joints in between that are left out still move those below.
+pub fn write_bvh(
+    skeleton: &Skeleton,
+    joints: &[JointIndex],
+    clip: &Clip,
+    frames_per_sec: f64,
+) -> Result<Vec<u8>, WriteError> {
+    bvh::write(skeleton, joints, clip, frames_per_sec)
+}
+
+/// Writes a clip of an asset as a VRM animation: the bones of its `slots`, the position of the hips, expressions and gaze.
+/// `forward` is where the body faces at rest; a declared humanoid faces where its format says. Without hips that is an error.
+pub fn write_vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip) -> Result<Vec<u8>, WriteError> {
+    gltf::write_vrma(asset, slots, forward, clip)
+}
+
 /// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
 /// rest pose.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
@@ -179,12 +208,12 @@ fn read(
     }
 }
 
-fn named<'a>(files: &'a FileSet, name: &str) -> Result<&'a Arc<[u8]>, LoadError> {
+fn named<'a>(files: &'a FileSet, name: &str) -> Result<&'a SharedBytes, LoadError> {
     let error = || LoadError::NoSuchFile { name: name.to_owned(), found: files.names().map(str::to_owned).collect() };
     files.get(name).ok_or_else(error)
 }
 
-fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
+fn find_model(files: &FileSet) -> Result<(&str, &SharedBytes), LoadError> {
     let mut models = files.iter().filter(|(name, bytes)| is_model(name, bytes));
     match (models.next(), models.next()) {
         (Some(model), None) => Ok(model),
@@ -199,8 +228,8 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
                     let problem = "a file of this format is loaded after `prepare` has converted it".to_owned();
                     return Some(LoadError::Conversion { file: name.to_owned(), problem });
                 }
-                let format = foreign_format(name)?;
-                Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
+                let (format, advice) = foreign_format(name)?;
+                Some(LoadError::UnsupportedFormat { file: name.to_owned(), format, advice })
             })
             .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
     }
@@ -225,7 +254,7 @@ fn is_gltf(name: &str, bytes: &[u8]) -> bool {
         return true;
     }
     let extension = extension(name);
-    if matches!(extension.as_str(), "glb" | "gltf" | "vrm" | "vrma") {
+    if GLTF_EXTENSIONS.contains(&extension.as_str()) {
         return true;
     }
     // A URL without a telling name: JSON that mentions an asset.
@@ -236,23 +265,33 @@ fn is_gltf(name: &str, bytes: &[u8]) -> bool {
 
 /// Returns the part that converts a file as a whole, until it has done so.
 fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
+    if bytes.starts_with(b"glTF") {
+        return None;
+    }
     if bytes.starts_with(b"Kaydara FBX") {
         return Some(Part::Fbx);
     }
     if bytes.starts_with(b"xof ") {
         return Some(Part::X);
     }
+    if file_set::is_npz(bytes) {
+        return Some(Part::Npz);
+    }
     match extension(name).as_str() {
-        "fbx" if !bytes.starts_with(b"glTF") => Some(Part::Fbx),
-        "x" if !bytes.starts_with(b"glTF") => Some(Part::X),
+        "fbx" => Some(Part::Fbx),
+        "x" => Some(Part::X),
+        "npz" => Some(Part::Npz),
         _ => None,
     }
 }
 
-fn foreign_format(name: &str) -> Option<&'static str> {
+/// Returns a format that users may expect to be read, and how to convert it.
+fn foreign_format(name: &str) -> Option<(&'static str, &'static str)> {
+    const BLENDER: &str = "open it in Blender (File › Import), then export glTF 2.0 (.glb) and drop that";
     match extension(name).as_str() {
-        "dae" => Some("COLLADA"),
-        "blend" => Some("Blender's own"),
+        "dae" => Some(("COLLADA", BLENDER)),
+        "blend" => Some(("Blender's own", BLENDER)),
+        "exr" => Some(("OpenEXR", "save the image as Radiance HDR (.hdr) and drop that")),
         _ => None,
     }
 }

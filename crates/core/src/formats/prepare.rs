@@ -6,6 +6,7 @@ use gaitway_part::Answer;
 use super::file_set::Conversion;
 use super::gltf::{draco, meshopt};
 use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
+use crate::asset::SharedBytes;
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum Part {
     Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
+    /// Motions of SMPL bodies in NumPy archives.
+    Npz,
     /// Models and motions in DirectX's `.x` format.
     X,
 }
@@ -30,6 +33,7 @@ impl Part {
             Self::Fbx => "fbx",
             Self::Ktx2 => "ktx2",
             Self::Meshopt => "meshopt",
+            Self::Npz => "npz",
             Self::X => "x",
         }
     }
@@ -41,6 +45,7 @@ impl Part {
             Self::Fbx => "FBX reader",
             Self::Ktx2 => "KTX2 decoder",
             Self::Meshopt => "meshopt decoder",
+            Self::Npz => "NumPy reader",
             Self::X => "DirectX reader",
         }
     }
@@ -53,6 +58,7 @@ impl Part {
             Self::Fbx => gaitway_fbx::convert,
             Self::Ktx2 => gaitway_ktx2::decode,
             Self::Meshopt => gaitway_meshopt::decode,
+            Self::Npz => gaitway_npz::convert,
             Self::X => gaitway_x::convert,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
@@ -66,7 +72,7 @@ pub struct Preparation {
     /// The decoder to run.
     pub part: Part,
     /// What it converts.
-    pub input: Vec<u8>,
+    pub input: SharedBytes,
     file: String,
     step: Step,
 }
@@ -117,16 +123,16 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if let Some(part) = whole_file_part(name, bytes) {
-            return preparation(part, bytes.to_vec(), Step::File(part.name()));
+            return preparation(part, bytes.clone(), Step::File(part.name()));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;
         }
         if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            return preparation(Part::Meshopt, input, Step::Views(decoding));
+            return preparation(Part::Meshopt, input.into(), Step::Views(decoding));
         }
         if let Some((decoding, input)) = draco::start(files, name, bytes)? {
-            return preparation(Part::Draco, input, Step::Meshes(decoding));
+            return preparation(Part::Draco, input.into(), Step::Meshes(decoding));
         }
     }
     Ok(None)

@@ -4,12 +4,13 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Affine3A;
 
+use super::{Model, Motion};
 use crate::anim::{Clip, JointIndex, PropertyTarget};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
     Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RestChoice,
-    RetargetError, Retargeting, StagePair, layer_clips, propose,
+    RetargetError, Retargeting, StagePair, layer_clips, propose_recognized,
 };
 
 /// A clip of a motion retargeted to a model; plays like one of the model's own.
@@ -94,14 +95,36 @@ pub enum BorrowError {
     },
 }
 
+/// Proposes a map between two files from what was recognized in them.
+pub fn proposal_for(model: &Model, motion: &Motion) -> Proposal {
+    let (targets, sources) = (model.recognition().clone(), motion.recognition().clone());
+    propose_recognized(&model.asset, &motion.asset, targets, sources)
+}
+
 /// Returns the active map between two files: the given one, or else the proposal.
-pub fn map_for(model: &Asset, motion: &Asset, map: Option<&JointMap>) -> (JointMap, Option<Proposal>) {
+pub fn map_for(model: &Model, motion: &Motion, map: Option<&JointMap>) -> (JointMap, Option<Proposal>) {
     match map {
         Some(map) => (map.clone(), None),
         None => {
-            let proposal = propose(model, motion);
-            (proposal.to_map(model, motion), Some(proposal))
+            let proposal = proposal_for(model, motion);
+            (proposal.to_map(&model.asset, &motion.asset), Some(proposal))
         }
+    }
+}
+
+/// Adds the expressions that a clip of a motion animates and the model has, and the gaze, to the retargeted clip.
+pub fn with_expressions(clip: Clip, model: &Asset, motion: &Asset, source_clip: usize) -> Clip {
+    let target_of_model = |target| match target {
+        PropertyTarget::Expression(index) => {
+            let name = &motion.avatar.expressions.get(index)?.name;
+            model.avatar.expression(name).map(PropertyTarget::Expression)
+        }
+        PropertyTarget::LookAt => model.avatar.look_at.map(|_| target),
+        _ => None,
+    };
+    match motion.clips.get(source_clip) {
+        Some(source) => clip.with_properties_of(source, &target_of_model),
+        None => clip,
     }
 }
 
@@ -122,18 +145,7 @@ pub(super) fn borrow(
         let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
-        let target_of_model = |target| match target {
-            PropertyTarget::Expression(index) => {
-                let name = &motion.asset.avatar.expressions.get(index)?.name;
-                model.asset.avatar.expression(name).map(PropertyTarget::Expression)
-            }
-            PropertyTarget::LookAt => model.asset.avatar.look_at.map(|_| target),
-            _ => None,
-        };
-        let clip = match motion.asset.clips.get(source_clip) {
-            Some(source) => baked.clip.with_properties_of(source, &target_of_model),
-            None => baked.clip,
-        };
+        let clip = with_expressions(baked.clip, model.asset, motion.asset, source_clip);
         Ok(BorrowedClip {
             clip,
             layers: layers.clone(),

@@ -41,15 +41,17 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "extensions_used": asset.extensions_used,
         "extensions_required": asset.extensions_required,
         "bounds": bounds_document(model.rest_bounds()),
-        "warnings": warning_documents(&asset.warnings),
+        "warnings": Value::Array(model.findings().iter().map(|finding| warning_document(&finding.warning)).collect()),
     })
 }
 
 /// Builds `[{"code","message","where"}]`.
 pub fn warning_documents(warnings: &Warnings) -> Value {
-    let document =
-        |warning: &Warning| json!({ "code": warning.code(), "message": warning.to_string(), "where": warning.place() });
-    Value::Array(warnings.iter().map(document).collect())
+    Value::Array(warnings.iter().map(warning_document).collect())
+}
+
+fn warning_document(warning: &Warning) -> Value {
+    json!({ "code": warning.code(), "message": warning.to_string(), "where": warning.place() })
 }
 
 fn target_count(mesh: &Mesh) -> usize {

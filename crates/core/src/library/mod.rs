@@ -4,14 +4,16 @@ mod borrowed;
 mod extent;
 mod image;
 mod inspect;
+mod lints;
 mod model;
 mod motion;
 mod rig;
 
-pub use borrowed::{BorrowError, BorrowedClip, map_for};
+pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expressions};
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
-pub use model::{Model, ModelId};
+pub use lints::joint_of_place;
+pub use model::{Finding, Model, ModelId};
 pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
 
@@ -20,7 +22,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::anim::Clip;
 use crate::asset::Panorama;
-use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice, propose};
+use crate::retarget::{ClipChanges, Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
 
 /// The active model and the files it borrows from.
 #[derive(Debug, Clone)]
@@ -48,7 +50,7 @@ fn borrow_motion(
     index: usize,
     map: Option<&JointMap>,
 ) -> Result<Vec<BorrowedClip>, BorrowError> {
-    let (map, proposal) = map_for(&model.asset, &motion.asset, map);
+    let (map, proposal) = map_for(model, motion, map);
     let resolved = match proposal {
         Some(proposal) if proposal.pairs.is_empty() => Err(MapError::NothingInCommon),
         _ => map.resolve(&model.asset, &motion.asset),
@@ -209,7 +211,7 @@ impl Library {
     pub fn proposal(&self, motion: usize) -> Option<&Proposal> {
         let (model, slot) = (self.active()?, self.proposals.get(motion)?);
         let motion = self.motions.get(motion)?;
-        Some(slot.get_or_init(|| propose(&model.asset, &motion.asset)))
+        Some(slot.get_or_init(|| proposal_for(model, motion)))
     }
 
     /// Returns the [`names_checksum`] of the active model and a motion, cached.
@@ -268,6 +270,14 @@ impl Library {
             }
         }
         model.set_borrowed(borrowed);
+    }
+
+    /// Applies changes to clips of the active model, by index among all clips, and restores the others. Only clips whose changes
+    /// or originals differ from before are computed again; returns whether any clip differs from before.
+    pub fn change_clips(&mut self, changes: &BTreeMap<usize, ClipChanges>) -> bool {
+        let active = self.active;
+        let model = self.models.iter_mut().find(|model| model.id == active);
+        model.is_some_and(|model| model.change_clips(changes))
     }
 
     /// Quality figures of a borrowed clip; none for the model's own clips.

@@ -8,11 +8,12 @@ use glam::{Affine3A, Vec3};
 use super::ImageData;
 use super::borrowed::{BorrowedClip, file_title};
 use super::extent::Extent;
+use super::lints::{joint_of_place, lint};
 use super::rig::Rig;
 use crate::anim::{Clip, Joint, JointIndex, PropertyValues, SampleCursor, Skeleton, model_from_joint};
-use crate::asset::{Asset, AssetParts, Humanoid, MeshInstance, SceneJoints};
+use crate::asset::{Asset, AssetParts, Humanoid, MeshInstance, SceneJoints, Warning};
 use crate::mesh::{Bounds, Mesh};
-use crate::retarget::{Body, LayerClip, recognize};
+use crate::retarget::{Body, ChangedClip, ClipChanges, LayerClip, Recognized, Symmetry, change_clip, recognize};
 
 /// Identifies a model, or a motion shown as one, within its library. 0 until the library assigns one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -36,12 +37,24 @@ pub struct Model {
     pub images: Vec<Option<ImageData>>,
     /// Clips of other files retargeted to this model; their indices follow the asset's own.
     borrowed: Vec<BorrowedClip>,
-    borrowed_revision: u32,
+    clips_revision: u32,
+    /// Changed clips and their changes, by index among all clips.
+    changed: BTreeMap<usize, (ClipChanges, ChangedClip)>,
     clip_titles: Vec<String>,
-    recognized: OnceLock<(Humanoid, Option<Vec3>)>,
+    recognized: OnceLock<(Humanoid, Recognized)>,
+    findings: OnceLock<Vec<Finding>>,
     rig: Rig,
     extent: Extent,
     swept: Mutex<BTreeMap<SweptKey, Bounds>>,
+}
+
+/// A warning of a reader or a lint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The problem and its place in the file.
+    pub warning: Warning,
+    /// The node that it concerns, if any.
+    pub joint: Option<JointIndex>,
 }
 
 /// Key of cached clip bounds.
@@ -73,9 +86,11 @@ impl Model {
             asset,
             images,
             borrowed: Vec::new(),
-            borrowed_revision: 0,
+            clips_revision: 0,
+            changed: BTreeMap::new(),
             clip_titles,
             recognized: OnceLock::new(),
+            findings: OnceLock::new(),
             rig,
             extent,
             swept: Mutex::default(),
@@ -87,15 +102,60 @@ impl Model {
         self.asset.clips.len() + self.borrowed.len()
     }
 
-    /// Returns a clip by its index among all clips: the asset's own, then the borrowed ones.
+    /// Returns a clip by its index among all clips, the asset's own, then the borrowed ones, with its changes.
     pub fn clip(&self, index: usize) -> Option<&Clip> {
+        self.changed.get(&index).map(|(_, changed)| &changed.clip).or_else(|| self.unchanged_clip(index))
+    }
+
+    /// Returns a clip by its index among all clips, without its changes.
+    pub fn unchanged_clip(&self, index: usize) -> Option<&Clip> {
         let own = &self.asset.clips;
         own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
     }
 
-    /// Returns all clips by index: the asset's own, then the borrowed ones.
+    /// Returns a clip with its changes, if it has any.
+    pub fn changed_clip(&self, index: usize) -> Option<&ChangedClip> {
+        self.changed.get(&index).map(|(_, changed)| changed)
+    }
+
+    /// Whether a clip is retargeted or changed, so that the model's file lacks it.
+    pub fn is_derived(&self, clip: usize) -> bool {
+        self.borrowed(clip).is_some() || self.changed.contains_key(&clip)
+    }
+
+    /// Returns all clips by index without their changes: the asset's own, then the borrowed ones. Changes keep the names.
     pub fn clips(&self) -> impl Iterator<Item = &Clip> + Clone {
         self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
+    }
+
+    /// Applies changes to clips, by index among all clips, and restores the others. Clips whose changes are the same as before
+    /// are kept. Returns whether any clip differs from before.
+    pub(super) fn change_clips(&mut self, changes: &BTreeMap<usize, ClipChanges>) -> bool {
+        let mut before = std::mem::take(&mut self.changed);
+        let mut is_changed = false;
+        let mut symmetry = None;
+        for (&index, changes) in changes {
+            let known = before.remove(&index).filter(|(known, _)| known == changes);
+            let made = match (known, self.unchanged_clip(index)) {
+                (Some(known), _) => known,
+                (None, None) => continue,
+                (None, Some(clip)) => {
+                    is_changed = true;
+                    let symmetry =
+                        || symmetry.get_or_insert_with(|| Symmetry::of(&self.asset, self.recognition())).clone();
+                    (changes.clone(), change_clip(&self.asset, clip, changes, symmetry))
+                }
+            };
+            self.changed.insert(index, made);
+        }
+        is_changed |= !before.is_empty();
+        if is_changed {
+            self.clips_revision += 1;
+            if let Ok(mut swept) = self.swept.lock() {
+                swept.retain(|key, _| key.clip.is_none());
+            }
+        }
+        is_changed
     }
 
     /// Returns the borrowed clip with this index among all clips.
@@ -108,9 +168,9 @@ impl Model {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 
-    /// Changes whenever the borrowed clips are replaced, after which an index may refer to another clip.
-    pub fn borrowed_revision(&self) -> u32 {
-        self.borrowed_revision
+    /// Incremented whenever clips are borrowed or changed: an index may then refer to another clip.
+    pub fn clips_revision(&self) -> u32 {
+        self.clips_revision
     }
 
     /// Layers that animate the joints a borrowed clip does not; empty for the asset's own clips.
@@ -133,12 +193,23 @@ impl Model {
     /// Replaces the borrowed clips.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;
-        self.borrowed_revision += 1;
-        self.clip_titles = unique_titles(&self.source, &self.asset.clips, &self.borrowed);
+        self.clips_revision += 1;
         let own = self.asset.clips.len();
+        self.changed.retain(|&clip, _| clip < own);
+        self.clip_titles = unique_titles(&self.source, &self.asset.clips, &self.borrowed);
         if let Ok(mut swept) = self.swept.lock() {
             swept.retain(|key, _| key.clip.is_none_or(|clip| clip < own));
         }
+    }
+
+    /// The reader's warnings, then the lints, which are computed on first use.
+    pub fn findings(&self) -> &[Finding] {
+        self.findings.get_or_init(|| {
+            let lints = lint(&self.asset, self.recognition());
+            let warnings = self.asset.warnings.iter().chain(lints.iter()).cloned();
+            let finding = |warning: Warning| Finding { joint: joint_of_place(&self.asset, warning.place()), warning };
+            warnings.map(finding).collect()
+        })
     }
 
     /// The asset with the humanoid slots of its joints, recognized on first use.
@@ -153,7 +224,12 @@ impl Model {
 
     /// Facing direction of a recognized body at rest, in the file's axes.
     pub fn forward(&self) -> Option<Vec3> {
-        self.recognized().1
+        self.recognized().1.facing.forward
+    }
+
+    /// What was recognized in the asset, on first use.
+    pub fn recognition(&self) -> &Recognized {
+        &self.recognized().1
     }
 
     /// Returns an empty model that stands in for one that isn't available yet. Its name is `source` without a leading `file:`.
@@ -187,10 +263,10 @@ impl Model {
         has_real || !self.recognized().0.0.is_empty()
     }
 
-    fn recognized(&self) -> &(Humanoid, Option<Vec3>) {
+    fn recognized(&self) -> &(Humanoid, Recognized) {
         self.recognized.get_or_init(|| {
             let found = recognize(&self.asset);
-            (found.humanoid(), found.facing.forward)
+            (found.humanoid(), found)
         })
     }
 
@@ -242,11 +318,23 @@ impl Model {
         if let Some(bounds) = self.swept.lock().ok().and_then(|swept| swept.get(&key).copied()) {
             return bounds;
         }
-        let bounds = self.sweep(key);
+        let bounds = self.sweep(key, &[]);
         if let Ok(mut swept) = self.swept.lock() {
             swept.insert(key, bounds);
         }
         bounds
+    }
+
+    /// Returns [`Self::clip_bounds`] without the meshes on these joints and their descendants. Not cached.
+    pub fn clip_bounds_without(
+        &self,
+        scene: Option<usize>,
+        clip: Option<usize>,
+        in_place: bool,
+        hidden: &[JointIndex],
+    ) -> Bounds {
+        let clip = clip.filter(|&clip| clip < self.clip_count());
+        self.sweep(SweptKey { scene: self.scene(scene), clip, in_place }, hidden)
     }
 
     /// The root-motion joint of a clip, which carries the character: the topmost translated joint of the skin, else the
@@ -267,13 +355,15 @@ impl Model {
         }
     }
 
-    fn sweep(&self, key: SweptKey) -> Bounds {
+    fn sweep(&self, key: SweptKey, hidden: &[JointIndex]) -> Bounds {
         let skeleton = &self.asset.skeleton;
         let (mut scene, mut values) = (SceneJoints::new(&self.asset, key.scene), PropertyValues::default());
+        scene.hide(hidden.iter().copied());
+        scene.show(&self.asset, &values);
         let mut pose = skeleton.rest().clone();
         let mut world_from_joint = Vec::with_capacity(skeleton.len());
         let Some(clip) = key.clip.and_then(|clip| self.clip(clip)) else {
-            if key.scene == self.asset.default_scene {
+            if key.scene == self.asset.default_scene && hidden.is_empty() {
                 return self.rest_bounds();
             }
             model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);

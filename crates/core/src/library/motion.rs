@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::{Model, ModelId};
 use crate::asset::{Asset, Humanoid};
-use crate::retarget::{Body, recognize};
+use crate::retarget::{Body, Recognized, recognize};
 
 /// A loaded file whose clips a model can borrow.
 #[derive(Debug, Clone)]
@@ -19,6 +19,7 @@ pub struct Motion {
     pub asset: Arc<Asset>,
     /// Humanoid slots recognized in `asset`; empty if it is not a human body.
     pub slots: Humanoid,
+    recognized: Arc<Recognized>,
     /// Assigned by the library.
     pub(super) stage_id: ModelId,
     stage: Arc<OnceLock<Model>>,
@@ -27,13 +28,14 @@ pub struct Motion {
 impl Motion {
     /// Wraps an asset and recognizes its humanoid slots. The origin is the source until the caller sets another.
     pub fn new(source: String, asset: Arc<Asset>) -> Self {
-        let slots = recognize(&asset).humanoid();
+        let recognized = recognize(&asset);
         Self {
             origin: source.clone(),
             is_own: false,
             source,
             asset,
-            slots,
+            slots: recognized.humanoid(),
+            recognized: Arc::new(recognized),
             stage_id: ModelId::default(),
             stage: Arc::default(),
         }
@@ -47,6 +49,11 @@ impl Motion {
             model.id = self.stage_id;
             model
         })
+    }
+
+    /// What was recognized in the asset.
+    pub fn recognition(&self) -> &Recognized {
+        &self.recognized
     }
 
     /// Unique among all motions the library has ever held.

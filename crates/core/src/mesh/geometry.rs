@@ -205,6 +205,12 @@ impl Geometry {
         Ok(())
     }
 
+    /// Returns the material in a variant; `None` is the default material.
+    pub fn material_in(&self, variant: Option<usize>) -> Option<usize> {
+        let of_variant = self.variants.iter().find(|&&(index, _)| Some(index) == variant);
+        of_variant.map_or(self.material, |&(_, material)| Some(material))
+    }
+
     /// Returns the file's index of a vertex.
     pub fn number_in_file(&self, vertex: usize) -> usize {
         self.file_vertex.get(vertex).map_or(vertex, |&number| number as usize)

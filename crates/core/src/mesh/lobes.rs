@@ -98,6 +98,25 @@ fn components(color: &mut Vec3) -> &mut [f32] {
 }
 
 impl Lobes {
+    /// Returns the extensions, each with whether it changes anything at rest.
+    pub(super) fn extensions(&self) -> [(&'static str, bool); 9] {
+        let has = |slots: &[TextureSlot]| slots.iter().any(|&slot| self.texture(slot).is_some());
+        let is_specular = self.specular != 1.0
+            || self.specular_color != Vec3::ONE
+            || has(&[TextureSlot::Specular, TextureSlot::SpecularColor]);
+        [
+            ("KHR_materials_ior", self.ior != Self::default().ior),
+            ("KHR_materials_specular", is_specular),
+            ("KHR_materials_clearcoat", self.clearcoat > 0.0),
+            ("KHR_materials_sheen", self.sheen_color.max_element() > 0.0),
+            ("KHR_materials_iridescence", self.iridescence > 0.0),
+            ("KHR_materials_anisotropy", self.anisotropy > 0.0),
+            ("KHR_materials_transmission", self.transmission > 0.0),
+            ("KHR_materials_volume", self.thickness > 0.0),
+            ("KHR_materials_diffuse_transmission", self.diffuse_transmission > 0.0),
+        ]
+    }
+
     /// Returns the components of a factor, [`LobeFactor::width`] of them.
     pub fn factor_mut(&mut self, factor: LobeFactor) -> &mut [f32] {
         slice::from_mut(match factor {

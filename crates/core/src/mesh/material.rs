@@ -137,6 +137,24 @@ impl Material {
         self.occlusion_texture = None;
     }
 
+    /// Returns the names of the extensions that have an effect on the material, as glTF writes them.
+    pub fn extensions(&self) -> Vec<&'static str> {
+        let mut textures = TextureSlot::ALL.into_iter().filter_map(|slot| self.texture(slot));
+        let is_transformed = textures.any(|texture| texture.uv_transform != UvTransform::IDENTITY);
+        let of_material = [
+            ("KHR_materials_unlit", self.unlit),
+            ("VRMC_materials_mtoon", self.toon.is_some()),
+            ("KHR_materials_emissive_strength", self.emissive_strength != 1.0),
+            ("KHR_texture_transform", is_transformed),
+        ];
+        let of_lobes = self.lobes.as_ref().map(|lobes| lobes.extensions());
+        of_material
+            .into_iter()
+            .chain(of_lobes.into_iter().flatten())
+            .filter_map(|(name, has_effect)| has_effect.then_some(name))
+            .collect()
+    }
+
     /// Returns the texture in a slot.
     pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
         match slot {

@@ -1,6 +1,6 @@
 //! MToon, the toon shading of avatars (`VRMC_materials_mtoon-1.0`).
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::TextureRef;
 use crate::anim::{TextureSlot, ToonColor};
@@ -52,6 +52,10 @@ pub struct Toon {
     pub outline_color: Vec3,
     /// How much of the surface's shading the outline takes on, from 0 to 1.
     pub outline_lighting_mix: f32,
+    /// Speed at which texture coordinates move, in UV units per second.
+    pub uv_scroll: Vec2,
+    /// Speed at which texture coordinates turn about (0.5, 0.5), in radians per second.
+    pub uv_rotation: f32,
     /// Textures by slot, from [`TextureSlot::ShadeMultiply`] on.
     pub textures: [Option<TextureRef>; TEXTURES],
 }
@@ -74,6 +78,8 @@ impl Default for Toon {
             outline_width: 0.0,
             outline_color: Vec3::ZERO,
             outline_lighting_mix: 1.0,
+            uv_scroll: Vec2::ZERO,
+            uv_rotation: 0.0,
             textures: [None; TEXTURES],
         }
     }

@@ -3,7 +3,7 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
-//! with its source. `pose`, `keys` and `math` are shared by all.
+//! with its source. `change` mirrors, trims, loops and moves any clip. `pose`, `keys` and `math` are shared by all.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -28,6 +28,7 @@
 
 mod align;
 mod bake;
+mod change;
 mod feet;
 mod keys;
 mod map;
@@ -40,13 +41,15 @@ mod transfer;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
+pub use change::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 pub use feet::Planting;
 pub use map::{
     ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
     Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
-    opposite_joints, propose,
+    opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FootTrack, StagePair};
+pub(crate) use recognize::words;
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

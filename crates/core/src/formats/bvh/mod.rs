@@ -17,6 +17,7 @@
 mod frame_of_reference;
 mod hierarchy;
 mod motion;
+mod write;
 
 use super::{LoadError, LoadOptions};
 use crate::anim::{Clip, Joint, Skeleton, Transform};
@@ -27,6 +28,7 @@ use crate::formats::limits::Budget;
 use crate::formats::lines::{self, Lines};
 use frame_of_reference::FrameOfReference;
 use hierarchy::Hierarchy;
+pub use write::write;
 
 pub(super) fn is_bvh(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(lines::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();

@@ -2,13 +2,13 @@
 //! a [budget](Budget), so that a small file cannot make us allocate a lot of memory.
 
 use std::fmt::Display;
-use std::sync::Arc;
 
 use gltf::json::Accessor;
 use gltf::json::accessor::{ComponentType, IndexComponentType};
 use gltf::json::validation::Checked;
 
 use super::document::{Document, size};
+use crate::asset::SharedBytes;
 use crate::formats::error::Problem;
 use crate::formats::limits::Budget;
 
@@ -22,7 +22,7 @@ pub struct Accessors<'a> {
 
 pub enum Bytes<'a> {
     Borrowed(&'a [u8]),
-    Shared(Arc<[u8]>),
+    Shared(SharedBytes),
     Owned(Vec<u8>),
 }
 

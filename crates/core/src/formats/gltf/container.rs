@@ -34,20 +34,11 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         expected: expected.to_owned(),
         found,
     };
-    if bytes.is_empty() {
-        return Err(invalid("the whole file", "a glTF", "nothing: it is empty".to_owned()));
-    }
     if !bytes.starts_with(b"glTF") {
-        // Truncated or misspelt text is left to the JSON parser, which knows the place.
-        if let Some(first) = bytes.trim_ascii_start().first().filter(|byte| byte.is_ascii_alphabetic()) {
-            let found = format!("text that begins with “{}”", char::from(*first));
-            return Err(invalid(
-                "the whole file",
-                "a GLB, which begins with “glTF”, or JSON, which begins with “{”",
-                found,
-            ));
-        }
-        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false, repeated_chunk: None });
+        return match other_content(bytes) {
+            Some(found) => Err(invalid("", "a GLB, which begins with “glTF”, or JSON, which begins with “{”", found)),
+            None => Ok(Container { json: without_bom(bytes), binary: None, is_glb: false, repeated_chunk: None }),
+        };
     }
     let word = |at: usize| {
         let four = bytes.get(at..at.checked_add(4)?)?;
@@ -80,6 +71,34 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
     }
     let json = json.ok_or_else(|| invalid("GLB", "a JSON chunk", "none".to_owned()))?;
     Ok(Container { json: without_bom(json), binary, is_glb: true, repeated_chunk })
+}
+
+/// Returns what a file without the header of a GLB contains; `None` for anything that may be JSON. Truncated or misspelt
+/// JSON is left to its parser, which knows the place.
+fn other_content(bytes: &[u8]) -> Option<String> {
+    const KNOWN: [(&[u8], &str); 11] = [
+        (b"\x89PNG", "a PNG image"),
+        (b"\xff\xd8\xff", "a JPEG image"),
+        (b"GIF8", "a GIF image"),
+        (b"RIFF", "a RIFF file, such as a WebP image"),
+        (b"PK", "a .zip archive; name it .zip"),
+        (b"\x1f\x8b", "a gzip archive; unpack it first"),
+        (b"7z\xbc\xaf", "a 7-Zip archive; unpack it first"),
+        (b"Rar!", "a RAR archive; unpack it first"),
+        (b"BLENDER", "a Blender file; export glTF 2.0 (.glb) from Blender"),
+        (b"%PDF", "a PDF document"),
+        (b"version https://git-lfs", "a Git LFS pointer; fetch the file itself with “git lfs pull”"),
+    ];
+    if let Some((_, kind)) = KNOWN.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Some((*kind).to_owned());
+    }
+    match without_bom(bytes).trim_ascii_start() {
+        [] => Some("nothing: the file is empty".to_owned()),
+        [b'<', ..] => Some("a web page or XML; the address may lead to a page about the file".to_owned()),
+        [first, ..] if first.is_ascii_alphabetic() => Some(format!("text that begins with “{}”", char::from(*first))),
+        [first, ..] if !first.is_ascii_graphic() => Some(format!("binary data that begins with byte 0x{first:02x}")),
+        _ => None,
+    }
 }
 
 fn without_bom(bytes: &[u8]) -> &[u8] {

@@ -1,12 +1,11 @@
 //! Resolves URIs of buffers and images: data URIs, or files in the set.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use base64::Engine;
 use percent_encoding::percent_decode_str;
 
-use crate::asset::{Warning, Warnings};
+use crate::asset::{SharedBytes, Warning, Warnings};
 use crate::formats::FileSet;
 use crate::formats::error::Problem;
 use crate::formats::file_set::Found;
@@ -42,7 +41,7 @@ pub fn find<'a>(files: &'a FileSet, base: &str, uri: &str) -> Option<Found<'a>> 
 }
 
 /// Returns the bytes of the file that `uri` refers to, relative to the file `base`.
-pub fn file(files: &FileSet, base: &str, uri: &str, warnings: &mut Warnings) -> Option<Arc<[u8]>> {
+pub fn file(files: &FileSet, base: &str, uri: &str, warnings: &mut Warnings) -> Option<SharedBytes> {
     let found = find(files, base, uri)?;
     if found.by_bare_name {
         let uri = decode_uri(uri).into_owned();

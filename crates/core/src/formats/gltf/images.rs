@@ -1,14 +1,12 @@
 //! Images stay encoded; only their headers are read, so that absurd sizes are rejected before anything is decoded. An
 //! unavailable image leaves its texture empty; the model still loads.
 
-use std::sync::Arc;
-
 use gltf::json;
 use imagesize::ImageType;
 
 use super::accessor::Accessors;
 use super::data;
-use crate::asset::{Image, Warning, Warnings};
+use crate::asset::{Image, SharedBytes, Warning, Warnings};
 use crate::formats::FileSet;
 use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit, MAX_IMAGE_SIDE};
@@ -32,7 +30,7 @@ pub fn images(
             (name, _) => name.to_owned(),
         };
         // An image without bytes stays in the list, so that indices are those of the file.
-        let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
+        let missing = Image { name: name.clone(), ..Image::default() };
         images.push(match bytes {
             None => missing,
             Some(bytes) => match image_header(&bytes, &accessors.budget) {
@@ -55,7 +53,7 @@ fn image_bytes(
     image: &json::Image,
     place: &str,
     warnings: &mut Warnings,
-) -> Result<Option<Arc<[u8]>>, Problem> {
+) -> Result<Option<SharedBytes>, Problem> {
     Ok(match (&image.uri, image.buffer_view) {
         (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(place, uri)?.into()),
         (Some(uri), _) => {
@@ -68,7 +66,7 @@ fn image_bytes(
         (None, Some(view)) => {
             let (bytes, _) = accessors.view(view.value(), &format!("{place}.bufferView"))?;
             accessors.budget.allocate(1, bytes.len(), &place)?;
-            Some(bytes.into())
+            Some(bytes.to_vec().into())
         }
         (None, None) if accessors.document.is_left_out(place) => None,
         (None, None) => {

@@ -70,7 +70,8 @@ pub const TEXTURES: [(&str, TextureSlot); 14] = [
 /// take eight.
 const MAX_TEXTURES: usize = 8;
 /// The textures to drop first if a material has too many, least noticeable first.
-const DISPENSABLE: [TextureSlot; 11] = [
+const DISPENSABLE: [TextureSlot; 12] = [
+    TextureSlot::ShadingShift,
     TextureSlot::IridescenceThickness,
     TextureSlot::SheenRoughness,
     TextureSlot::Specular,
@@ -162,7 +163,8 @@ pub fn read_textures(
     Ok(())
 }
 
-fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
+/// Keeps at most [`MAX_TEXTURES`] textures, with a warning that names the others.
+pub fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
     let count = TextureSlot::ALL.into_iter().filter(|&slot| material.texture(slot).is_some()).count();
     let surplus = count.saturating_sub(MAX_TEXTURES);
     let dispensable = DISPENSABLE.into_iter().filter(|&slot| material.texture(slot).is_some());
@@ -171,8 +173,12 @@ fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>
         material.set_texture(slot, None);
     }
     if surplus > 0 {
-        let names: Vec<&str> =
-            TEXTURES.iter().filter(|(_, slot)| dropped.contains(slot)).map(|(path, _)| *path).collect();
+        let names: Vec<&str> = TEXTURES
+            .iter()
+            .chain(&super::mtoon::TEXTURES)
+            .filter(|(_, slot)| dropped.contains(slot))
+            .map(|(path, _)| *path)
+            .collect();
         let problem =
             format!("{count} textures, of which only {MAX_TEXTURES} can be shown; shown without {}", names.join(", "));
         reader.warnings.push(Warning::Other { code: "texture-count", place: reader.material.to_owned(), problem });

@@ -38,10 +38,12 @@ use container::Container;
 use document::{Document, size};
 use gltf::json::Root;
 
+pub(super) use data::find as find_file;
 pub(super) use images::image_header;
 pub use pointer::pointer_to;
 pub use write::WriteError;
-pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
+pub(super) use write::check_frames;
+pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion, vrma as write_vrma};
 
 /// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {

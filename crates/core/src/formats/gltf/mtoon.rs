@@ -2,10 +2,9 @@
 
 use serde_json::{Map, Value};
 
-use super::lobes::{ignore, read_numbers, read_textures};
+use super::lobes::{drop_surplus_textures, ignore, read_numbers, read_textures};
 use super::materials::TextureReader;
 use crate::anim::{TextureSlot, ToonColor};
-use crate::asset::Warning;
 use crate::formats::error::Problem;
 use crate::mesh::{Material, OutlineMode, Toon};
 
@@ -18,12 +17,13 @@ pub const COLORS: [(&str, ToonColor); 4] = [
     ("VRMC_materials_mtoon/outlineColorFactor", ToonColor::OutlineColor),
 ];
 /// Textures by path below a material's `extensions`.
-pub const TEXTURES: [(&str, TextureSlot); 5] = [
+pub const TEXTURES: [(&str, TextureSlot); 6] = [
     ("VRMC_materials_mtoon/shadeMultiplyTexture", TextureSlot::ShadeMultiply),
     ("VRMC_materials_mtoon/shadingShiftTexture", TextureSlot::ShadingShift),
     ("VRMC_materials_mtoon/matcapTexture", TextureSlot::Matcap),
     ("VRMC_materials_mtoon/rimMultiplyTexture", TextureSlot::RimMultiply),
     ("VRMC_materials_mtoon/outlineWidthMultiplyTexture", TextureSlot::OutlineWidth),
+    ("VRMC_materials_mtoon/uvAnimationMaskTexture", TextureSlot::UvAnimationMask),
 ];
 
 /// Adds MToon to a material whose other members have been read. It replaces lobes and KHR_materials_unlit.
@@ -54,6 +54,9 @@ pub fn read(
         ("rimLightingMixFactor", &mut toon.rim_lighting_mix),
         ("outlineWidthFactor", &mut toon.outline_width),
         ("outlineLightingMixFactor", &mut toon.outline_lighting_mix),
+        ("uvAnimationScrollXSpeedFactor", &mut toon.uv_scroll.x),
+        ("uvAnimationScrollYSpeedFactor", &mut toon.uv_scroll.y),
+        ("uvAnimationRotationSpeedFactor", &mut toon.uv_rotation),
     ] {
         read_numbers(extensions, &format!("{MTOON}/{name}"), std::slice::from_mut(number), reader);
     }
@@ -72,16 +75,6 @@ pub fn read(
     };
     material.shade_as_toon(toon);
     read_textures(extensions, &TEXTURES, material, reader)?;
-    let speeds = ["uvAnimationScrollXSpeedFactor", "uvAnimationScrollYSpeedFactor", "uvAnimationRotationSpeedFactor"];
-    if speeds.into_iter().any(|name| extensions[MTOON][name].as_f64().is_some_and(|speed| speed != 0.0)) {
-        warn_about_uv_animation(reader);
-    }
+    drop_surplus_textures(material, reader);
     Ok(())
-}
-
-/// Warns that scrolling and rotating textures are not animated.
-pub fn warn_about_uv_animation(reader: &mut TextureReader<'_>) {
-    let place = reader.material.to_owned();
-    let problem = "UV animation is not supported; the textures don't move".to_owned();
-    reader.warnings.push(Warning::Other { code: "mtoon-uv-animation", place, problem });
 }

@@ -11,7 +11,6 @@ mod skel;
 mod text;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use glam::Affine3A;
 
@@ -19,7 +18,7 @@ use super::file_set::{bare_name, without_query};
 use super::gltf::image_header;
 use super::{FileSet, LoadError, extension};
 use crate::anim::{Joint, Skeleton, Transform, model_from_joint};
-use crate::asset::{Asset, AssetParts, Image, MeshInstance, Warning, Warnings};
+use crate::asset::{Asset, AssetParts, Image, MeshInstance, SharedBytes, Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::limits::Budget;
 use crate::mesh::{Geometry, Influences, Mesh, Sampler, Skin, Texture, TextureRef, UvTransform};
@@ -76,7 +75,7 @@ fn sibling_name(file: &str, kind: &str) -> Option<String> {
 
 /// Finds the file of another kind that belongs to `file`: the one with the same stem, else the only one if there is only one
 /// .obj as well.
-fn companion<'a>(files: &'a FileSet, file: &str, kind: &str) -> Option<(&'a str, &'a Arc<[u8]>)> {
+fn companion<'a>(files: &'a FileSet, file: &str, kind: &str) -> Option<(&'a str, &'a SharedBytes)> {
     let wanted = sibling(file, kind)?.to_lowercase();
     if let Some(found) = files.iter().find(|(name, _)| name.to_lowercase() == wanted) {
         return Some(found);
@@ -108,7 +107,7 @@ pub(super) fn load(
     let budget = &Budget::default();
     let obj = text::read(bytes, budget, &mut warnings).map_err(|problem| problem.in_file(file))?;
     if obj.faces.is_empty() {
-        return Err(Problem::new("the whole file", "a face (a line that begins with “f”)", "none").in_file(file));
+        return Err(Problem::new("", "a face (a line that begins with “f”)", "none").in_file(file));
     }
     let stem = sibling_name(file, "").unwrap_or_default();
     let stem = stem.trim_end_matches('.');

@@ -2,11 +2,14 @@
 
 mod body;
 mod contacts;
+mod height;
 mod leg;
+mod level;
 mod limit;
 mod plan;
 mod plant;
 mod sole;
+mod width;
 
 pub use contacts::{SourceContacts, source_contacts, source_height};
 pub use plant::{Planting, planted_channels};

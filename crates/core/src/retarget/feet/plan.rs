@@ -31,6 +31,8 @@ pub struct LegContacts {
     pub leg: Leg,
     pub sole: Sole,
     pub touching: Vec<bool>,
+    /// Sideways offset of the foot at each time, in contact or not.
+    pub spread: Vec<DVec3>,
 }
 
 /// What feet are planted on, and how the clip moves over it.
@@ -87,9 +89,10 @@ pub fn plan(stage: Stage, leg: &LegContacts, contacts: &[Range<usize>]) -> Plan 
         ease(stage.times, &mut moves, contact.start, before..contact.start);
         ease(stage.times, &mut moves, contact.end - 1, contact.end..after);
     }
-    for (foot, pose) in moves.iter_mut().zip(stage.poses) {
+    for (at, (foot, pose)) in moves.iter_mut().zip(stage.poses).enumerate() {
         let depth = stage.ground - leg.sole.lowest(pose);
         foot.lift = depth.min(MAX_LIFT * stage.height);
+        foot.by += leg.spread[at];
     }
     Plan { leg: leg.leg, moves }
 }
@@ -110,8 +113,8 @@ fn ease(times: &[f32], moves: &mut [FootMove], end: usize, gap: Range<usize>) {
 
 /// How far the foot is moved at each time of a contact.
 fn contact_offsets(stage: Stage, leg: &LegContacts, contact: Range<usize>) -> Vec<DVec3> {
-    let toes: Vec<DVec3> =
-        contact.clone().map(|at| (stage.poses[at].position(leg.leg.toes) - stage.travel[at]) * HORIZONTAL).collect();
+    let toes = |at: usize| (stage.poses[at].position(leg.leg.toes) + leg.spread[at] - stage.travel[at]) * HORIZONTAL;
+    let toes: Vec<DVec3> = contact.clone().map(toes).collect();
     let heights: Vec<f64> = stage.poses[contact].iter().map(|pose| leg.sole.lowest(pose) - stage.ground).collect();
     let height = heights.iter().sum::<f64>() / heights.len() as f64;
     let [near, far] = GROUND_OFFSET.map(|share| share * stage.height);

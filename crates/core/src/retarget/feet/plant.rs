@@ -10,19 +10,19 @@ use serde::Serialize;
 
 use super::body::{body_shifts, near};
 use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
+use super::height::{floats, hover, lower};
 use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
+use super::level::level_feet;
 use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
 use super::sole::Soles;
+use super::width::spreads;
 use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
 use crate::asset::Slot;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::keys::resample::union;
-use crate::retarget::pose::{Scratch, WorldPose, is_within};
+use crate::retarget::pose::{Scratch, WorldPose};
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
-
-/// A body that hovers by more than this share of the hips' height does so on purpose.
-const MAX_HOVER: f64 = 0.25;
 
 /// The hips come down by at most this share of their height for a leg to reach.
 const MAX_DROP: f64 = 0.1;
@@ -31,7 +31,7 @@ const MAX_DROP: f64 = 0.1;
 const MAX_STEP_SECS: f32 = 1.0 / 30.0;
 
 /// How far planting may turn a thigh or shin, and how fast: at 60 frames per second, by about 4° per frame.
-const MAX_TURN_DEGREES: f64 = 45.0;
+const MAX_TURN_DEGREES: f64 = 30.0;
 const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
 
 /// How far a foot may end from where it begins, as a share of the hips' height, in a clip that repeats in place.
@@ -82,10 +82,18 @@ pub fn planted_channels(
     let soles = Soles::new(transfer);
     let (mut legs, source_ground) = legs_in_contact(transfer, &soles, &times);
     let lowered_metres = hover(transfer, &legs, &poses, soles.ground)?;
-    lower(transfer, &legs, &mut poses, lowered_metres);
+    lower(transfer, &legs, &mut poses, |_| lowered_metres);
+    let height = transfer.hips.map_or_else(|| leg_length(transfer, &legs), |hips| hips.height);
+    let rest = &transfer.alignment.unaligned_target;
+    let floats = floats(&times, &legs, &poses, soles.ground, height);
+    lower(transfer, &legs, &mut poses, |at| floats[at]);
+    if let [left, right] = &mut legs[..] {
+        left.spread = spreads(transfer, &times, &poses, height);
+        right.spread = left.spread.iter().map(|spread| -spread).collect();
+    }
+    level_feet(&times, transfer.target_skeleton, rest, &legs, &mut poses, [soles.ground, height]);
     let contacts = legs.iter().map(|leg| ranges(&leg.touching).len()).sum();
     let travel = ground_travel(transfer, &times, &source_ground);
-    let height = transfer.hips.map_or_else(|| leg_length(transfer, &legs), |hips| hips.height);
     let mut samples = Samples { times, poses, travel };
     let own = 0..samples.times.len();
     let own = if is_cycle(&legs, &samples, height) { samples.repeat(&mut legs) } else { own };
@@ -98,7 +106,9 @@ pub fn planted_channels(
     let drops = drops(stage, &plans, &shifts);
     let rotations = leg_rotations(transfer, stage, &plans, &shifts, &drops, own.clone());
     let moves: Vec<DVec3> = shifts.iter().zip(&drops).map(|(shift, drop)| shift - DVec3::Y * drop).collect();
-    let hips = hips.filter(|_| lowered_metres != 0.0 || moves.iter().any(|&by| by != DVec3::ZERO));
+    let hips = hips.filter(|_| {
+        lowered_metres != 0.0 || floats.iter().any(|&by| by != 0.0) || moves.iter().any(|&by| by != DVec3::ZERO)
+    });
     let translation = hips.map(|hips| moved_hips(transfer, stage, hips, &moves, own.clone()));
     let mut channels = kept_channels(clip, resampled, hips, &rotations);
     channels.extend(translation);
@@ -169,6 +179,7 @@ impl Samples {
             leg.touching[0] |= leg.touching[last];
             leg.touching[last] = leg.touching[0];
             leg.touching = repeated(&leg.touching, &before, &after, |touching, _| *touching);
+            leg.spread = repeated(&leg.spread, &before, &after, |spread, _| *spread);
         }
         pad..pad + last + 1
     }
@@ -239,7 +250,8 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
     let height = source_height(transfer.map, transfer.alignment);
     let SourceContacts { touching, ground } = source_contacts(times, &positions, &hips, height);
     let legs = legs.into_iter().zip(touching);
-    let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching });
+    let legs =
+        legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching, spread: vec![DVec3::ZERO; times.len()] });
     (legs.collect(), ground)
 }
 
@@ -248,43 +260,6 @@ fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
     let starts = (0..touching.len()).filter(|&at| touching[at] && (at == 0 || !touching[at - 1]));
     let end = |from: usize| (from..touching.len()).find(|&at| !touching[at]).unwrap_or(touching.len());
     starts.map(|from| from..end(from)).collect()
-}
-
-/// By how much the body is too high: the first quartile of its soles' heights in contact, because the minimum is often a
-/// slip of the capture. Without contacts, the height below which either sole is for a twentieth of the time. None without
-/// legs.
-fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
-    let heights = |leg: &LegContacts| {
-        let touching = poses.iter().zip(&leg.touching).filter(|(_, touching)| **touching);
-        touching.map(|(pose, _)| leg.sole.lowest(pose)).collect::<Vec<f64>>()
-    };
-    let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
-    let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min);
-    let at = if contacts.is_empty() {
-        contacts = poses.iter().filter(|_| !legs.is_empty()).map(lowest).collect();
-        contacts.len() / 20
-    } else {
-        contacts.len() / 4
-    };
-    if contacts.is_empty() {
-        return None;
-    }
-    let hover = *contacts.select_nth_unstable_by(at, f64::total_cmp).1 - ground;
-    let is_near = transfer.hips.is_some_and(|hips| hover.abs() < MAX_HOVER * hips.height);
-    Some(if is_near { hover } else { 0.0 })
-}
-
-/// Lowers the hips and their descendants, and shins and feet that are parented elsewhere.
-fn lower(transfer: &Transfer, legs: &[LegContacts], poses: &mut [WorldPose], by: f64) {
-    let Some(hips) = transfer.hips_carrier() else { return };
-    let skeleton = transfer.target_skeleton;
-    let tops = legs.iter().flat_map(|LegContacts { leg, .. }| [leg.knee, leg.ankle]);
-    let tops: Vec<JointIndex> = tops.chain([hips]).collect();
-    let is_lowered = |joint: &JointIndex| tops.iter().any(|&top| is_within(skeleton, *joint, top));
-    let lowered: Vec<JointIndex> = skeleton.joints().filter(is_lowered).collect();
-    for pose in poses {
-        lowered.iter().for_each(|joint| pose.positions[joint.get()].y -= by);
-    }
 }
 
 /// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.

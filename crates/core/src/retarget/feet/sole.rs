@@ -1,4 +1,5 @@
-//! The underside of the feet: where the mesh is lowest, however a foot is turned. Toe and heel joints lie anywhere in the shoe.
+//! Soles: the lowest points of the feet's meshes, whatever the rotation of a foot. Toe and heel joints can't stand in for them,
+//! since rigs place these anywhere in the shoe.
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
@@ -11,29 +12,37 @@ use crate::retarget::transfer::Transfer;
 /// A vertex belongs to a foot if the foot's joints have at least this share of its weights.
 const MIN_WEIGHT: f32 = 0.5;
 
-/// Tilts from straight down of the directions in which the outermost points of a foot are kept.
+/// Angles from straight down of the directions in which the outermost points of a foot are kept.
 const TILTS_DEGREES: [f64; 3] = [25.0, 50.0, 75.0];
 
-/// Directions to each tilt.
+/// Number of directions per tilt.
 const AZIMUTHS: u32 = 8;
 
-/// The underside of one foot: points that are fixed to its joints.
+/// The sole of one foot, as points attached to its joints.
 #[derive(Debug, Clone)]
 pub struct Sole {
-    /// Each with its offset from the joint, as the joint is turned.
+    /// Each with its offset from the joint, which rotates with the joint but doesn't scale.
     points: Vec<(JointIndex, DVec3)>,
 }
 
 impl Sole {
-    /// Height of the lowest point.
+    /// Returns the height of the lowest point.
     pub fn lowest(&self, pose: &WorldPose) -> f64 {
-        let height =
-            |&(joint, offset): &(JointIndex, DVec3)| pose.position(joint).y + (pose.rotation(joint) * offset).y;
-        self.points.iter().map(height).fold(f64::INFINITY, f64::min)
+        self.positions(pose).map(|point| point.y).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns what [`Self::lowest`] would be if the foot were turned about its ankle.
+    pub fn lowest_turned(&self, pose: &WorldPose, ankle: JointIndex, turn: DQuat) -> f64 {
+        let center = pose.position(ankle);
+        center.y + self.positions(pose).map(|point| (turn * (point - center)).y).fold(f64::INFINITY, f64::min)
+    }
+
+    fn positions(&self, pose: &WorldPose) -> impl Iterator<Item = DVec3> {
+        self.points.iter().map(|&(joint, offset)| pose.position(joint) + pose.rotation(joint) * offset)
     }
 }
 
-/// The soles of both feet, and what they stand on.
+/// The soles of both feet, and the ground they stand on.
 #[derive(Debug)]
 pub struct Soles {
     /// Left, right; `None` for a foot that is not mapped.
@@ -56,7 +65,7 @@ impl Soles {
     }
 }
 
-/// Toes and heel of a foot without a mesh: it stands on its toes' joint, and its heel is below the ankle.
+/// Returns the sole of a foot without a mesh: the toe joint, and a heel at the same height below the ankle.
 fn joint_sole(rest: &WorldPose, ankle: JointIndex, toes: Option<JointIndex>) -> Sole {
     let Some(toes) = toes.filter(|&toes| toes != ankle) else { return Sole { points: vec![(ankle, DVec3::ZERO)] } };
     let down = (rest.position(ankle).y - rest.position(toes).y).max(0.0);
@@ -64,7 +73,7 @@ fn joint_sole(rest: &WorldPose, ankle: JointIndex, toes: Option<JointIndex>) -> 
     Sole { points: vec![(toes, DVec3::ZERO), (ankle, heel)] }
 }
 
-/// The outermost points of everything that is drawn below the foot's joint.
+/// Returns the outermost points of all meshes that follow the foot's joint or its descendants.
 fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
     let mut hull = Hull::new(asset, rest, foot);
     for &MeshInstance { joint, mesh, skin, joint_from_mesh } in &asset.instances {
@@ -87,7 +96,8 @@ fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
     hull.into_sole(asset)
 }
 
-/// The joint of the foot that a vertex follows most, and where the vertex is in its frame. None for vertices elsewhere.
+/// Returns the foot's joint with the most influence on a vertex, and the vertex in its frame; `None` for vertices outside the
+/// foot.
 fn bound_to_foot(
     hull: &Hull,
     skin: &Skin,
@@ -113,7 +123,7 @@ struct Hull<'a> {
     directions: Vec<DVec3>,
     /// By joint; `None` for joints outside the foot.
     world_from_joint: Vec<Option<DAffine3>>,
-    /// By joint and direction: the point in the common frame at rest, and how far out it is.
+    /// By joint and direction: how far out the outermost point is, and its position at rest in the common frame.
     outermost: Vec<Vec<(f64, DVec3)>>,
 }
 

@@ -19,7 +19,7 @@ pub use file::{JointMapFile, SourceRef};
 pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
 pub use opposite::opposite_joints;
 pub use options::{Feet, Keep, RestChoice, RestChoices, RootOptions, RootPart};
-pub use propose::{Proposal, ProposedPair, propose};
+pub use propose::{Proposal, ProposedPair, propose, propose_recognized};
 pub use resolved::{Layer, Pair, ResolvedMap};
 pub(super) use shared_names::shared_names;
 pub use unmapped::{ClipRef, Unmapped};

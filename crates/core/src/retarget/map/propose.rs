@@ -52,7 +52,11 @@ const TRUNK: [Slot; 3] = [Slot::Spine, Slot::Chest, Slot::UpperChest];
 
 /// Proposes a map; deterministic. It has no pairs if neither names nor slots agree.
 pub fn propose(model: &Asset, motion: &Asset) -> Proposal {
-    let (targets, sources) = (recognize(model), recognize(motion));
+    propose_recognized(model, motion, recognize(model), recognize(motion))
+}
+
+/// Like [`propose`], for bodies that were recognized before.
+pub fn propose_recognized(model: &Asset, motion: &Asset, targets: Recognized, sources: Recognized) -> Proposal {
     let moved = moved_joints(motion);
     let shared = shared_names(&model.skeleton, &motion.skeleton);
     let mut pairs = Pairs::default();

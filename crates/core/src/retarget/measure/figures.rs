@@ -42,6 +42,8 @@ pub struct Figures {
     /// Mean height of the sole's lowest point above the ground while the source's foot is in contact; negative below it. The
     /// ground is where the lowest point of either sole rests: of the mesh of the feet or, without one, of their joints.
     pub foot_hover_metres_mean: Option<f64>,
+    /// How deep the lowest point of either sole goes below the same ground, at any measured time.
+    pub sole_penetration_metres_max: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -133,6 +135,8 @@ pub fn measure(
             foot.heights.push(foot.sole.lowest(&target) - soles.ground);
         }
     }
+    let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
+    let sole_penetration = depths.reduce(f64::max);
     let (contacts, tracks) = foot_tracks(transfer, &times, feet);
     let figures = Figures {
         limb_direction_error_degrees_mean: direction.mean(),
@@ -145,6 +149,7 @@ pub fn measure(
         foot_slide_source_metres_per_sec: contacts.source_slide,
         ground_penetration_metres_max: penetration,
         foot_hover_metres_mean: contacts.hover,
+        sole_penetration_metres_max: sole_penetration,
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)

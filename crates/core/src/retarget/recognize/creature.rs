@@ -39,21 +39,25 @@ struct Animal {
     hips: JointIndex,
     hind: Twins,
     front: Twins,
+    /// Whether `front` are legs of at least [`MIN_FRONT_LEG`], which rank above wings.
+    has_front_legs: bool,
     /// From the hind legs to the front legs.
     forward: Vec3,
     left: Vec3,
 }
 
-/// The longest pairs of limbs that make an animal.
+/// Front legs of at least this share of the hind legs' length rank above wings.
+const MIN_FRONT_LEG: f32 = 0.5;
+
+/// The longest pairs of limbs that make an animal. Front legs rank above wings, which are longer on a dragon.
 fn animal(shape: &Shape) -> Option<Animal> {
     let pairs = shape.limbs();
     let mut best: Option<Animal> = None;
     for hind in &pairs {
         for front in &pairs {
-            let length = best.as_ref().map_or(0.0, |best| best.hind.length + best.front.length);
-            if hind.length + front.length > length {
-                best = Animal::new(shape, hind, front).or(best);
-            }
+            let rank = |animal: &Animal| (animal.has_front_legs, animal.hind.length + animal.front.length);
+            let is_better = |found: &Animal| best.as_ref().is_none_or(|best| rank(found) > rank(best));
+            best = Animal::new(shape, hind, front).filter(is_better).or(best);
         }
     }
     best
@@ -73,8 +77,9 @@ impl Animal {
         let up = (forward * down.dot(forward) - down).try_normalize()?;
         let hangs_across = down.dot(forward).abs() < 0.7;
         let is_leg = hang(shape, front).is_some_and(|front| front.dot(down) > 0.5);
+        let has_front_legs = is_leg && front.length > MIN_FRONT_LEG * hind.length;
         let left = up.cross(forward);
-        let animal = Self { hips, hind: hind.clone(), front: front.clone(), forward, left };
+        let animal = Self { hips, hind: hind.clone(), front: front.clone(), has_front_legs, forward, left };
         (hangs_across && (is_leg || animal.is_wing(shape, front))).then_some(animal)
     }
 

@@ -26,6 +26,7 @@ use evidence::Evidence;
 use tree::Tree;
 
 pub(in crate::retarget) use creature::chains;
+pub(crate) use names::words;
 pub use names::{Name, Side};
 
 /// The result of [`recognize`]; empty for anything but a human body.

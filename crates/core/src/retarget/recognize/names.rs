@@ -163,7 +163,7 @@ fn narrow(char: char) -> char {
 
 /// Splits at anything but letters and digits, between letters and digits, before a capital that follows a small letter, and
 /// before the last capital of a run that a small letter follows (`LLeg` is `L`, `Leg`).
-fn words(text: &str) -> Vec<String> {
+pub fn words(text: &str) -> Vec<String> {
     let chars: Vec<char> = text.chars().map(narrow).collect();
     let mut words = Vec::new();
     let mut word = String::new();

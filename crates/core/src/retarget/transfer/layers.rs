@@ -102,14 +102,22 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
     let mut builder = ClipBuilder::new(clip.name(), &model.skeleton);
     let total_secs = f64::from(clip.duration_secs()) * baking.loops as f64;
     let mut add = |source: &Clip, repeat: Option<Repeat>| {
+        let stretch = repeat.as_ref().map_or(1.0, |repeat| repeat.stretch);
+        let repeated = |times: &[f32]| match &repeat {
+            Some(repeat) => repeated_times(times, repeat),
+            None => (vec![0.0], vec![0]),
+        };
         for channel in source.channels() {
-            let (times, kept) = match &repeat {
-                Some(repeat) => repeated_times(&source.timelines()[channel.timeline as usize], repeat),
-                None => (vec![0.0], vec![0]),
-            };
-            let stretch = repeat.as_ref().map_or(1.0, |repeat| repeat.stretch);
+            let (times, kept) = repeated(&source.timelines()[channel.timeline as usize]);
             let keys = select_keys(channel, &kept, stretch);
             let added = builder.channel(channel.joint, channel.interpolation, &times, keys);
+            debug_assert!(added.is_ok(), "{added:?}");
+        }
+        for channel in source.properties() {
+            let (times, kept) = repeated(&source.property_timelines()[channel.timeline as usize]);
+            let is_spline = channel.interpolation == Interpolation::CubicSpline;
+            let values = select(&channel.values, &kept, channel.target.width(), is_spline, stretch);
+            let added = builder.property(channel.target, channel.interpolation, &times, values);
             debug_assert!(added.is_ok(), "{added:?}");
         }
     };

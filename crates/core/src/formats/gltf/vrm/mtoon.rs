@@ -1,11 +1,10 @@
 //! MToon of VRM 0.x: `materialProperties`, the properties of a Unity shader. Colours except emission are in gamma
 //! space, and V coordinates start at the bottom. Converted as in UniVRM and, except for emission, in three-vrm.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::super::materials::TextureReader;
-use super::super::mtoon::warn_about_uv_animation;
 use super::number;
 use crate::anim::TextureSlot;
 use crate::formats::error::Problem;
@@ -93,6 +92,8 @@ impl<'a> Properties<'a> {
             outline_width: unit * self.number("_OutlineWidth", 0.0),
             outline_color: self.color("_OutlineColor", Vec4::W).truncate(),
             outline_lighting_mix: if is_mixed { self.number("_OutlineLightingMix", 1.0) } else { 0.0 },
+            uv_scroll: Vec2::new(self.number("_UvAnimScrollX", 0.0), -self.number("_UvAnimScrollY", 0.0)),
+            uv_rotation: self.number("_UvAnimRotation", 0.0),
             ..Toon::default()
         }
     }
@@ -127,11 +128,9 @@ pub fn read_0(value: &Value, material: &mut Material, reader: &mut TextureReader
         ("_SphereAdd", TextureSlot::Matcap, None),
         ("_RimTexture", TextureSlot::RimMultiply, transform),
         ("_OutlineWidthTexture", TextureSlot::OutlineWidth, transform),
+        ("_UvAnimMaskTexture", TextureSlot::UvAnimationMask, transform),
     ] {
         material.set_texture(slot, properties.texture(name, transform, reader)?);
-    }
-    if ["_UvAnimScrollX", "_UvAnimScrollY", "_UvAnimRotation"].iter().any(|name| properties.number(name, 0.0) != 0.0) {
-        warn_about_uv_animation(reader);
     }
     Ok(())
 }

@@ -1,8 +1,10 @@
 //! Why a file cannot be written.
 
+use crate::anim::Clip;
 use crate::formats::LoadError;
+use crate::formats::limits::MAX_WRITTEN_FRAMES;
 
-/// Everything that prevents writing a GLB. The user sees these texts.
+/// Everything that prevents writing a file. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WriteError {
     /// The source files cannot be read.
@@ -22,6 +24,12 @@ pub enum WriteError {
         /// Name of the joint that the channel animates; `#NODE` without one.
         joint: String,
     },
+    /// A VRM animation holds nothing but humanoid bones.
+    #[error("clip “{clip}” moves no human body, at least none with hips; a .glb or a .bvh holds any skeleton")]
+    NoBody {
+        /// Name of the clip.
+        clip: String,
+    },
     /// The skeleton given for the clips has another number of joints than the file.
     #[error("the clips are for {joints} joints, but {file} has {nodes} nodes: they belong to another model")]
     OtherSkeleton {
@@ -40,10 +48,26 @@ pub enum WriteError {
         /// The first such joint: its name in the given skeleton; `#NODE` without one.
         joint: String,
     },
+    /// The clip would have too many frames.
+    #[error("clip “{clip}”: expected at most {MAX_WRITTEN_FRAMES} frames, found {found}; trim it first")]
+    TooLong {
+        /// Name of the clip.
+        clip: String,
+        /// Number of frames that it would have.
+        found: usize,
+    },
     /// The file would exceed the 32-bit length in the GLB header.
     #[error("the file would have {bytes} bytes; a GLB holds at most 4 GiB")]
     TooLarge {
         /// Length of the whole GLB.
         bytes: usize,
     },
+}
+
+/// Checks how many frames a clip is about to be sampled at.
+pub(in crate::formats) fn check_frames(clip: &Clip, found: usize) -> Result<(), WriteError> {
+    if found <= MAX_WRITTEN_FRAMES {
+        return Ok(());
+    }
+    Err(WriteError::TooLong { clip: clip.name().to_owned(), found })
 }

@@ -1,0 +1,130 @@
+//! Mirrors a clip across the plane between left and right.
+//!
+//! Each joint takes on the reflected motion of its counterpart: the rotation and translation away from its rest, in the axes
+//! of the model. So the rest pose needn't be quite symmetric, and the joints' own axes don't matter. In the space of a joint,
+//! both are linear maps of the keys, so no keys are added, and mirroring twice restores the clip.
+
+use glam::{Affine3A, DMat3, DQuat, DVec3, Quat, Vec3};
+
+use super::track::{Target, Tracks};
+use crate::anim::{JointIndex, PropertyTarget, Skeleton, model_from_joint};
+use crate::asset::Asset;
+use crate::retarget::map::opposite_joints;
+use crate::retarget::math::unit;
+use crate::retarget::recognize::Recognized;
+
+/// Left and right of a skeleton.
+#[derive(Debug, Clone)]
+pub struct Symmetry {
+    /// The counterpart of each joint; joints in the middle, and those without one, are their own.
+    opposite: Vec<JointIndex>,
+    /// Unit vector from right to left.
+    left: DVec3,
+}
+
+impl Symmetry {
+    /// Finds the counterparts by humanoid slot, else by names that differ only in their side. `recognized` is what
+    /// [`recognize`](crate::retarget::recognize) finds in the asset.
+    pub fn of(asset: &Asset, recognized: &Recognized) -> Self {
+        let opposite = opposite_joints(&asset.skeleton, recognized);
+        let mutual = |joint: JointIndex| {
+            opposite[joint.get()].filter(|other| opposite[other.get()] == Some(joint)).unwrap_or(joint)
+        };
+        let left = recognized.facing.left.unwrap_or(Vec3::X);
+        Self {
+            opposite: asset.skeleton.joints().map(mutual).collect(),
+            left: (left.as_dvec3() * DVec3::new(1.0, 0.0, 1.0)).try_normalize().unwrap_or(DVec3::X),
+        }
+    }
+
+    /// Number of joints that have a counterpart.
+    pub fn paired(&self) -> usize {
+        self.opposite.iter().enumerate().filter(|(joint, other)| other.get() != *joint).count()
+    }
+
+    fn reflection(&self) -> DMat3 {
+        let n = self.left;
+        DMat3::IDENTITY - 2.0 * DMat3::from_cols(n * n.x, n * n.y, n * n.z)
+    }
+}
+
+/// A joint in the rest pose.
+struct AtRest {
+    model_from_parent: DMat3,
+    /// In model space, as [`Self::rotation`].
+    parent_rotation: DQuat,
+    rotation: DQuat,
+    /// Relative to the parent.
+    translation: DVec3,
+}
+
+fn at_rest(skeleton: &Skeleton) -> Vec<AtRest> {
+    let mut world = Vec::new();
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
+    let rotation = |joint: JointIndex| unit(world[joint.get()].to_scale_rotation_translation().1.as_dquat());
+    let of = |joint: JointIndex| {
+        let parent = skeleton.parent(joint);
+        AtRest {
+            model_from_parent: parent
+                .map_or(DMat3::IDENTITY, |parent| glam::Mat3::from(world[parent.get()].matrix3).as_dmat3()),
+            parent_rotation: parent.map_or(DQuat::IDENTITY, rotation),
+            rotation: rotation(joint),
+            translation: skeleton.rest().local(joint).translation.as_dvec3(),
+        }
+    };
+    skeleton.joints().map(of).collect()
+}
+
+pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
+    let rests = at_rest(&asset.skeleton);
+    let reflection = symmetry.reflection();
+    for track in &mut tracks.tracks {
+        match &mut track.target {
+            Target::Rotation(joint) => {
+                let (from, other) = (&rests[joint.get()], symmetry.opposite[joint.get()]);
+                let to = &rests[other.get()];
+                *joint = other;
+                let (before, after) = (to.parent_rotation.inverse(), to.rotation);
+                track.map(
+                    |entry| {
+                        let local = Quat::from_slice(entry).as_dquat();
+                        let away = from.parent_rotation * local * from.rotation.inverse();
+                        // The axis is a pseudovector: reflecting also negates it.
+                        let axis = -(reflection * DVec3::new(away.x, away.y, away.z));
+                        let mirrored = before * DQuat::from_xyzw(axis.x, axis.y, axis.z, away.w) * after;
+                        mirrored.as_quat().write_to_slice(entry);
+                    },
+                    &[],
+                );
+            }
+            Target::Translation(joint) => {
+                let (from, other) = (&rests[joint.get()], symmetry.opposite[joint.get()]);
+                let to = &rests[other.get()];
+                *joint = other;
+                let inverse = to.model_from_parent.inverse();
+                let inverse = if inverse.is_finite() { inverse } else { DMat3::IDENTITY };
+                let linear = inverse * reflection * from.model_from_parent;
+                let affine = (to.translation - linear * from.translation).as_vec3();
+                track.map(
+                    |entry| {
+                        (linear * Vec3::from_slice(entry).as_dvec3()).as_vec3().write_to_slice(entry);
+                    },
+                    &affine.to_array(),
+                );
+            }
+            Target::Scale(joint) => *joint = symmetry.opposite[joint.get()],
+            Target::Property(PropertyTarget::LookAt) => track.map(|angles| angles[0] = -angles[0], &[]),
+            Target::Property(PropertyTarget::Expression(index)) => *index = other_expression(asset, *index),
+            Target::Weights(_) | Target::Property(_) => {}
+        }
+    }
+}
+
+/// Returns the expression of the other side: `blinkLeft` for `blinkRight`.
+fn other_expression(asset: &Asset, index: usize) -> usize {
+    let name = asset.avatar.expressions.get(index).map_or("", |expression| &expression.name);
+    let swapped = [("Left", "Right"), ("Right", "Left")]
+        .into_iter()
+        .find_map(|(side, other)| asset.avatar.expression(&format!("{}{other}", name.strip_suffix(side)?)));
+    swapped.unwrap_or(index)
+}

@@ -1,0 +1,91 @@
+//! Moves and turns a character along with its path.
+
+use std::f64::consts::TAU;
+
+use glam::{Affine3A, DAffine3, DQuat, DVec3, Quat, Vec3};
+
+use super::track::{Target, Track, Tracks};
+use crate::anim::{Interpolation, JointIndex, SampleCursor, Skeleton, model_from_joint};
+use crate::retarget::math::unit;
+
+/// Returns the joints that carry all others: the animated joints without an animated ancestor.
+pub fn carriers(tracks: &Tracks, skeleton: &Skeleton) -> Vec<JointIndex> {
+    let mut is_animated = vec![false; skeleton.len()];
+    for track in &tracks.tracks {
+        if let Target::Translation(joint) | Target::Rotation(joint) | Target::Scale(joint) = track.target {
+            is_animated[joint.get()] = true;
+        }
+    }
+    let has_animated_above = |joint: JointIndex| {
+        std::iter::successors(skeleton.parent(joint), |&parent| skeleton.parent(parent))
+            .any(|parent| is_animated[parent.get()])
+    };
+    skeleton.joints().filter(|&joint| is_animated[joint.get()] && !has_animated_above(joint)).collect()
+}
+
+/// Returns the joint that travels: the first carrier with a translation channel, else the first carrier.
+pub fn traveller(tracks: &Tracks, skeleton: &Skeleton) -> Option<JointIndex> {
+    let carriers = carriers(tracks, skeleton);
+    let moves = |joint: &&JointIndex| tracks.find(Target::Translation(**joint)).is_some();
+    carriers.iter().find(moves).or(carriers.first()).copied()
+}
+
+/// Returns the rest transform from the space of a joint's parent to model space; the identity if it has no inverse.
+pub fn model_from_parent(skeleton: &Skeleton, joint: JointIndex) -> DAffine3 {
+    let mut world = Vec::new();
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
+    let parent = skeleton.parent(joint).map(|parent| glam::Mat4::from(world[parent.get()]));
+    let model_from_parent = parent.map_or(DAffine3::IDENTITY, |world| DAffine3::from_mat4(world.as_dmat4()));
+    if model_from_parent.inverse().is_finite() { model_from_parent } else { DAffine3::IDENTITY }
+}
+
+/// Turns the character about the vertical through its start, then moves it. Nothing above a carrier is animated, so this is an
+/// affine map of its keys.
+pub fn place(tracks: &mut Tracks, skeleton: &Skeleton, offset: [f64; 2], radians: f64) {
+    let Some(start) = start(tracks, skeleton) else { return };
+    let turn = DQuat::from_rotation_y(radians % TAU);
+    let moved = DVec3::new(offset[0], 0.0, offset[1]);
+    let placed =
+        DAffine3::from_translation(start + moved) * DAffine3::from_quat(turn) * DAffine3::from_translation(-start);
+    for joint in carriers(tracks, skeleton) {
+        let above = model_from_parent(skeleton, joint);
+        let local = above.inverse() * placed * above;
+        let above_turn = unit(above.to_scale_rotation_translation().1);
+        let local_turn = above_turn.inverse() * turn * above_turn;
+        let rest = skeleton.rest().local(joint);
+        ensure(tracks, Target::Translation(joint), &rest.translation.to_array());
+        ensure(tracks, Target::Rotation(joint), &rest.rotation.to_array());
+        for track in &mut tracks.tracks {
+            if track.target == Target::Translation(joint) {
+                let affine = local.translation.as_vec3().to_array();
+                let linear = |entry: &mut [f32]| {
+                    (local.matrix3 * Vec3::from_slice(entry).as_dvec3()).as_vec3().write_to_slice(entry);
+                };
+                track.map(linear, &affine);
+            } else if track.target == Target::Rotation(joint) && radians != 0.0 {
+                let linear = |entry: &mut [f32]| {
+                    (local_turn * Quat::from_slice(entry).as_dquat()).as_quat().write_to_slice(entry);
+                };
+                track.map(linear, &[]);
+            }
+        }
+    }
+}
+
+/// Returns the position of the character at the start of the clip.
+fn start(tracks: &Tracks, skeleton: &Skeleton) -> Option<DVec3> {
+    let joint = traveller(tracks, skeleton)?;
+    let clip = tracks.clone().build("", skeleton);
+    let (mut pose, mut world) = (skeleton.rest().clone(), Vec::new());
+    clip.sample(skeleton, 0.0, &mut SampleCursor::default(), &mut pose);
+    model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
+    Some(world[joint.get()].translation.as_dvec3())
+}
+
+/// Adds a track that holds the rest value, unless there is one for this target.
+fn ensure(tracks: &mut Tracks, target: Target, rest: &[f32]) {
+    if tracks.find(target).is_none() {
+        let (interpolation, times) = (Interpolation::Step, vec![0.0]);
+        tracks.tracks.push(Track { target, interpolation, times, width: rest.len(), values: rest.to_vec() });
+    }
+}

@@ -1,0 +1,140 @@
+//! One array: a `.npy` file.
+
+use crate::archive::damaged;
+
+/// Maximum count of numbers, which take 256 MiB as 64-bit floats, whatever their size in the file.
+const MAX_NUMBERS: usize = 1 << 25;
+
+/// An array of numbers with its first index varying slowest.
+pub struct Array {
+    pub name: String,
+    pub shape: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+impl Array {
+    pub fn read(name: &str, bytes: &[u8]) -> Result<Array, String> {
+        let (header, data) =
+            split(bytes).ok_or_else(|| damaged(name, "a NumPy header", &format!("{} other bytes", bytes.len())))?;
+        let kind = quoted(entry(header, "descr")).unwrap_or_default();
+        if kind.ends_with('O') {
+            return Err(format!(
+                "array \"{name}\" holds pickled Python objects, which are not read because they could run any code: expected \
+                 numbers. Load it in Python and save its numbers with numpy.savez."
+            ));
+        }
+        let number = Number::of(kind).ok_or_else(|| {
+            let found = if kind.is_empty() { "none" } else { kind };
+            format!(
+                "array \"{name}\": expected numbers (float, int or uint), found type {found}. Save it as numpy.float32."
+            )
+        })?;
+        let shape = shape(entry(header, "shape"))
+            .ok_or_else(|| damaged(name, "a shape", &header.chars().take(80).collect::<String>()))?;
+        let count = shape.iter().try_fold(1_usize, |count, &side| count.checked_mul(side));
+        if let Some(count) = count.filter(|&count| count > MAX_NUMBERS) {
+            return Err(format!(
+                "array \"{name}\" is too large: expected at most {MAX_NUMBERS} numbers, found {count}. Cut the motion into \
+                 several files."
+            ));
+        }
+        let bytes_expected = count.and_then(|count| count.checked_mul(number.size));
+        if bytes_expected != Some(data.len()) {
+            return Err(damaged(
+                name,
+                &format!("{shape:?} numbers of {} bytes", number.size),
+                &format!("{} bytes", data.len()),
+            ));
+        }
+        let mut values: Vec<f64> = data.chunks_exact(number.size).map(|bytes| number.read(bytes)).collect();
+        if entry(header, "fortran_order").starts_with("True") {
+            values = transposed(&values, &shape);
+        }
+        Ok(Array { name: name.to_owned(), shape, values })
+    }
+}
+
+/// Splits a `.npy` file into header and data.
+fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let (version, rest) = bytes.strip_prefix(b"\x93NUMPY")?.split_first_chunk::<2>()?;
+    let (length, rest) = if version[0] < 2 {
+        let (length, rest) = rest.split_first_chunk()?;
+        (usize::from(u16::from_le_bytes(*length)), rest)
+    } else {
+        let (length, rest) = rest.split_first_chunk()?;
+        (u32::from_le_bytes(*length) as usize, rest)
+    };
+    let (header, data) = rest.split_at_checked(length)?;
+    Some((std::str::from_utf8(header).ok()?, data))
+}
+
+/// Returns the text after a key of the header's dictionary, or none.
+fn entry<'a>(header: &'a str, key: &str) -> &'a str {
+    let after = ["'", "\""].iter().find_map(|quote| header.split_once(&format!("{quote}{key}{quote}")));
+    after.map_or("", |(_, value)| value.trim_start_matches([':', ' ']))
+}
+
+fn quoted(text: &str) -> Option<&str> {
+    let quote = text.chars().next().filter(|quote| matches!(quote, '\'' | '"'))?;
+    text[1..].split(quote).next()
+}
+
+/// `(100, 156)`, `(1,)` or `()`.
+fn shape(text: &str) -> Option<Vec<usize>> {
+    let (sides, _) = text.strip_prefix('(')?.split_once(')')?;
+    sides.split(',').map(str::trim).filter(|side| !side.is_empty()).map(|side| side.parse().ok()).collect()
+}
+
+/// A type of number.
+struct Number {
+    size: usize,
+    kind: u8,
+    is_big_endian: bool,
+}
+
+impl Number {
+    /// `<f8`: byte order, kind, size.
+    fn of(text: &str) -> Option<Number> {
+        let &[order, kind, size] = text.as_bytes() else { return None };
+        let size = usize::from(size.checked_sub(b'0')?);
+        let is_known = match kind {
+            b'f' => matches!(size, 4 | 8),
+            b'i' | b'u' => matches!(size, 1 | 2 | 4 | 8),
+            _ => false,
+        };
+        (is_known && b"<>|=".contains(&order)).then_some(Number { size, kind, is_big_endian: order == b'>' })
+    }
+
+    fn read(&self, bytes: &[u8]) -> f64 {
+        let mut word = [0; 8];
+        for (place, &byte) in bytes.iter().enumerate() {
+            word[if self.is_big_endian { self.size - 1 - place } else { place }] = byte;
+        }
+        let word = u64::from_le_bytes(word);
+        match self.kind {
+            b'f' if self.size == 4 => f64::from(f32::from_bits(word as u32)),
+            b'f' => f64::from_bits(word),
+            b'u' => word as f64,
+            _ => {
+                // Shifts the sign to the top and back.
+                let unused = 64 - 8 * self.size as u32;
+                ((word << unused) as i64 >> unused) as f64
+            }
+        }
+    }
+}
+
+/// Returns values whose first index varies fastest with the last index varying fastest.
+fn transposed(values: &[f64], shape: &[usize]) -> Vec<f64> {
+    let mut ordered = Vec::with_capacity(values.len());
+    for mut place in 0..values.len() {
+        let (mut from, mut stride) = (0, values.len());
+        for &side in shape.iter().rev() {
+            stride /= side;
+            from += place % side * stride;
+            place /= side;
+        }
+        ordered.push(values[from]);
+    }
+    ordered
+}

@@ -1,0 +1,245 @@
+//! `gaitway retarget` with `--out-dir`: many motions for one model in one process, on all cores. Each result is a line of JSON on
+//! standard output, printed as soon as it is written. A motion that fails doesn't end the run, and one whose output is newer than
+//! what it is made from is skipped.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::{IsTerminal, Write, stderr};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use serde_json::{Value, json};
+
+use super::RetargetArguments;
+use super::failure::{Failure, Outcome};
+use super::motion::{open_map, read_motion};
+use super::output::{print_error, print_json};
+use super::retarget::{Made, clip_file, make};
+use super::{inputs, open};
+use crate::editor::{ClipFormat, OpenedMap};
+use crate::files::{Disk, Opened, save_file};
+
+/// Shortest time between two updates of the progress.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// A motion and the file to write.
+struct Job {
+    motion: PathBuf,
+    out: PathBuf,
+}
+
+/// Shared by all jobs.
+struct Batch<'a> {
+    arguments: &'a RetargetArguments,
+    opened: Opened,
+    map: Option<OpenedMap>,
+    format: ClipFormat,
+    /// The files of the model and the map.
+    shared_files: Vec<PathBuf>,
+}
+
+pub(super) fn run(arguments: &RetargetArguments, folder: &Path, disk: &Disk) -> Outcome {
+    let opened = open(std::slice::from_ref(&arguments.model), disk)?;
+    let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
+    let format = arguments.format.map_or(ClipFormat::Glb, Into::into);
+    let jobs = jobs(&arguments.motion, folder, format)?;
+    refuse_inputs(&jobs, disk)?;
+    let batch = Batch { arguments, opened, map, format, shared_files: disk.files_read() };
+    let workers = arguments.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let progress = Progress::new(jobs.len());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let (line, outcome) = batch.line(job);
+            progress.done(&line, outcome);
+        }
+    };
+    std::thread::scope(|scope| {
+        (1..workers.min(jobs.len())).for_each(|_| drop(scope.spawn(work)));
+        work();
+    });
+    progress.finish()
+}
+
+/// How a job ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ended {
+    Written,
+    Skipped,
+    Failed,
+}
+
+impl Batch<'_> {
+    /// Does a job and returns its line.
+    fn line(&self, job: &Job) -> (Value, Ended) {
+        let name = |path: &Path| path.display().to_string();
+        let mut line = json!({ "motion": name(&job.motion), "out": name(&job.out) });
+        if self.is_up_to_date(job) {
+            line["skipped"] = json!("the output is newer than the motion, the model and the map");
+            return (line, Ended::Skipped);
+        }
+        match self.write(job) {
+            Ok(made) => {
+                for (key, value) in summary(made.document) {
+                    line[key] = value;
+                }
+                (line, Ended::Written)
+            }
+            Err(failure) => {
+                line["error"] = json!(failure);
+                (line, Ended::Failed)
+            }
+        }
+    }
+
+    /// Whether the output is newer than all that it is made from. A file whose time is unknown, such as a member of an
+    /// archive, may have changed.
+    fn is_up_to_date(&self, job: &Job) -> bool {
+        let Some(written) = modified(&job.out) else { return false };
+        let mut inputs = self.shared_files.iter().chain([&job.motion]);
+        inputs.all(|path| modified(path).is_some_and(|changed| changed < written))
+    }
+
+    fn write(&self, job: &Job) -> Outcome<Made> {
+        let motion = read_motion(&job.motion, &Disk::default())?;
+        let made = make(self.arguments, &self.opened.model, &motion, self.map.as_ref())?;
+        let bytes = clip_file(&self.opened, &made, self.arguments.clip_only, self.format)?;
+        if let Some(folder) = job.out.parent() {
+            fs::create_dir_all(folder)
+                .map_err(|error| Failure::new(crate::files::describe(&error)).in_file(folder.display()))?;
+        }
+        save_file(&job.out, &bytes, &[])?;
+        Ok(made)
+    }
+}
+
+fn modified(path: &Path) -> Option<SystemTime> {
+    fs::metadata(path).ok()?.modified().ok()
+}
+
+/// Reduces the document of a single motion to a line: joints are counted instead of listed.
+fn summary(mut document: Value) -> Vec<(&'static str, Value)> {
+    let counted = ["mapped", "unmapped_targets", "unused_sources", "resampled_joints"];
+    let kept = [
+        "clip",
+        "duration_secs",
+        "hips_scale",
+        "keys_in",
+        "keys_out",
+        "figures",
+        "planting",
+        "motion_rest",
+        "changed",
+        "warnings",
+    ];
+    let count = |key: &'static str| (key, json!(document[key].as_array().map_or(0, Vec::len)));
+    let mut summary: Vec<(&'static str, Value)> = counted.into_iter().map(count).collect();
+    summary.extend(kept.into_iter().map(|key| (key, document[key].take())));
+    summary
+}
+
+/// Finds the motions and their outputs; files in a folder keep their relative paths.
+fn jobs(paths: &[PathBuf], folder: &Path, format: ClipFormat) -> Outcome<Vec<Job>> {
+    let mut jobs = Vec::new();
+    let mut origins: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
+    for inputs::Input { file, relative } in inputs::motions(paths, folder)? {
+        let out = folder.join(relative.with_extension(format.extension()));
+        if let Some(other) = origins.insert(out.clone(), file.clone()) {
+            if other == file {
+                continue;
+            }
+            let problem = format!("{} and {} would both become {}", other.display(), file.display(), out.display());
+            return Err(Failure::new(problem).with_hint("retarget them to different folders"));
+        }
+        jobs.push(Job { motion: file, out });
+    }
+    Ok(jobs)
+}
+
+/// Refuses outputs that are inputs, before anything is written.
+fn refuse_inputs(jobs: &[Job], disk: &Disk) -> Outcome {
+    let motions = jobs.iter().map(|job| job.motion.clone());
+    let inputs: BTreeSet<PathBuf> =
+        disk.files_read().into_iter().chain(motions).filter_map(|path| fs::canonicalize(path).ok()).collect();
+    let is_input = |job: &&Job| fs::canonicalize(&job.out).is_ok_and(|path| inputs.contains(&path));
+    match jobs.iter().find(is_input) {
+        Some(job) => Err(Failure::new("this output is one of the inputs").in_file(job.out.display())),
+        None => Ok(()),
+    }
+}
+
+/// Prints the lines and, on a terminal, the progress.
+struct Progress {
+    total: usize,
+    start: Instant,
+    is_shown: bool,
+    state: Mutex<ProgressState>,
+}
+
+struct ProgressState {
+    written: usize,
+    skipped: usize,
+    failed: usize,
+    drawn: Option<Instant>,
+    /// Standard output is closed or full.
+    broken: Option<Failure>,
+}
+
+impl Progress {
+    fn new(total: usize) -> Self {
+        let state = ProgressState { written: 0, skipped: 0, failed: 0, drawn: None, broken: None };
+        Self { total, start: Instant::now(), is_shown: stderr().is_terminal(), state: Mutex::new(state) }
+    }
+
+    fn done(&self, line: &Value, ended: Ended) {
+        let Ok(mut state) = self.state.lock() else { return };
+        match ended {
+            Ended::Written => state.written += 1,
+            Ended::Skipped => state.skipped += 1,
+            Ended::Failed => state.failed += 1,
+        }
+        self.clear_line();
+        if let Err(failure) = print_json(line) {
+            state.broken.get_or_insert(failure);
+        }
+        if self.is_shown && state.drawn.is_none_or(|drawn| drawn.elapsed() >= PROGRESS_INTERVAL) {
+            state.drawn = Some(Instant::now());
+            let _ = write!(stderr(), "{}", self.text(&state));
+        }
+    }
+
+    fn clear_line(&self) {
+        if self.is_shown {
+            let _ = write!(stderr(), "\r\x1b[K");
+        }
+    }
+
+    /// Formats how many motions are done, the rate, and the time left.
+    fn text(&self, state: &ProgressState) -> String {
+        let done = state.written + state.skipped + state.failed;
+        let secs = self.start.elapsed().as_secs_f64().max(1e-3);
+        // Skipping takes no time.
+        let rate = (state.written + state.failed) as f64 / secs;
+        let left =
+            if rate > 0.0 { format!(", {:.0} s left", (self.total - done) as f64 / rate) } else { String::new() };
+        format!("\r\x1b[K{done} of {}, {rate:.1} per second{left}", self.total)
+    }
+
+    fn finish(self) -> Outcome {
+        self.clear_line();
+        let secs = self.start.elapsed().as_secs_f64();
+        let Ok(state) = self.state.into_inner() else { return Ok(()) };
+        let ProgressState { written, skipped, failed, broken, .. } = state;
+        print_error(&format!("{written} written, {skipped} skipped, {failed} failed in {secs:.1} s"));
+        if let Some(failure) = broken {
+            return Err(failure);
+        }
+        if failed > 0 {
+            return Err(Failure::new(format!("{failed} of {} motions failed; their lines say why", self.total)));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip. Mirroring comes first
+//! whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
+
+use percent_encoding::percent_decode_str;
+
+use super::values::{escaped_name, finite};
+use super::{Read, Written};
+use crate::anim::TimeRange;
+use crate::retarget::ClipChanges;
+use crate::state::ViewerState;
+
+pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
+    match clip_name(text) {
+        Some(name) => {
+            state.edits.clips.entry(name).or_default().mirror = true;
+            Read::Done
+        }
+        None => Read::Bad("a clip's name or index"),
+    }
+}
+
+pub(super) fn write_mirror(state: &ViewerState) -> Written {
+    let mirrored = state.edits.clips.iter().filter(|(_, changes)| changes.mirror);
+    Written::List(mirrored.map(|(name, _)| escaped_name(name)).collect())
+}
+
+pub(super) fn reset_mirror(state: &mut ViewerState) {
+    reset(state, |changes| changes.mirror = false);
+}
+
+pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
+    match read(text) {
+        Some((name, changes)) => {
+            let clips = &mut state.edits.clips;
+            let mirror = clips.get(&name).is_some_and(|before| before.mirror);
+            clips.insert(name, ClipChanges { mirror, ..changes });
+            clips.retain(|_, changes| !changes.is_none());
+            Read::Done
+        }
+        None => Read::Bad("a clip and its changes: Walk:trim:0.5:1.5,reverse,speed:2,loop:0.2,offset:1:0,turn:90"),
+    }
+}
+
+pub(super) fn write_change(state: &ViewerState) -> Written {
+    let texts = state.edits.clips.iter().filter_map(|(name, changes)| {
+        let text = words(changes).join(",");
+        (!text.is_empty()).then(|| format!("{}:{text}", escaped_name(name)))
+    });
+    Written::List(texts.collect())
+}
+
+pub(super) fn reset_change(state: &mut ViewerState) {
+    reset(state, |changes| *changes = ClipChanges { mirror: changes.mirror, ..ClipChanges::default() });
+}
+
+fn reset(state: &mut ViewerState, one: fn(&mut ClipChanges)) {
+    state.edits.clips.values_mut().for_each(one);
+    state.edits.clips.retain(|_, changes| !changes.is_none());
+}
+
+fn clip_name(text: &str) -> Option<String> {
+    let name = percent_decode_str(text).decode_utf8().ok()?.into_owned();
+    (!name.is_empty()).then_some(name)
+}
+
+fn words(changes: &ClipChanges) -> Vec<String> {
+    let mut words = Vec::new();
+    if let Some(TimeRange { start_secs, end_secs }) = changes.trim {
+        words.push(format!("trim:{start_secs}:{end_secs}"));
+    }
+    if changes.reverse {
+        words.push("reverse".to_owned());
+    }
+    if changes.speed != 1.0 {
+        words.push(format!("speed:{}", changes.speed));
+    }
+    if let Some(secs) = changes.loop_secs {
+        words.push(format!("loop:{secs}"));
+    }
+    if changes.offset != [0.0; 2] {
+        let [x, z] = changes.offset;
+        words.push(format!("offset:{x}:{z}"));
+    }
+    if changes.turn_degrees != 0.0 {
+        words.push(format!("turn:{}", changes.turn_degrees));
+    }
+    words
+}
+
+fn read(text: &str) -> Option<(String, ClipChanges)> {
+    let (name, words) = text.split_once(':')?;
+    let mut changes = ClipChanges::default();
+    for word in words.split(',') {
+        let mut parts = word.split(':').map(str::trim);
+        let (kind, numbers) = (parts.next()?, parts.map(finite).collect::<Option<Vec<f64>>>()?);
+        match (kind, &numbers[..]) {
+            ("trim", &[start_secs, end_secs]) => changes.trim = Some(TimeRange { start_secs, end_secs }),
+            ("reverse", []) => changes.reverse = true,
+            ("speed", &[speed]) => changes.speed = speed,
+            ("loop", &[secs]) => changes.loop_secs = Some(secs),
+            ("offset", &[x, z]) => changes.offset = [x, z],
+            ("turn", &[degrees]) => changes.turn_degrees = degrees,
+            _ => return None,
+        }
+    }
+    Some((clip_name(name)?, changes))
+}

@@ -1,0 +1,78 @@
+//! Edits of the current clip: a section of the Motion tab or, if no motion is borrowed, of the Display tab.
+
+use egui::Ui;
+
+use super::widgets::controls::{self, SliderSettings, capitals};
+use super::{Output, Shown, text};
+use crate::retarget::ClipChanges;
+use crate::state::{Command, active_clip, changes_of};
+
+const SPEED: SliderSettings = SliderSettings {
+    range: (ClipChanges::MIN_SPEED, ClipChanges::MAX_SPEED),
+    default: ClipChanges::NONE.speed,
+    decimals: 2,
+    suffix: " ×",
+    logarithmic: true,
+};
+// These sliders span what is common. Values beyond, up to the limits of `ClipChanges`, come from links.
+const BLEND: SliderSettings =
+    SliderSettings { range: (0.0, 2.0), default: DEFAULT_BLEND_SECS, decimals: 2, suffix: " s", logarithmic: false };
+const TURN: SliderSettings =
+    SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
+const OFFSET: SliderSettings =
+    SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 2, suffix: " m", logarithmic: false };
+const DEFAULT_BLEND_SECS: f64 = 0.2;
+
+/// Shows the section, unless the model is in its rest pose.
+pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let Some(model) = shown.library.active() else { return };
+    let Some(clip) = active_clip(model, shown.state) else { return };
+    let before = changes_of(model, shown.state, clip);
+    let mut changes = before.clone();
+    controls::section(ui, capitals!(text::CHANGE_CLIP));
+    changes.mirror ^= controls::switch(ui, text::MIRROR, changes.mirror);
+    changes.reverse ^= controls::switch(ui, text::BACKWARDS, changes.reverse);
+    trim(ui, shown, &mut changes);
+    if controls::switch(ui, text::MAKE_LOOP, changes.loop_secs.is_some()) {
+        changes.loop_secs = if changes.loop_secs.is_some() { None } else { Some(DEFAULT_BLEND_SECS) };
+    }
+    if let Some(secs) = changes.loop_secs {
+        changes.loop_secs = controls::slider(ui, text::BLEND, secs, BLEND).or(changes.loop_secs);
+        if let Some(seam) = model.changed_clip(clip).and_then(|changed| changed.seam) {
+            controls::hint(ui, text::seam(seam));
+        }
+    }
+    let slide = |ui: &mut Ui, label: &str, value: &mut f64, settings| {
+        if let Some(new) = controls::slider(ui, label, *value, settings) {
+            *value = new;
+        }
+    };
+    slide(ui, text::BAKED_SPEED, &mut changes.speed, SPEED);
+    slide(ui, text::TURN_PATH, &mut changes.turn_degrees, TURN);
+    slide(ui, text::MOVE_X, &mut changes.offset[0], OFFSET);
+    slide(ui, text::MOVE_Z, &mut changes.offset[1], OFFSET);
+    if !changes.is_none() && ui.button(text::RESET_CHANGES).clicked() {
+        changes = ClipChanges::default();
+    }
+    if changes != before {
+        out.commands.push(Command::ChangeClip { clip, changes: Box::new(changes) });
+    }
+}
+
+/// A button that keeps only what is between the in and out points, then one that restores the whole clip.
+fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) {
+    if changes.trim.is_some() {
+        if ui.button(text::UNDO_TRIM).clicked() {
+            changes.trim = None;
+        }
+        return;
+    }
+    // The range is then not in the time of the original clip.
+    let is_timed = changes.reverse || changes.speed != 1.0;
+    let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
+    let button = ui.add_enabled(range.is_some(), egui::Button::new(text::TRIM_TO_RANGE));
+    let hint = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
+    if button.on_disabled_hover_text(hint).clicked() {
+        changes.trim = range;
+    }
+}

@@ -1,0 +1,174 @@
+// The page without a pointer: by keyboard, and by what browsers tell assistive technology.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { after, before, describe, test } from "node:test";
+import { skipWithoutData } from "../three/data.mjs";
+import { BACK_ENDS, control, eventually, fragment, startSite, until, whenBorrowed, whenModel } from "./browser.mjs";
+
+const SOLDIER = "threejs/Soldier.glb";
+const WALK = "bvh/cmu_01_01.bvh";
+const AXE = fs.readFileSync(new URL("../../node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
+
+/** @typedef {import("./browser.mjs").TestPage} TestPage */
+
+/** @param {TestPage} page */
+const whenMirrored = (page) => page.locator("#mirror button").first().waitFor({ state: "attached" });
+
+/**
+ * Returns the ids of the panels' controls, in reading order. Those of a list count as one: its arrow keys lead to them.
+ * @param {TestPage} page
+ */
+const controlIds = (page) =>
+  page.evaluate(() => {
+    /** @type {Map<Element, string[]>} */
+    const ids = new Map();
+    for (const control of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#mirror :is(button, input, [tabindex])"))) {
+      const place = control.closest("[role=tablist], [role=tree], [role=radiogroup], [role=grid]") ?? control;
+      ids.set(place, [...(ids.get(place) ?? []), control.dataset.id ?? ""]);
+    }
+    return [...ids.values()];
+  });
+
+/**
+ * Returns the name and id of the focused element, whether its ring is visible, and whether it is one of the panels' controls.
+ * @param {TestPage} page
+ */
+const focused = (page) =>
+  page.evaluate(() => {
+    const element = document.activeElement;
+    if (!(element instanceof HTMLElement) || element === document.body) return null;
+    const { width, height } = element.getBoundingClientRect();
+    return {
+      name: element.getAttribute("aria-label") ?? element.textContent?.trim() ?? "",
+      isSeen: element.matches(":focus-visible") && getComputedStyle(element).outlineStyle !== "none" && width > 0 && height > 0,
+      isMirrored: element.closest("#mirror") !== null,
+      id: element.dataset.id ?? "",
+    };
+  });
+
+/**
+ * Presses Tab until this has the keyboard.
+ * @param {TestPage} page
+ * @param {RegExp} name
+ */
+async function tabTo(page, name) {
+  for (let press = 0; press < 200; press++) {
+    await page.keyboard.press("Tab");
+    if (name.test((await focused(page))?.name ?? "")) return;
+  }
+  assert.fail(`Tab doesn't lead to ${name}`);
+}
+
+/**
+ * Types a URL into the dialog for opening.
+ * @param {TestPage} page
+ * @param {string} url
+ */
+async function typeUrl(page, url) {
+  await page.locator("#open").waitFor({ state: "visible" });
+  for (let press = 0; press < 20 && !(await page.locator("#open-url").evaluate((field) => field === document.activeElement)); press++) await page.keyboard.press("Tab");
+  await page.keyboard.type(url);
+  await page.keyboard.press("Enter");
+}
+
+for (const renderer of BACK_ENDS)
+  describe(`keyboard and assistive technology on ${renderer}`, { skip: skipWithoutData }, () => {
+    /** @type {import("./browser.mjs").Site} */
+    let site;
+    before(async () => (site = await startSite()));
+    after(async () => await site?.close());
+
+    /**
+     * @param {string} name
+     * @param {() => string} link
+     * @param {(page: TestPage) => Promise<void>} body
+     */
+    const onPage = (name, link, body) =>
+      test(name, async () => {
+        const page = await site.page({ renderer, link: link(), viewport: { width: 1440, height: 900 } });
+        try {
+          await whenMirrored(page);
+          await body(page);
+          assert.deepEqual(page.troubles, []);
+        } finally {
+          await page.finish();
+        }
+      });
+
+    onPage("Tab visits every control once, shows where it is, and leaves the page", () => "play=0", async (page) => {
+      await page.locator("canvas").focus();
+      /** @type {{ name: string, id: string }[]} */
+      const visited = [];
+      for (let press = 0; press < 300; press++) {
+        await page.keyboard.press("Tab");
+        const at = await focused(page);
+        if (at === null || !at.isMirrored) break;
+        assert.ok(at.isSeen, `no focus ring on ${at.name}`);
+        visited.push(at);
+      }
+      const controls = await controlIds(page);
+      const places = visited.map(({ id }) => controls.findIndex((ids) => ids.includes(id)));
+      const names = visited.map(({ name }) => name);
+      assert.equal(await page.locator("#mirror").evaluate((mirror) => mirror.scrollTop), 0, "the rings are over the controls");
+      assert.deepEqual(places, [...controls.keys()], `each control once, in order: ${names.join(", ")}`);
+      for (const name of [/^Play/, /^Time/, /Open/, /Share/]) assert.ok(names.some((stop) => name.test(stop)), `${name} in ${names.join(", ")}`);
+      await page.locator("canvas").focus();
+      await page.keyboard.press("Shift+Tab");
+      assert.equal((await focused(page))?.isMirrored, true, "backwards, too");
+    });
+
+    onPage("a character is opened, walks, and is shared without a pointer", () => "play=0", async (page) => {
+      await page.keyboard.press("Control+o");
+      await typeUrl(page, site.data(SOLDIER));
+      await whenModel(page, site.data(SOLDIER));
+      await tabTo(page, /^Borrow/);
+      await page.keyboard.press("Enter");
+      await typeUrl(page, site.data(WALK));
+      await whenBorrowed(page, 1);
+      await tabTo(page, /^Time$/);
+      await page.keyboard.press("Home");
+      await until(page, async () => (await window.gaitway.state()).t === 0);
+      await page.keyboard.press("ArrowRight");
+      await until(page, async () => (await window.gaitway.state()).t > 0);
+      await tabTo(page, /^Play$/);
+      await page.keyboard.press("Enter");
+      await until(page, async () => (await window.gaitway.state()).play);
+      await tabTo(page, /^Export/);
+      await page.keyboard.press("Enter");
+      await until(page, () => /\.glb|PNG|clip/i.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+      await page.keyboard.press("Escape");
+      await until(page, () => /^Export/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+      await tabTo(page, /^Share/);
+      await page.keyboard.press("Enter");
+      await page.locator("#share").waitFor({ state: "visible" });
+      const link = await page.locator("#share-link").inputValue();
+      assert.match(link, /model=.*Soldier\.glb.*motion=.*cmu_01_01\.bvh/);
+    });
+
+    onPage("the panels are read and operated through the mirror", () => fragment([["model", site.data(SOLDIER)], ["motion", site.data(WALK)], ["play", 0]]), async (page) => {
+      await control(page, "tab", "Scene").press("Enter");
+      await eventually(async () => (await control(page, "tab", "Scene").getAttribute("aria-selected")) === "true");
+      const joint = control(page, "treeitem", /Hips/);
+      await joint.press("Enter");
+      await until(page, async () => (await window.gaitway.state()).joint !== null);
+      // Arrow keys move the program's focus, and the keyboard follows.
+      await control(page, "tab", "Scene").press("ArrowRight");
+      await until(page, () => document.activeElement?.getAttribute("aria-label") === "Display");
+      await control(page, "tab", "Camera").press("Enter");
+      const exposure = control(page, "slider", /Exposure/);
+      await exposure.press("ArrowRight");
+      await until(page, async () => (await window.gaitway.state()).exposure !== 0);
+      await eventually(async () => Number(await exposure.inputValue()) !== 0);
+      await control(page, "slider", "Time").fill("0.5");
+      await until(page, async () => Math.abs((await window.gaitway.state()).t - 0.5) < 0.02);
+    });
+
+    onPage("axe finds nothing wrong", () => fragment([["model", site.data(SOLDIER)], ["motion", site.data(WALK)], ["play", 0]]), async (page) => {
+      for (const tab of ["Scene", "Display", "Info", "Camera", "Motion"]) {
+        await control(page, "tab", tab).press("Enter");
+        await eventually(async () => (await control(page, "tab", tab).getAttribute("aria-selected")) === "true");
+        const violations = await page.evaluate(`${AXE}; axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) => violations.map(({ id, nodes }) => id + ": " + nodes.slice(0, 3).map(({ html }) => html).join(" ")))`);
+        assert.deepEqual(violations, [], tab);
+      }
+    });
+  });

@@ -1,0 +1,290 @@
+//! Laws of changed clips: at any time, and not only at keys.
+
+use gaitway::anim::{
+    Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, SampleCursor, TimeRange, Transform,
+};
+use gaitway::asset::{Asset, AssetParts, Slot};
+use gaitway::avatar::{Avatar, Expression};
+use gaitway::retarget::{ChangedClip, ClipChanges, Symmetry, change_clip, recognize};
+use glam::{DQuat, DVec3, Quat, Vec3};
+
+use crate::figure::{Figure, Rig, build};
+use crate::laws::degrees;
+
+const KINDS: [Interpolation; 3] = [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline];
+const NONE: ClipChanges = ClipChanges::NONE;
+
+fn dancer(interpolation: Interpolation) -> Figure {
+    let mut figure = build(&Rig { axes: 3, armature: true, ..Rig::default() });
+    figure.dance(5, 60.0, interpolation);
+    figure
+}
+
+fn symmetry(asset: &Asset) -> Symmetry {
+    Symmetry::of(asset, &recognize(asset))
+}
+
+fn changed(figure: &Figure, clip: &Clip, changes: &ClipChanges) -> ChangedClip {
+    change_clip(&figure.asset, clip, changes, || symmetry(&figure.asset))
+}
+
+/// Rotations and positions of all joints in model space agree.
+fn check_same(figure: &Figure, one: (&Clip, f32), other: (&Clip, f32), tolerance: f64) {
+    let (one, other) = (figure.world(one.0, one.1), figure.world(other.0, other.1));
+    for (joint, (a, b)) in one.iter().zip(&other).enumerate() {
+        assert!(a.1.distance(b.1) < tolerance, "joint {joint}: {} and {}", a.1, b.1);
+        assert!(degrees(a.0, b.0).to_radians() < 10.0 * tolerance, "joint {joint}: {} apart", degrees(a.0, b.0));
+    }
+}
+
+/// Between the keys of any channel.
+fn times(clip: &Clip) -> impl Iterator<Item = f32> + use<> {
+    let duration_secs = clip.duration_secs();
+    (1..40).map(move |step| duration_secs * (step as f32 + 0.37) / 41.0)
+}
+
+fn key_count(clip: &Clip) -> usize {
+    clip.channels().iter().map(|channel| clip.timelines()[channel.timeline as usize].len()).sum()
+}
+
+#[test]
+fn mirrored_twice_is_the_clip() {
+    let mirror = ClipChanges { mirror: true, ..NONE };
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let once = changed(&figure, clip, &mirror).clip;
+        let twice = changed(&figure, &once, &mirror).clip;
+        assert_eq!((key_count(&once), key_count(&twice)), (key_count(clip), key_count(clip)));
+        for time in times(clip) {
+            check_same(&figure, (clip, time), (&twice, time), 1e-6 * 1.7);
+        }
+    }
+}
+
+/// Every joint is where the one on the other side was, across the plane X = 0.
+#[test]
+fn a_mirrored_clip_is_seen_in_a_mirror() {
+    let reflect = |at: DVec3| DVec3::new(-at.x, at.y, at.z);
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let mirrored = changed(&figure, clip, &ClipChanges { mirror: true, ..NONE }).clip;
+        let mut moved = 0.0_f64;
+        for time in times(clip) {
+            let (before, after) = (figure.world(clip, time), figure.world(&mirrored, time));
+            for (&slot, &joint) in &figure.slots.0 {
+                let Some(other) = figure.slots.joint(slot.mirrored()) else { continue };
+                let (expected, found) = (reflect(before[joint.get()].1), after[other.get()].1);
+                assert!(expected.distance(found) < 1e-5, "{slot:?} at {time}: {found} instead of {expected}");
+                moved = moved.max(before[other.get()].1.distance(found));
+            }
+        }
+        assert!(moved > 0.2, "the dance isn't symmetric");
+    }
+}
+
+#[test]
+fn mirroring_swaps_expressions_and_the_gaze() {
+    let names = ["blinkLeft", "blinkRight", "happy"];
+    let expressions = names.map(|name| Expression::new(name, name, true)).to_vec();
+    let parts = AssetParts { avatar: Avatar { expressions, ..Avatar::default() }, ..AssetParts::default() };
+    let asset = Asset::new(parts).expect("is valid");
+    let mut builder = ClipBuilder::new("", &asset.skeleton);
+    for (index, weight) in [(0, 0.25), (2, 0.5)] {
+        builder
+            .property(PropertyTarget::Expression(index), Interpolation::Linear, &[0.0], vec![weight])
+            .expect("valid");
+    }
+    builder.property(PropertyTarget::LookAt, Interpolation::Linear, &[0.0], vec![10.0, 20.0]).expect("valid");
+    let mirror = ClipChanges { mirror: true, ..NONE };
+    let clip = change_clip(&asset, &builder.build(), &mirror, || symmetry(&asset)).clip;
+    let found: Vec<(PropertyTarget, Vec<f32>)> =
+        clip.properties().iter().map(|channel| (channel.target, channel.values.clone())).collect();
+    let expected = [
+        (PropertyTarget::Expression(1), vec![0.25]),
+        (PropertyTarget::Expression(2), vec![0.5]),
+        (PropertyTarget::LookAt, vec![-10.0, 20.0]),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_trimmed_clip_is_a_part_of_the_clip() {
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let (start, end) = (0.31 * clip.duration_secs(), 0.74 * clip.duration_secs());
+        let trim = Some(TimeRange { start_secs: start.into(), end_secs: end.into() });
+        let part = changed(&figure, clip, &ClipChanges { trim, ..NONE }).clip;
+        assert!((part.duration_secs() - (end - start)).abs() < 1e-6);
+        for time in times(&part) {
+            check_same(&figure, (clip, start + time), (&part, time), 1e-5);
+        }
+        let beyond = Some(TimeRange { start_secs: -1.0, end_secs: 99.0 });
+        let all = changed(&figure, clip, &ClipChanges { trim: beyond, ..NONE }).clip;
+        assert_eq!((key_count(&all), all.duration_secs()), (key_count(clip), clip.duration_secs()));
+    }
+}
+
+#[test]
+fn a_reversed_clip_runs_backwards_and_twice_forwards() {
+    let reverse = ClipChanges { reverse: true, ..NONE };
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let once = changed(&figure, clip, &reverse).clip;
+        let twice = changed(&figure, &once, &reverse).clip;
+        assert_eq!(once.duration_secs(), clip.duration_secs());
+        if kind != Interpolation::Step {
+            assert_eq!(key_count(&once), key_count(clip));
+        }
+        for time in times(clip) {
+            check_same(&figure, (clip, clip.duration_secs() - time), (&once, time), 1e-5);
+            check_same(&figure, (clip, time), (&twice, time), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn speed_stretches_time() {
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let fast = changed(&figure, clip, &ClipChanges { speed: 1.7, ..NONE }).clip;
+        assert!((fast.duration_secs() * 1.7 - clip.duration_secs()).abs() < 1e-5);
+        assert_eq!(key_count(&fast), key_count(clip));
+        for time in times(&fast) {
+            check_same(&figure, (clip, time * 1.7), (&fast, time), 2e-5);
+        }
+    }
+}
+
+#[test]
+fn a_path_is_turned_and_moved_as_a_whole() {
+    for kind in KINDS {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let changes = ClipChanges { offset: [1.5, -0.5], turn_degrees: 70.0, ..NONE };
+        let placed = changed(&figure, clip, &changes).clip;
+        let hips = figure.slots.joint(Slot::Hips).expect("hips").get();
+        let start = figure.world(clip, 0.0)[hips].1;
+        let turn = DQuat::from_rotation_y(70_f64.to_radians());
+        for time in times(clip) {
+            let (before, after) = (figure.world(clip, time), figure.world(&placed, time));
+            for joint in figure.slots.0.values().map(|joint| joint.get()) {
+                let expected = start + turn * (before[joint].1 - start) + DVec3::new(1.5, 0.0, -0.5);
+                assert!(expected.distance(after[joint].1) < 1e-5, "{} instead of {expected}", after[joint].1);
+                assert!(degrees(turn * before[joint].0, after[joint].0) < 1e-3);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_loop_meets_itself_and_leaves_the_middle_alone() {
+    for kind in [Interpolation::Linear, Interpolation::CubicSpline] {
+        let figure = dancer(kind);
+        let clip = &figure.asset.clips[0];
+        let secs = 0.2 * clip.duration_secs();
+        let ChangedClip { clip: looped, seam } =
+            changed(&figure, clip, &ClipChanges { loop_secs: Some(secs.into()), ..NONE });
+        let seam = seam.expect("is measured");
+        assert!(seam.degrees_max > 1.0, "{seam:?}");
+        let end = looped.duration_secs();
+        assert_eq!(end, clip.duration_secs());
+        let hips = figure.slots.joint(Slot::Hips).expect("hips").get();
+        let (first, last) = (figure.world(&looped, 0.0), figure.world(&looped, end));
+        let travel = last[hips].1 - first[hips].1;
+        assert!(travel.y.abs() < 1e-5, "{travel}");
+        assert!((DVec3::new(travel.x, 0.0, travel.z).length() - seam.travel_metres).abs() < 1e-4, "{travel} {seam:?}");
+        for time in times(clip).filter(|&time| time > secs && time < end - secs) {
+            check_same(&figure, (clip, time), (&looped, time), 1e-5);
+        }
+        let again = changed(&figure, &looped, &ClipChanges { loop_secs: Some(0.1), ..NONE }).seam.expect("is measured");
+        assert!(again.degrees_max < 0.1 && again.metres < 1e-5, "{again:?}");
+    }
+}
+
+/// A joint that turns by 30° and a root that stays: the ends meet at 15°, and nothing jumps on the way.
+#[test]
+fn a_seam_is_measured_and_shared() {
+    let joints = vec![
+        Joint { name: "root".to_owned(), rest: Transform::from_translation(Vec3::Y), ..Joint::default() },
+        Joint { name: "arm".to_owned(), parent: Some(0), ..Joint::default() },
+    ];
+    let asset = crate::skeletons::asset(joints);
+    let mut builder = ClipBuilder::new("", &asset.skeleton);
+    let turn = |angle: f32| Quat::from_rotation_z(angle.to_radians());
+    let keys = Keys::Rotation(vec![turn(0.0), turn(30.0)]);
+    builder.channel(JointIndex(1), Interpolation::Linear, &[0.0, 2.0], keys).expect("valid");
+    let keys = Keys::Translation(vec![Vec3::Y, Vec3::new(0.03, 1.04, 0.0)]);
+    builder.channel(JointIndex(0), Interpolation::Linear, &[0.0, 2.0], keys).expect("valid");
+    let clip = builder.build();
+    let changes = ClipChanges { loop_secs: Some(0.5), ..NONE };
+    let ChangedClip { clip: looped, seam } = change_clip(&asset, &clip, &changes, || symmetry(&asset));
+    let seam = seam.expect("is measured");
+    assert!((seam.degrees_max - 30.0).abs() < 1e-3 && (seam.metres - 0.05).abs() < 1e-6, "{seam:?}");
+    assert_eq!(seam.travel_metres, 0.0);
+    let at = |time: f32| {
+        let mut pose = asset.skeleton.rest().clone();
+        looped.sample(&asset.skeleton, time, &mut SampleCursor::default(), &mut pose);
+        (pose.local(JointIndex(0)).translation, pose.local(JointIndex(1)).rotation)
+    };
+    let ((start, first), (end, last)) = (at(0.0), at(2.0));
+    assert!(start.distance(end) < 1e-6 && first.angle_between(last) < 1e-3);
+    assert!((first.angle_between(turn(15.0))) < 1e-3);
+    for step in 0..200 {
+        let (before, after) = (at(step as f32 * 0.01).1, at((step + 1) as f32 * 0.01).1);
+        assert!(before.angle_between(after).to_degrees() < 0.7, "{step}");
+    }
+}
+
+/// What counts as travel depends on the height of the character; its root may lie on the ground.
+#[test]
+fn drift_of_a_root_on_the_ground_is_not_travel() {
+    let joints = vec![
+        Joint { name: "root".to_owned(), ..Joint::default() },
+        Joint {
+            name: "head".to_owned(),
+            parent: Some(0),
+            rest: Transform::from_translation(2.0 * Vec3::Y),
+            ..Joint::default()
+        },
+        // Not a part of the character.
+        Joint { name: "lamp".to_owned(), rest: Transform::from_translation(9.0 * Vec3::Y), ..Joint::default() },
+    ];
+    let asset = crate::skeletons::asset(joints);
+    for (metres, text) in [
+        (0.25, "0.0° and 25.0 cm apart"),
+        (0.35, "0.0° and 0.0 cm apart, not counting 0.35 m of travel"),
+        (-0.35, "0.0° and 0.0 cm apart, not counting 0.35 m of travel"),
+    ] {
+        let mut builder = ClipBuilder::new("", &asset.skeleton);
+        let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::X * metres]);
+        builder.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("valid");
+        let changes = ClipChanges { loop_secs: Some(0.2), ..NONE };
+        let seam = change_clip(&asset, &builder.build(), &changes, || unreachable!("isn't mirrored")).seam;
+        assert_eq!(seam.expect("is measured").to_string(), text);
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_clamped() {
+    let wild = ClipChanges {
+        speed: f64::NAN,
+        loop_secs: Some(1e9),
+        offset: [f64::INFINITY, -1e9],
+        turn_degrees: 1e9,
+        trim: Some(TimeRange { start_secs: f64::NAN, end_secs: 1.0 }),
+        ..NONE
+    };
+    let clamped = ClipChanges { loop_secs: Some(10.0), offset: [0.0, -1000.0], turn_degrees: 360.0, ..NONE };
+    assert_eq!(wild.clone().clamped(), clamped);
+    let figure = dancer(Interpolation::Linear);
+    let clip = changed(&figure, &figure.asset.clips[0], &wild).clip;
+    assert!(figure.world(&clip, 0.5).iter().all(|(turn, at)| turn.is_finite() && at.is_finite()));
+    let empty = ClipBuilder::new("", &figure.asset.skeleton).build();
+    let all = ClipChanges { mirror: true, reverse: true, speed: 2.0, trim: None, ..clamped };
+    assert_eq!(changed(&figure, &empty, &all).clip.duration_secs(), 0.0);
+}

@@ -1,0 +1,132 @@
+//! The camera: framing, options that leave it alone, following.
+
+use std::sync::Arc;
+
+use gaitway::anim::{ClipBuilder, Interpolation, Keys};
+use gaitway::asset::Asset;
+use gaitway::editor::{Contents, Editor, Event};
+use gaitway::library::Model;
+use gaitway::retarget::{Feet, RootOptions, RootPart};
+use gaitway::samples;
+use gaitway::state::{CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, resolve_camera};
+use glam::Vec3;
+
+use super::{any, contents, editor, motions, open, open_motion, orbit};
+
+#[test]
+fn framing_uses_the_viewports_aspect() {
+    let mut editor = editor("sample:pilot");
+    let framed = |editor: &mut Editor, aspect: f32| {
+        editor.set_aspect(aspect);
+        editor.apply(Command::Orbit { yaw_radians: 0.1, pitch_radians: 0.0 });
+        editor.apply(Command::FrameAll);
+        orbit(editor).distance
+    };
+    let (wide, narrow) = (framed(&mut editor, 2.0), framed(&mut editor, 0.4));
+    assert!(narrow > 1.1 * wide, "a narrow viewport needs more distance: {wide} and {narrow}");
+    // Grabbing the scene stops the turntable.
+    editor.apply(Command::SetTurntable(12.0));
+    editor.apply(Command::Pan { right: 0.1, up: 0.0 });
+    assert_eq!(editor.state().camera_options.turntable, 0.0);
+}
+
+/// The camera of the viewport.
+fn view(editor: &Editor) -> OrbitCamera {
+    resolve_camera(editor.library(), editor.state(), 1.6)
+}
+
+#[test]
+fn an_option_never_moves_the_camera() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let (before, state) = (view(&editor), editor.state().clone());
+    let set = |part| Command::SetRoot(Some(RootOptions { horizontal: part, vertical: part, ..RootOptions::default() }));
+    let options = [set(RootPart::Freeze), Command::EditMap { motion: 0, edit: MapEdit::Clear }];
+    for option in options.clone() {
+        editor.apply(option);
+        assert_eq!(view(&editor), before);
+    }
+    let automatic = ViewerState { camera: CameraChoice::Auto, ..editor.state().clone() };
+    assert_ne!(resolve_camera(editor.library(), &automatic, 1.6), before, "it would have moved");
+    // Once the edit is undone the camera is automatic again, and frames another clip as usual.
+    editor.undo();
+    editor.undo();
+    assert_eq!((view(&editor), editor.state()), (before, &state));
+    options.into_iter().for_each(|option| editor.apply(option));
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert_eq!(editor.state().camera, CameraChoice::Auto);
+    // A camera that the user moved stays.
+    editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
+    let moved = orbit(&editor);
+    editor.undo();
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert_eq!(orbit(&editor), moved);
+}
+
+/// Opens a file as the user does, not a link or a script.
+fn open_by_hand(editor: &mut Editor, file: &str) -> Vec<Event> {
+    let contents = Contents { is_by_hand: true, ..contents(&[file]) };
+    editor.open(contents, None, &mut any).expect("fits");
+    editor.take_events()
+}
+
+/// The walker with a clip that moves it this far.
+fn runner(metres: f32) -> Contents {
+    let asset = Arc::try_unwrap(samples::load("walker").expect("is generated").asset).expect("nobody else has it");
+    let mut parts = asset.into_parts();
+    let hips = parts.skeleton.find("Hips").expect("it has hips");
+    let mut clip = ClipBuilder::new("Run", &parts.skeleton);
+    let keys = Keys::Translation(vec![Vec3::Y, Vec3::new(0.0, 1.0, metres)]);
+    clip.channel(hips, Interpolation::Linear, &[0.0, 3.0], keys).expect("two keys");
+    parts.clips = vec![clip.build()];
+    let model = Model::new("runner.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());
+    Contents { models: vec![model.into()], ..Contents::default() }
+}
+
+#[test]
+fn the_camera_follows_what_travels_far_unless_the_user_says_otherwise() {
+    let follows = |editor: &Editor| editor.state().camera_options.follow;
+    let opened = |contents: Contents| {
+        let mut editor = editor("sample:pilot");
+        editor.open(contents, None, &mut any).expect("fits");
+        editor
+    };
+    assert!(!follows(&opened(runner(8.0))), "a script gets what it says");
+    assert!(!follows(&opened(Contents { is_by_hand: true, ..runner(0.5) })), "it stays in view");
+    let mut editor = opened(Contents { is_by_hand: true, ..runner(8.0) });
+    assert!(follows(&editor));
+    assert_eq!(editor.state().camera, CameraChoice::Auto);
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    assert!(!follows(&editor), "nothing travels");
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(follows(&editor));
+    editor.apply(Command::SetFollow(false));
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(!follows(&editor), "the user's choice is kept");
+}
+
+#[test]
+fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
+    let mut editor = editor("sample:dwarf");
+    let told = open_by_hand(&mut editor, "sample:walk");
+    assert_eq!(editor.state().retarget.feet, Some(Feet::Plant));
+    let is_told =
+        |event: &Event| matches!(event, Event::Notice { text, undoable: true } if text.contains("held on the ground"));
+    assert!(told.iter().any(is_told), "{told:?}");
+    assert_eq!(editor.state().camera, CameraChoice::Auto, "it frames the clip as it is now");
+    assert!(editor.undo());
+    assert_eq!((editor.state().retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
+    assert!(editor.undo());
+    assert_eq!(motions(&editor).len(), 0);
+    // Where the feet stand as well as the source's, nothing is done.
+    let told = open_by_hand(&mut editor, "sample:mannequin");
+    assert!(!told.iter().any(is_told));
+    let told = open_by_hand(&mut editor, "sample:mannequin_run");
+    assert_eq!((editor.state().retarget.feet, told.iter().any(is_told)), (None, false));
+    // A script gets what it says.
+    open(&mut editor, "sample:dwarf");
+    editor.remove_motion(0);
+    open(&mut editor, "sample:walk");
+    assert_eq!(editor.state().retarget.feet, None);
+}

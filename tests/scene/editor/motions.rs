@@ -1,0 +1,81 @@
+//! Motions and the clips they lend, refused ones included.
+
+use std::sync::Arc;
+
+use gaitway::asset::{Asset, AssetParts};
+use gaitway::editor::{Editor, Event};
+use gaitway::library::{Library, Model};
+use gaitway::state::{ViewerState, active_clip};
+use glam::Vec3;
+
+use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion};
+use crate::data::moving_box;
+
+#[test]
+fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
+    let mut editor = editor("sample:creature");
+    let before = editor.state().clone();
+    let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    assert!(error.contains("no joint in common with Fox"), "{error}");
+    let refused = Event::MotionsRefused { lacks_skeleton: false };
+    assert_eq!((editor.take_events().last(), editor.state()), (Some(&refused), &before));
+    editor.map_refused_manually();
+    assert_eq!(editor.take_events(), [Event::MapStarted], "an empty map is not a problem");
+    assert_eq!(editor.library().motions().len(), 1);
+    editor.undo();
+    assert!(editor.library().motions().is_empty());
+}
+
+#[test]
+fn a_model_without_a_skeleton_is_told_what_it_lacks() {
+    let moving = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X]);
+    let asset = moving.active().expect("a box").asset.clone();
+    drop(moving);
+    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(asset).expect("of one model").into_parts() };
+    let mut library = Library::default();
+    library.add(Model::new("chair.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new()));
+    let mut editor = Editor::new(library, ViewerState::default());
+    let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    assert!(error.contains("chair.glb has no skeleton that a motion could move; bind its mesh to one"), "{error}");
+    assert_eq!(editor.take_events().last(), Some(&Event::MotionsRefused { lacks_skeleton: true }));
+}
+
+#[test]
+fn a_model_with_motions_keeps_the_loaded_ones() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let mut both = contents(&["sample:walker"]);
+    both.motions = Some(vec![motion("other.glb")]);
+    editor.open(both, None, &mut any).expect("fits");
+    assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
+    let model = editor.library().active().expect("a model");
+    let playing = active_clip(model, editor.state()).and_then(|clip| model.borrowed(clip)).expect("a borrowed clip");
+    assert_eq!((playing.motion, playing.source_clip), (1, 0), "the first new clip");
+    assert_eq!(notices(&editor.take_events()), ["Opened Walker. Added 3 clips from other.glb."]);
+    // Motions that don't fit are named.
+    let mut both = contents(&["sample:morphs"]);
+    both.motions = Some(vec![motion("third.glb")]);
+    editor.open(both, None, &mut any).expect("the model is fine");
+    let events = editor.take_events();
+    assert_eq!(motions(&editor), ["third.glb"], "stays to be mapped by hand");
+    let [text] = notices(&events)[..] else { panic!("{events:?}") };
+    assert!(text.ends_with("Removed motions dance.glb, other.glb: they don't fit this model."), "{text}");
+    assert!(events.iter().any(|event| matches!(event, Event::Problem(text) if text.starts_with("third.glb: "))));
+}
+
+#[test]
+fn an_open_model_lends_its_clips() {
+    let mut editor = editor("sample:pilot");
+    open(&mut editor, "sample:mannequin");
+    let pilot = id_of(&editor, "sample:pilot");
+    editor.borrow_from(pilot, &mut any).expect("both are people");
+    let events = editor.take_events();
+    assert!(events.contains(&Event::MotionsAdded), "{events:?}");
+    assert_eq!((active(&editor), motions(&editor)), ("sample:mannequin", vec!["sample:pilot"]));
+    assert_eq!(editor.state().sources.motion, ["sample:pilot"]);
+    assert_eq!(editor.library().active().expect("a model").borrowed_clips().count(), 6);
+    while editor.can_undo() && !motions(&editor).is_empty() {
+        editor.undo();
+    }
+    assert_eq!(active(&editor), "sample:mannequin");
+}

@@ -1,0 +1,171 @@
+//! Opening, activating and closing models.
+
+use std::sync::Arc;
+
+use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
+use gaitway::asset::Asset;
+use gaitway::editor::{ClipFormat, Contents, Editor, Export};
+use gaitway::files::{Held, open_view};
+use gaitway::frame::{Frame, evaluate};
+use gaitway::library::{Model, Motion};
+use gaitway::samples;
+use gaitway::state::{ClipChoice, Command, Inspect, RetargetEdits, Show, UpAxis, ViewerState, from_link};
+use glam::Vec3;
+
+use super::{active, any, contents, editor, id_of, motions, notices, open, open_motion, title};
+
+#[test]
+fn a_model_that_is_not_admitted_changes_nothing() {
+    let mut editor = editor("sample:pilot");
+    let before = editor.state().clone();
+    let refuse = &mut |model: &Model| Err(format!("{} is too large", model.source));
+    let error = editor.open(contents(&["sample:creature"]), None, refuse).expect_err("is refused");
+    assert_eq!(error, "sample:creature is too large");
+    assert_eq!((active(&editor), editor.state(), editor.can_undo()), ("sample:pilot", &before, false));
+    assert_eq!(editor.library().models().len(), 1);
+    // Nor does activating a loaded one.
+    open(&mut editor, "sample:creature");
+    let pilot = editor.library().models()[0].id;
+    let before = editor.state().clone();
+    editor.activate(pilot, refuse).expect_err("is refused");
+    assert_eq!((active(&editor), editor.state()), ("sample:creature", &before));
+}
+
+#[test]
+fn another_model_resets_model_settings_and_keeps_the_rest() {
+    let mut editor = editor("sample:pilot");
+    let show = Show { wireframe: true, ..Show::default() };
+    let commands = [
+        Command::SetShow(show),
+        Command::SetInspect(Inspect { split: true, weights: true, ..Inspect::default() }),
+        Command::SetUp(UpAxis::Z),
+        Command::SetSpeed(2.0),
+        Command::SetFov(50.0),
+        Command::SelectJoint(Some(3)),
+        Command::SetClip(ClipChoice::RestPose),
+    ];
+    commands.into_iter().for_each(|command| editor.apply(command));
+    let pilot = editor.state().clone();
+    open(&mut editor, "sample:creature");
+    let now = editor.state();
+    assert_eq!((now.inspect, now.edits.up, now.selection.joint), (Inspect::default(), UpAxis::Y, None));
+    assert_eq!((&now.playhead.clip, &now.retarget), (&ClipChoice::First, &RetargetEdits::default()));
+    assert_eq!((now.display.show, now.playback.speed, now.camera_options.fov_degrees), (show, 2.0, 50.0));
+    editor.undo();
+    assert_eq!(editor.state(), &pilot);
+}
+
+#[test]
+fn a_model_returns_with_its_clip_time_and_range() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.apply(Command::SetPlaying(false));
+    editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.2, end_secs: 0.6 })));
+    editor.apply(Command::Seek(0.4));
+    let (playhead, playing) = (editor.state().playhead.clone(), title(&editor).map(str::to_owned));
+    assert!(playing.is_some());
+    open(&mut editor, "sample:walker");
+    editor.close(id_of(&editor, "sample:walker"), &mut any).expect("fits");
+    assert_eq!((active(&editor), &editor.state().playhead), ("sample:pilot", &playhead));
+    // Also beside a motion that was added to another model.
+    open(&mut editor, "sample:walker");
+    open_motion(&mut editor, "other.glb");
+    editor.activate(id_of(&editor, "sample:pilot"), &mut any).expect("fits");
+    assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
+    let now = &editor.state().playhead;
+    assert_eq!((now.time_secs, now.range), (playhead.time_secs, playhead.range));
+    assert_eq!(title(&editor).map(str::to_owned), playing);
+}
+
+#[test]
+fn an_unnamed_borrowed_clip_is_called_like_its_file() {
+    let mut editor = editor("sample:pilot");
+    let unnamed = |source: &str, count: usize| {
+        let walker = samples::load("walker").expect("is generated").asset;
+        let mut parts = Arc::into_inner(walker).expect("of one model").into_parts();
+        let clip = |_| {
+            let mut clip = ClipBuilder::new("", &parts.skeleton);
+            let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::Y]);
+            clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("two keys");
+            clip.build()
+        };
+        parts.clips = (0..count).map(clip).collect();
+        Motion::new(source.to_owned(), Arc::new(Asset::new(parts).expect("valid indices")))
+    };
+    let motions = Some(vec![unnamed("folder/one.glb", 1), unnamed("https://example.org/two.glb?a=b.c", 2)]);
+    editor.open(Contents { motions, ..Contents::default() }, None, &mut any).expect("fits");
+    let model = editor.library().active().expect("a model");
+    assert_eq!(model.clip_titles()[model.asset.clips.len()..], ["one", "two 0", "two 1"]);
+}
+
+#[test]
+fn a_state_about_other_files_is_ignored() {
+    let mut editor = editor("sample:pilot");
+    let mut other = editor.state().clone();
+    other.sources.model = vec!["sample:dwarf".to_owned()];
+    other.playback.speed = 3.0;
+    let before = editor.state().clone();
+    editor.apply(Command::Replace(Box::new(other)));
+    assert_eq!(editor.state(), &before);
+    let error = editor.apply_partial(&serde_json::json!({ "model": ["x.glb"], "speed": 3 })).expect_err("other files");
+    assert!(error.contains("something else was opened"), "{error}");
+    assert_eq!(editor.state(), &before);
+    editor.apply_partial(&serde_json::json!({ "speed": 3 })).expect("is valid");
+    assert_eq!(editor.state().playback.speed, 3.0);
+    editor.apply_partial(&serde_json::json!({ "speed": 2, "fov": "wide" })).expect_err("all or none");
+    assert_eq!(editor.state().playback.speed, 3.0);
+}
+
+#[test]
+fn an_exported_clip_is_called_by_its_own_name() {
+    let editor = editor("sample:pilot");
+    let titles = editor.library().active().expect("a model").clip_titles().to_vec();
+    assert!(titles.len() > 1, "{titles:?}");
+    for (clip, title) in titles.iter().enumerate() {
+        let name = editor.export(Export::Clip { clip, format: ClipFormat::Glb }).expect("it has keys").name;
+        assert_eq!(name, format!("Pilot-{title}-clip.glb"));
+    }
+}
+
+/// A view's clip that the model lacks isn't an error, but is reported.
+#[test]
+fn an_unknown_clip_of_a_view_is_told() {
+    let told = "clip: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave; the rest pose is used.";
+    let view = || {
+        let mut view = ViewerState::of_model("sample:walker".to_owned());
+        view.playhead.clip = ClipChoice::Named("Fly".to_owned());
+        view
+    };
+    let mut editor = Editor::default();
+    editor.open(contents(&["sample:walker"]), Some(view()), &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), [told]);
+    // A link with the same files only replaces the state.
+    editor.apply(Command::SetClip(ClipChoice::First));
+    editor.apply(Command::Replace(Box::new(view())));
+    assert_eq!(notices(&editor.take_events()), [told]);
+    editor.apply(Command::Replace(Box::new(ViewerState::of_model("sample:walker".to_owned()))));
+    assert_eq!(notices(&editor.take_events()), [""; 0]);
+}
+
+/// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
+/// is opened.
+#[test]
+fn an_empty_stage_awaits_a_model() {
+    let (mut view, _) =
+        from_link("v=1&model=file:in/Soldier.glb&motion=file:walk.bvh&clip=run&t=0.5&camera=10,5,3,0,1,0&exposure=1");
+    view.playback.playing = false;
+    let mut editor = Editor::default();
+    let (awaited, shown) = open_view(view.clone(), true, Held::default()).expect("there is nothing to read");
+    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let events = editor.take_events();
+    assert_eq!((editor.state(), notices(&events)), (&view, vec![]), "no notice about its clip");
+    let model = editor.library().active().expect("stands for it");
+    assert_eq!((model.is_placeholder(), model.source.as_str()), (true, "in/Soldier.glb"));
+    let mut frame = Frame::default();
+    evaluate(editor.library(), editor.state(), 1.5, &mut frame);
+    assert!(frame.bones.is_empty() && frame.characters[0].palette.len() <= 1, "there is nothing to see");
+    open(&mut editor, "sample:walker");
+    let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
+    assert_eq!(listed, ["sample:walker"]);
+    assert_eq!(editor.state().display.exposure, 1.0);
+}

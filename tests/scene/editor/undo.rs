@@ -1,0 +1,70 @@
+//! Undo and the notices that offer it.
+
+use gaitway::editor::{Editor, Event};
+use gaitway::state::{Command, MapEdit, Show};
+
+use super::{any, editor, id_of, notices, open, open_motion};
+
+#[test]
+fn notices_say_how_to_go_back() {
+    let mut editor = editor("sample:pilot");
+    assert_eq!(notices(&open(&mut editor, "sample:creature")), ["Opened Fox."]);
+    assert_eq!(notices(&open(&mut editor, "sample:pilot")), ["Reopened Pilot."]);
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Back to Fox. Ctrl+Y returns to Pilot."]);
+    editor.redo();
+    editor.take_events();
+    let added = open(&mut editor, "sample:walk");
+    assert_eq!(notices(&added), ["Added 1 clip from Walk."]);
+    assert!(matches!(added.last(), Some(Event::Notice { undoable: true, .. })));
+    editor.undo();
+    let undone = editor.take_events();
+    assert_eq!(notices(&undone), ["Removed motion Walk. Ctrl+Y brings it back."]);
+    assert_eq!(undone[0], Event::Stepped, "earlier notices are outdated");
+}
+
+#[test]
+fn the_clip_before_a_motion_plays_again_after_undo() {
+    let mut editor = editor("sample:pilot");
+    let before = editor.state().playhead.clip.clone();
+    open(&mut editor, "sample:walk");
+    let borrowed = editor.state().playhead.clip.clone();
+    assert_ne!(borrowed, before);
+    editor.undo();
+    assert_eq!(editor.state().playhead.clip, before);
+    editor.redo();
+    assert_eq!(editor.state().playhead.clip, borrowed);
+}
+
+#[test]
+fn undo_says_which_models_it_brings_back() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.open_motion_alone(0, &mut any).expect("fits");
+    editor.take_events();
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Back to Pilot. Ctrl+Y returns to dance.glb."]);
+    open(&mut editor, "sample:creature");
+    editor.close(id_of(&editor, "sample:pilot"), &mut any).expect("is not active");
+    editor.take_events();
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Reopened Pilot. Ctrl+Y closes it."]);
+    editor.redo();
+    assert_eq!(notices(&editor.take_events()), ["Closed Pilot. Ctrl+Z reopens it."]);
+}
+
+#[test]
+fn a_panel_knows_whose_edit_undo_takes_back() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let can = |editor: &Editor| (editor.can_undo_retargeting(), editor.can_redo_retargeting());
+    assert!(editor.can_undo(), "the motion");
+    assert_eq!(can(&editor), (false, false));
+    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::SwapSides });
+    assert_eq!(can(&editor), (true, false));
+    editor.undo();
+    assert_eq!(can(&editor), (false, true));
+    editor.redo();
+    editor.apply(Command::SetShow(Show { grid: false, ..Show::default() }));
+    assert_eq!(can(&editor), (false, false), "the last step is the grid's");
+}

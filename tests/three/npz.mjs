@@ -1,0 +1,35 @@
+// Builds .npz files as NumPy does: see numpy.lib.format.
+import { archive } from "../browser/archive.mjs";
+
+/**
+ * @param {number[]} shape
+ * @param {Float64Array} values
+ */
+function npy(shape, values) {
+  const header = `{'descr': '<f8', 'fortran_order': False, 'shape': (${shape.map((side) => `${side},`).join("")}), }`;
+  const padded = `${header.padEnd(64 * Math.ceil((11 + header.length) / 64) - 11)}\n`;
+  const length = Buffer.alloc(2);
+  length.writeUInt16LE(padded.length);
+  return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(padded), Buffer.from(values.buffer)]);
+}
+
+/**
+ * A person in AMASS's form, Z up, for a second of 20 frames: both thighs swing by up to 60° around the body's X axis, the left
+ * one leading.
+ * @param {number} joints 22, 24, 52 or 55.
+ */
+export function walkingPerson(joints) {
+  const frames = 21;
+  const poses = new Float64Array(frames * 3 * joints);
+  const trans = new Float64Array(frames * 3);
+  for (let frame = 0; frame < frames; frame++) {
+    const swing = (Math.PI / 3) * Math.sin((Math.PI * frame) / (frames - 1));
+    poses.set([Math.PI / 2, 0, 0, -swing, 0, 0, swing, 0, 0], frame * 3 * joints);
+    trans.set([0, -0.05 * frame, 0.95], 3 * frame);
+  }
+  return archive({
+    "poses.npy": npy([frames, 3 * joints], poses),
+    "trans.npy": npy([frames, 3], trans),
+    "mocap_framerate.npy": npy([], Float64Array.of(20)),
+  });
+}

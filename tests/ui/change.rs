@@ -1,0 +1,95 @@
+//! The section of changes to a clip, in the Motion tab and without a motion in the Display tab.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::anim::TimeRange;
+use gaitway::editor::Export;
+use gaitway::retarget::ClipChanges;
+use gaitway::state::{ClipChoice, Command};
+use gaitway::ui::{Saved, Tab, UiAction, text};
+
+use crate::bench::{Bench, WIDE, motion_bench, press, sample_bench};
+use crate::header::choose;
+
+#[test]
+fn the_current_clip_is_changed_and_undone() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    harness.get_by_label(text::MIRROR).scroll_to_me();
+    harness.run();
+    let pose = |harness: &Harness<'_, Bench>| harness.state().frame.pose().clone();
+    let before = pose(&harness);
+    let mirrored = ClipChanges { mirror: true, ..ClipChanges::default() };
+    assert_eq!(
+        press(&mut harness, text::MIRROR),
+        [Command::ChangeClip { clip: 0, changes: Box::new(mirrored.clone()) }]
+    );
+    assert_ne!(pose(&harness), before);
+    let clips = &harness.state().state().edits.clips;
+    assert_eq!(clips.values().collect::<Vec<_>>(), [&mirrored]);
+    choose(&mut harness, text::EXPORT, text::SAVE_GLB);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+    press(&mut harness, text::UNDO_STEP);
+    assert!(harness.state().state().edits.clips.is_empty());
+    assert_eq!(pose(&harness), before);
+}
+
+/// A link may change a clip by more than the sliders span.
+#[test]
+fn changes_beyond_the_sliders_stay() {
+    let mut harness = sample_bench(WIDE);
+    let far = ClipChanges { turn_degrees: 270.0, offset: [20.0, -7.0], loop_secs: Some(3.0), ..ClipChanges::NONE };
+    harness.state_mut().editor.apply(Command::ChangeClip { clip: 0, changes: Box::new(far.clone()) });
+    press(&mut harness, Tab::Display.label());
+    harness.get_by_label(text::MIRROR).scroll_to_me();
+    harness.run();
+    // Nor does the keyboard change them on its way through the fields.
+    harness.get_by_label(&text::value_of(text::TURN_PATH)).focus();
+    for _ in 0..6 {
+        harness.run();
+        harness.key_press(egui::Key::Tab);
+    }
+    harness.run();
+    assert_eq!(harness.state().state().edits.clips.values().collect::<Vec<_>>(), [&far]);
+}
+
+#[test]
+fn the_range_becomes_the_clip() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    harness.get_by_label(text::TRIM_TO_RANGE).scroll_to_me();
+    harness.run();
+    assert!(harness.get_by_label(text::TRIM_TO_RANGE).accesskit_node().is_disabled());
+    let range = TimeRange { start_secs: 0.25, end_secs: 0.75 };
+    harness.state_mut().editor.apply(Command::SetRange(Some(range)));
+    harness.run();
+    press(&mut harness, text::TRIM_TO_RANGE);
+    let duration = |harness: &Harness<'_, Bench>| {
+        let model = harness.state().editor.library().active().expect("a model");
+        model.clip(0).expect("a clip").duration_secs()
+    };
+    assert_eq!(duration(&harness), 0.5);
+    assert_eq!(harness.state().state().playhead.range, None);
+    press(&mut harness, text::UNDO_TRIM);
+    assert!(duration(&harness) > 0.75);
+}
+
+#[test]
+fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Named("3".to_owned())));
+    harness.run();
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    harness.get_by_label(text::MAKE_LOOP).scroll_to_me();
+    harness.run();
+    press(&mut harness, text::MAKE_LOOP);
+    let model = harness.state().editor.library().active().expect("a model");
+    let seam = model.changed_clip(3).and_then(|changed| changed.seam).expect("is measured");
+    let told = text::seam(seam);
+    assert!(harness.query_by_label(&told).is_some(), "{told}");
+    harness.get_by_label(text::RESET_CHANGES).scroll_to_me();
+    harness.run();
+    press(&mut harness, text::RESET_CHANGES);
+    assert!(harness.state().state().edits.clips.is_empty());
+}

@@ -1,0 +1,145 @@
+//! The panels' mirror: what it lists, when it is built, and what the user does with it.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+use egui::accesskit::{Action, ActionData, Role, TreeUpdate};
+use egui::{Context, FullOutput, Plugin, RawInput};
+use gaitway::app::mirror::{Mirror, entries};
+use gaitway::ui::Tab;
+use serde_json::Value;
+
+use crate::bench::{NARROW, WIDE, motion_bench};
+
+/// Keeps the last tree that a harness builds.
+struct Spy(Arc<Mutex<Option<TreeUpdate>>>);
+
+impl Plugin for Spy {
+    fn debug_name(&self) -> &'static str {
+        "spy"
+    }
+
+    fn output_hook(&mut self, _context: &Context, output: &mut FullOutput) {
+        *self.0.lock().expect("one thread") = output.platform_output.accesskit_update.clone();
+    }
+}
+
+#[test]
+fn everything_that_takes_the_focus_has_a_name() {
+    for size in [WIDE, NARROW] {
+        let mut harness = motion_bench(size, &["borrowed.bvh"]);
+        let tree = Arc::new(Mutex::new(None));
+        harness.ctx.add_plugin(Spy(tree.clone()));
+        for tab in [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion] {
+            harness.state_mut().panels.layout.tab = tab;
+            harness.run();
+            let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+            let entries = entries(&update);
+            let listed: BTreeSet<&str> = entries.iter().map(|entry| entry["id"].as_str().expect("an id")).collect();
+            // Keys do what the buttons in a row of the tree do.
+            let rows: Vec<[Range<f64>; 2]> =
+                entries.iter().filter(|entry| entry["role"] == "treeitem").map(extent_of).collect();
+            for (id, node) in &update.nodes {
+                let [left, top] = node.bounds().map_or([f64::NAN; 2], |rect| [rect.x0, rect.y0]);
+                let is_around = |[across, down]: &[Range<f64>; 2]| across.contains(&left) && down.contains(&top);
+                let is_in_row = node.role() == Role::Button && rows.iter().any(is_around);
+                if node.supports_action(Action::Focus) && !is_in_row {
+                    assert!(listed.contains(id.0.to_string().as_str()), "{tab:?} at {size:?}: {node:#?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_joint_table_has_rows_of_two_cells() {
+    let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    harness.state_mut().panels.layout.tab = Tab::Motion;
+    harness.run();
+    let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+    let mut rows: BTreeMap<u64, usize> = BTreeMap::new();
+    for cell in entries(&update).iter().filter(|entry| entry["role"] == "gridcell") {
+        *rows.entry(cell["row"].as_u64().expect("a row")).or_default() += 1;
+    }
+    assert!(rows.len() > 10 && rows.values().all(|&cells| cells == 2), "{rows:?}");
+}
+
+/// From left to right and from the top to the bottom.
+fn extent_of(entry: &Value) -> [Range<f64>; 2] {
+    let side = |index: usize| entry["rect"][index].as_f64().expect("a rectangle");
+    [side(0)..side(0) + side(2), side(1)..side(1) + side(3)]
+}
+
+thread_local! {
+    /// What was shown, oldest first.
+    static SHOWN: RefCell<Vec<Value>> = const { RefCell::new(Vec::new()) };
+}
+
+fn show(text: &str) {
+    SHOWN.with_borrow_mut(|shown| shown.push(serde_json::from_str(text).expect("JSON")));
+}
+
+fn entry(list: &Value, role: &str) -> Value {
+    let entries = list["entries"].as_array().expect("entries");
+    entries.iter().find(|entry| entry["role"] == role).unwrap_or_else(|| panic!("no {role} in {list:#}")).clone()
+}
+
+#[test]
+fn lists_come_when_something_changed_and_what_is_done_reaches_the_panels() {
+    let context = Context::default();
+    context.add_plugin(Mirror::new(show));
+    let (mut clicks, mut number, mut text) = (0, 3.0_f32, String::new());
+    let mut frame = |time: f64| {
+        let input = RawInput { time: Some(time), ..RawInput::default() };
+        let mut output = context.run_ui(input, |ui| {
+            clicks += usize::from(ui.button(format!("Clicked {clicks} times")).clicked());
+            ui.menu_button("More", |ui| ui.button("Less"));
+            ui.add(egui::Slider::new(&mut number, 0.0..=10.0).text("Size"));
+            ui.add(egui::TextEdit::singleline(&mut text)).accessible_name("Name");
+        });
+        output.textures_delta.clear();
+    };
+    let lists = || SHOWN.with_borrow(Vec::len);
+    let last = || SHOWN.with_borrow(|shown| shown.last().expect("a list").clone());
+    // The first picture comes first; then once, while nothing changes.
+    (0..12).for_each(|step| frame(0.05 * f64::from(step)));
+    assert_eq!(lists(), 0);
+    (20..60).for_each(|step| frame(0.05 * f64::from(step)));
+    assert_eq!(lists(), 1);
+    let button = entry(&last(), "button");
+    assert_eq!(button["name"], "Clicked 0 times");
+    let slider = entry(&last(), "slider");
+    assert_eq!((&slider["now"], &slider["min"], &slider["max"]), (&3.0.into(), &0.0.into(), &10.0.into()));
+    assert_eq!(slider["name"], "Size");
+
+    let id = |role: &str| entry(&last(), role)["id"].as_str().expect("an id").to_owned();
+    let act = |role: &str, action: &str, data: Option<ActionData>| {
+        let id = id(role);
+        context.with_plugin(|mirror: &mut Mirror| mirror.act(&id, action, data)).expect("a mirror");
+    };
+    act("button", "click", None);
+    act("slider", "set", Some(ActionData::NumericValue(7.0)));
+    act("textbox", "set", Some(ActionData::Value("42".into())));
+    act("textbox", "focus", None);
+    act("textbox", "vanish", None);
+    assert!(!SHOWN.with_borrow(|shown| shown.last().is_some_and(|list| list.to_string().contains("Less"))));
+    frame(3.01);
+    frame(3.5);
+    assert_eq!(entry(&last(), "button")["name"], "Clicked 1 times");
+    assert_eq!(entry(&last(), "slider")["now"], 7.0);
+    assert_eq!(entry(&last(), "textbox")["value"], "42");
+    assert_eq!(last()["focus"], entry(&last(), "textbox")["id"]);
+    // A menu hangs on the button that opens it.
+    let entries = last()["entries"].as_array().expect("entries").clone();
+    let more =
+        entries.iter().find(|entry| entry["name"] == "More").expect("a menu")["id"].as_str().expect("an id").to_owned();
+    context.with_plugin(|mirror: &mut Mirror| mirror.act(&more, "click", None)).expect("a mirror");
+    (0..20).for_each(|step| frame(4.0 + 0.1 * f64::from(step)));
+    let group = entry(&last(), "group")["id"].clone();
+    let less = last()["entries"].as_array().expect("entries").iter().find(|entry| entry["name"] == "Less").cloned();
+    assert_eq!(less.expect("the menu is open")["in"], group);
+}

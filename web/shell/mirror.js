@@ -1,0 +1,300 @@
+// The panels as transparent HTML over the canvas, one element over each control, for keyboards and screen readers: they can't
+// look into a canvas. The program lists the elements (src/app/mirror.rs) and is told what the user does with them.
+
+/** @typedef {import("./types.d.ts").Bindings} Bindings */
+/** @typedef {import("./types.d.ts").MirrorEntry} MirrorEntry */
+/** @typedef {Map<Node, ChildNode>} Ends The last element placed in each parent. */
+
+/** Tags by role; everything else is a button. */
+const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", img: "div", progressbar: "div" };
+/** The role that ARIA requires around another one. */
+const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "radiogroup", gridcell: "grid" });
+/** Accessible names of these lists. */
+const NAMES = { tablist: "Inspector", tree: "Nodes", radiogroup: "Choices", grid: "Joints and their sources" };
+const IN_LIST = Object.keys(NAMES).map((role) => `[role=${role}]`).join();
+/** Keys that an element handles itself, by its `type`. */
+const OWN_KEYS = {
+  button: /^(Enter| )$/,
+  range: /^(Home|End|Page.*)$/,
+  number: /^(?!Escape$)/,
+  text: /^(?!(Escape|Enter|ArrowUp|ArrowDown)$)/,
+};
+/** Keys that change a number by a step, whose size the program knows. */
+const STEPS = /** @type {const} */ ({ ArrowUp: "more", ArrowRight: "more", ArrowDown: "less", ArrowLeft: "less" });
+
+/** The mirror of one instance, whose `root` lies over its canvas. */
+export class Mirror {
+  root = document.createElement("div");
+  /** @type {Map<string, HTMLElement>} */
+  #elements = new Map();
+  #program;
+  /** The entry that the program draws as focused. */
+  #focused = "";
+  /**
+   * The entry that was focused here, until the program focuses it as well.
+   * @type {string | null}
+   */
+  #wanted = null;
+  /**
+   * What opened the innermost menu.
+   * @type {HTMLElement | null}
+   */
+  #opener = null;
+
+  /** @param {Bindings} program */
+  constructor(program) {
+    const { root } = this;
+    this.#program = program;
+    root.id = "mirror";
+    root.setAttribute("role", "group");
+    root.setAttribute("aria-label", "Viewer");
+    for (const type of ["keydown", "keyup"]) root.addEventListener(type, (event) => event instanceof KeyboardEvent && this.#passKey(event));
+    root.addEventListener("focusin", () => program.mirror_focus(true));
+    root.addEventListener("focusout", ({ relatedTarget }) => {
+      if (!(relatedTarget instanceof Node && root.contains(relatedTarget))) program.mirror_focus(false);
+    });
+  }
+
+  /**
+   * Shows the program's list.
+   * @param {string} text
+   */
+  show(text) {
+    /** @type {{ focus: string, entries: MirrorEntry[] }} */
+    const { focus, entries } = JSON.parse(text);
+    const before = this.root.contains(document.activeElement) ? document.activeElement : null;
+    const roles = new Map(entries.map(({ id, role }) => [id, role]));
+    for (const [id, element] of this.#elements) {
+      // Another widget may have taken the id of one that is gone.
+      if (roles.get(id) === element.dataset.role) continue;
+      element.remove();
+      this.#elements.delete(id);
+    }
+    // Before placing: an empty row in front would take the place of the next one.
+    for (const row of this.root.querySelectorAll("[role=row]:empty")) row.remove();
+    const menu = this.#place(entries);
+    if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus);
+    this.#focused = focus;
+  }
+
+  /**
+   * Moves on from the program's own focus, so that the canvas doesn't trap the Tab key.
+   * @param {KeyboardEvent} event
+   */
+  leaveCanvas(event) {
+    const stops = stopsIn(this.root);
+    const isTab = event.key === "Tab" && !event.ctrlKey && !event.altKey && !event.metaKey;
+    if (!isTab || stops.length === 0 || this.root.contains(document.activeElement)) return;
+    const at = stops.findIndex((stop) => stop === this.#elements.get(this.#focused));
+    const next = event.shiftKey ? (at < 0 ? stops.length - 1 : at - 1) : at + 1;
+    event.preventDefault();
+    event.stopPropagation();
+    stops[Math.min(Math.max(next, 0), stops.length - 1)].focus();
+  }
+
+  /**
+   * Puts the element of each entry into its place; returns the last new group: a menu that was opened.
+   * @param {MirrorEntry[]} entries
+   */
+  #place(entries) {
+    /** @type {HTMLElement | null} */
+    let menu = null;
+    /** @type {Ends} */
+    const ends = new Map();
+    for (const entry of entries) {
+      let element = this.#elements.get(entry.id);
+      if (element === undefined) {
+        element = this.#newElement(entry);
+        this.#elements.set(entry.id, element);
+        if (entry.role === "group") menu = element;
+      }
+      update(element, entry);
+      let parent = this.#elements.get(entry.in ?? "") ?? this.root;
+      const list = LISTS[/** @type {keyof typeof LISTS} */ (entry.role)];
+      if (list !== undefined) parent = listIn(parent, list, ends);
+      if (entry.row !== undefined) parent = listIn(parent, "row", ends, String(entry.row));
+      const next = nextIn(parent, ends);
+      if (next !== element) parent.insertBefore(element, next);
+      ends.set(parent, element);
+    }
+    for (const list of this.root.querySelectorAll(IN_LIST)) chooseStop(list);
+    return menu;
+  }
+
+  /** @param {MirrorEntry} entry */
+  #newElement({ id, role, focusable }) {
+    const element = document.createElement(TAGS[/** @type {keyof typeof TAGS} */ (role)] ?? "button");
+    if (element instanceof HTMLButtonElement) element.type = "button";
+    if (element instanceof HTMLInputElement) element.type = { slider: "range", spinbutton: "number" }[role] ?? "text";
+    else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
+    else if (role !== "button" && role !== "text") element.setAttribute("role", role);
+    if (role === "img" && focusable) element.tabIndex = 0;
+    [element.dataset.id, element.dataset.role] = [id, role];
+    element.addEventListener("focus", () => {
+      this.#wanted = id;
+      this.#program.mirror_act(id, "focus");
+    });
+    element.addEventListener("click", () => {
+      this.#opener = element;
+      this.#program.mirror_act(id, "click");
+    });
+    if (element instanceof HTMLInputElement) {
+      element.addEventListener(element.type === "number" ? "change" : "input", () => {
+        const value = element.type === "text" ? element.value : element.valueAsNumber;
+        if (!Number.isNaN(value)) this.#program.mirror_act(id, "set", value);
+      });
+    }
+    return element;
+  }
+
+  /**
+   * Moves the focus to where the user expects it: into a menu that opens, back to what opened a menu that closes, or to where
+   * the program has moved its own.
+   * @param {HTMLElement} before What had the focus.
+   * @param {HTMLElement | null} menu What has just opened.
+   * @param {string} focus
+   */
+  #keepFocus(before, menu, focus) {
+    if (this.#wanted === focus) this.#wanted = null;
+    const first = menu === null ? undefined : stopsIn(menu)[0];
+    const hasMoved = this.#wanted === null && focus !== this.#focused;
+    const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
+    /** What "Go to" leads to. @type {HTMLElement | null} */
+    const selected = this.root.querySelector("[role=treeitem][aria-selected=true]");
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? stopsIn(this.root)[0]);
+    const target = first ?? (next.isConnected ? next : fallback);
+    if (target !== document.activeElement) target?.focus();
+  }
+
+  /** @param {KeyboardEvent} event */
+  #passKey(event) {
+    const { key, target, altKey, ctrlKey, shiftKey, metaKey } = event;
+    const type = target instanceof HTMLInputElement || target instanceof HTMLButtonElement ? target.type : "";
+    const isCommand = ctrlKey || metaKey;
+    const next = isCommand ? undefined : neighbourOf(target, key);
+    if (next !== undefined) {
+      if (event.type === "keydown") next?.focus();
+      event.preventDefault();
+      return;
+    }
+    const way = type === "range" || type === "number" ? STEPS[/** @type {keyof typeof STEPS} */ (key)] : undefined;
+    if (way !== undefined && !isCommand) {
+      if (event.type === "keydown") this.#program.mirror_act(/** @type {HTMLElement} */ (target).dataset.id ?? "", way);
+      event.preventDefault();
+      return;
+    }
+    if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
+    this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
+    // The browser's own commands stay.
+    if (!(isCommand || altKey) || /^[ozsy]$/i.test(key)) event.preventDefault();
+  }
+}
+
+/**
+ * @param {HTMLElement} element
+ * @param {MirrorEntry} entry
+ */
+function update(element, entry) {
+  const { role, name, value, now, min, max, checked, rect } = entry;
+  const isPicked = role === "tab" || role === "treeitem" || role === "gridcell";
+  const state = isPicked ? "aria-selected" : role === "button" ? "aria-pressed" : "aria-checked";
+  const isBar = role === "progressbar";
+  const attributes = {
+    "aria-label": role === "text" ? undefined : role === "combobox" && value !== undefined ? `${name ?? ""} ${value}`.trim() : name,
+    "aria-description": entry.description,
+    "aria-valuetext": role === "slider" || role === "spinbutton" ? value : undefined,
+    "aria-valuenow": isBar ? now : undefined,
+    "aria-valuemin": isBar ? min : undefined,
+    "aria-valuemax": isBar ? max : undefined,
+    "aria-expanded": entry.expanded,
+    "aria-disabled": entry.disabled,
+    "aria-level": entry.level,
+    "aria-posinset": entry.at,
+    "aria-setsize": entry.of,
+    [state]: checked,
+  };
+  for (const [attribute, text] of Object.entries(attributes)) {
+    if (text === undefined) element.removeAttribute(attribute);
+    else if (element.getAttribute(attribute) !== String(text)) element.setAttribute(attribute, String(text));
+  }
+  if (role === "text" && element.textContent !== name) element.textContent = name ?? "";
+  if (element instanceof HTMLInputElement) updateInput(element, entry);
+  for (const [index, side] of ["left", "top", "width", "height"].entries()) if (rect !== undefined) element.style.setProperty(side, `${rect[index]}px`);
+}
+
+/**
+ * @param {HTMLInputElement} input
+ * @param {MirrorEntry} entry
+ */
+function updateInput(input, { value, now, min, max }) {
+  const isText = input.type === "text";
+  if (!isText) [input.min, input.max, input.step] = [String(min ?? ""), String(max ?? ""), "any"];
+  const shown = String((isText ? value : now) ?? "");
+  // The program doesn't know yet what is being typed.
+  const isTyping = input === document.activeElement && input.type !== "range";
+  if (input.value !== shown && !isTyping) input.value = shown;
+}
+
+/**
+ * Returns what follows the last element placed in a parent.
+ * @param {Node} parent
+ * @param {Ends} ends
+ * @returns {Node | null}
+ */
+const nextIn = (parent, ends) => ends.get(parent)?.nextSibling ?? (ends.has(parent) ? null : parent.firstChild);
+
+/**
+ * Returns the list of a role at the place where the next element goes.
+ * @param {HTMLElement} parent
+ * @param {keyof typeof NAMES | "row"} role
+ * @param {Ends} ends
+ * @param {string} [key] Distinguishes adjacent lists of the same role.
+ */
+function listIn(parent, role, ends, key = "") {
+  /** @param {Node | null | undefined} node */
+  const asList = (node) => (node instanceof HTMLElement && node.getAttribute("role") === role && node.dataset.key === key ? node : null);
+  const last = asList(ends.get(parent));
+  if (last !== null) return last;
+  const next = nextIn(parent, ends);
+  const list = asList(next) ?? document.createElement("div");
+  list.setAttribute("role", role);
+  list.dataset.key = key;
+  if (role !== "row") list.setAttribute("aria-label", NAMES[role]);
+  if (list !== next) parent.insertBefore(list, next);
+  ends.set(parent, list);
+  return list;
+}
+
+/**
+ * Makes one element of a list a stop of the Tab key, the selected one; the arrow keys lead to the others. Removes an empty list.
+ * @param {Element} list
+ */
+function chooseStop(list) {
+  const items = itemsOf(list);
+  const stop = items.find((item) => item.ariaSelected === "true" || item.ariaChecked === "true") ?? items[0];
+  for (const item of items) item.tabIndex = item === stop ? 0 : -1;
+  if (stop === undefined) list.remove();
+}
+
+/**
+ * Returns the element that an arrow key leads to in a list, null at its end; undefined for other keys and outside lists. In a tree,
+ * left and right are left to the rows, which they collapse and expand.
+ * @param {EventTarget | null} target
+ * @param {string} key
+ */
+function neighbourOf(target, key) {
+  const list = target instanceof HTMLElement ? target.closest(IN_LIST) : null;
+  const step = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1 }[key];
+  if (!(target instanceof HTMLElement) || list === null || step === undefined) return undefined;
+  const [role, isSideways] = [list.getAttribute("role"), key === "ArrowLeft" || key === "ArrowRight"];
+  if (role === "tree" && isSideways) return undefined;
+  const items = itemsOf(list);
+  const width = role === "grid" && !isSideways ? (target.parentElement?.childElementCount ?? 1) : 1;
+  return items[items.indexOf(target) + step * width] ?? null;
+}
+
+/** @param {Element} list */
+const itemsOf = (list) => /** @type {HTMLElement[]} */ ([...list.querySelectorAll("[data-id]")]);
+
+/** @param {HTMLElement} parent */
+const stopsIn = (parent) => [.../** @type {NodeListOf<HTMLElement>} */ (parent.querySelectorAll("button, input, [tabindex]"))].filter(({ tabIndex }) => tabIndex >= 0);
