@@ -15,6 +15,8 @@ mod quiet;
 #[cfg(feature = "render")]
 mod render;
 mod retarget;
+#[cfg(feature = "render")]
+mod sequence;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -61,7 +63,7 @@ enum Action {
     Retarget(Box<RetargetArguments>),
     /// Converts any supported model to a single .glb, or one of its clips to .bvh or .vrma.
     Convert(ConvertArguments),
-    /// Renders the same image as the page, without a window.
+    /// Renders the same image as the page, or the frames of a clip, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
 }
@@ -289,9 +291,13 @@ struct RenderArguments {
     input: Files,
     #[command(flatten)]
     motion: MotionArguments,
-    /// The image to write; `-` for standard output.
-    #[arg(long, value_name = "PNG")]
+    /// The image to write; `-` for standard output. With --frames, a new folder for images, or a video (.mp4, .webm; needs
+    /// ffmpeg).
+    #[arg(long, value_name = "PNG|FOLDER|VIDEO")]
     out: PathBuf,
+    /// Renders one loop of the clip, with the loop mode and speed of the view, at this many frames per second.
+    #[arg(long, value_name = "FPS", value_parser = clap::value_parser!(u32).range(1..=240), conflicts_with = "time")]
+    frames: Option<u32>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = read_size)]
     size: [u32; 2],

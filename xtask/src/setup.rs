@@ -27,7 +27,7 @@ pub fn has_clang() -> bool {
     output("clang", &["--version"]).is_some()
 }
 
-/// What the tests need on top of [`page`]: a browser, a software Vulkan driver and clang. These are system packages, so they
+/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver and clang. These are system packages, so they
 /// are installed only on a CI machine; anyone else is told the command.
 pub fn tests() -> anyhow::Result<()> {
     let missing = missing_packages();
@@ -51,6 +51,9 @@ fn missing_packages() -> Vec<&'static str> {
     let mut missing = Vec::new();
     if chromium().is_none() {
         missing.push("chromium");
+    }
+    if output("ffmpeg", &["-version"]).is_none() {
+        missing.push("ffmpeg");
     }
     if cfg!(target_os = "linux") {
         if !has_clang() {
