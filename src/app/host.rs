@@ -6,7 +6,7 @@ use crate::files::Role;
 use crate::library::ModelId;
 use crate::state::ViewerState;
 
-/// A video to record.
+/// A video, or a sequence of images, to record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Video {
     /// File name without its extension, which depends on what the host can encode.
@@ -19,6 +19,8 @@ pub struct Video {
     pub frame_count: u32,
     /// Keeps the frames' alpha.
     pub transparent: bool,
+    /// Saves PNGs in an archive instead of a video.
+    pub as_images: bool,
 }
 
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.

@@ -147,9 +147,10 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     ];
     let files = model_with_clip.into_iter().chain(clips).chain(others.into_iter().flatten());
     let files = files.map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
-    let video = shown.is_animated().then(|| (text::RECORD, UiAction::Record(pictures.video())));
+    let recordings = [(text::RECORD, false), (text::RECORD_IMAGES, true)].into_iter().filter(|_| shown.is_animated());
+    let recordings = recordings.map(|(label, as_images)| (label, UiAction::Record(pictures.recording(as_images))));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
-    for (label, action) in [image].into_iter().chain(video).chain(files) {
+    for (label, action) in [image].into_iter().chain(recordings).chain(files) {
         if ui.button(label).clicked() {
             out.actions.push(action);
         }

@@ -153,14 +153,17 @@ fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::Camera.label());
     let rate = text::labelled(text::FRAME_RATE, &text::frames_per_sec(60));
-    for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
+    for label in
+        [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD, text::RECORD_IMAGES]
+    {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
         press(&mut harness, label);
     }
     let picture = Saved::Picture { size: [1080, 1080], transparent: true };
-    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true };
-    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video)]);
+    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true, as_images: false };
+    let images = VideoSettings { as_images: true, ..video };
+    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video), UiAction::Record(images)]);
 }
 
 #[test]

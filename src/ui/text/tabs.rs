@@ -289,7 +289,9 @@ pub const SAVE_IMAGE: &str = "Save image (PNG)";
 pub const FRAME_RATE: &str = "Frame rate";
 /// Button that records a video.
 pub const RECORD: &str = "Record one loop";
-/// Title of the progress of a video that is being recorded.
+/// Button that saves the frames of such a video as images.
+pub const RECORD_IMAGES: &str = "Save one loop as images";
+/// Title of the progress of a video, or of images, being recorded.
 pub const RECORDING: &str = "Recording one loop";
 
 /// Returns a frame rate.
