@@ -5,6 +5,7 @@ import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
 import { extensionOf, fileName, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
+import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -48,6 +49,7 @@ export async function openByHand(items, options) {
   if (items.length === 0) return;
   try {
     await open(items, { ...options, isByHand: true });
+    hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);

@@ -83,6 +83,7 @@ export interface Bindings {
     isPrivate: boolean,
     shell: ShellCalls,
   ): Promise<string>;
+  font(): Uint8Array<ArrayBuffer>;
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;
