@@ -28,6 +28,9 @@ pub trait Host {
     /// Lets the user choose files, which are then opened.
     fn choose_files(&self, role: Role, inbox: &Inbox);
 
+    /// Abandons the load under way: nothing of it is shown.
+    fn cancel_opening(&self) {}
+
     /// Whether there is a gallery of samples.
     fn has_gallery(&self) -> bool {
         false

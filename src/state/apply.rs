@@ -8,7 +8,8 @@ use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds}
 use super::maps;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState,
+    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, VertexChoice,
+    ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
@@ -411,8 +412,6 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
     }
 }
 
-/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
-/// a reversed one is dropped.
 fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
     let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
     let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
@@ -421,18 +420,39 @@ fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, chan
     // A link may name the clip by its index.
     state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
     if active_clip(model, state) == Some(clip) {
-        let playhead = &mut state.playhead;
-        if changes.trim != before.trim {
-            (playhead.range, playhead.time_secs) = (None, 0.0);
-        }
-        let stretch = before.speed / changes.speed;
-        playhead.time_secs *= stretch;
-        playhead.range = playhead
-            .range
-            .filter(|_| changes.reverse == before.reverse)
-            .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+        follow_changes(&mut state.playhead, &before, &changes);
     }
     insert_changes(state, name, changes);
+}
+
+/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
+/// a reversed one is dropped.
+fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
+    if changes.trim != before.trim {
+        (playhead.range, playhead.time_secs) = (None, 0.0);
+    }
+    let stretch = before.speed / changes.speed;
+    playhead.time_secs *= stretch;
+    playhead.range = playhead
+        .range
+        .filter(|_| changes.reverse == before.reverse)
+        .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+}
+
+/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that those
+/// dropped returns.
+pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
+    let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
+    let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
+    let before = changed(state);
+    state.restore_undoable(from);
+    if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
+        follow_changes(&mut state.playhead, &before, &changes);
+        let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
+        if has_dropped && active_clip(model, from) == Some(clip) {
+            state.playhead.range = from.playhead.range;
+        }
+    }
 }
 
 fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {

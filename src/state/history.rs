@@ -2,6 +2,7 @@
 
 use std::mem::Discriminant;
 
+use super::apply::restore_edits;
 use super::{Command, SavedMotion, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 
@@ -168,7 +169,7 @@ impl Step {
         match self {
             Self::Edits(edits) => {
                 let before = state.clone();
-                state.restore_undoable(&edits);
+                restore_edits(state, library.active(), &edits);
                 Self::Edits(before)
             }
             Self::View(view, view_motion, loaded) => {

@@ -90,7 +90,7 @@ impl ViewerState {
     }
 
     /// Copies the groups that undo covers from another state.
-    pub fn restore_undoable(&mut self, from: &Self) {
+    pub(super) fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();
         self.retarget.clone_from(retarget);
         self.edits.clone_from(edits);

@@ -1,6 +1,6 @@
 //! Foot-contact tracks under the timeline: when each foot is planted, and how fast it slides meanwhile.
 
-use egui::{FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Shown, controls, scrub, style, text};
 use crate::library::Model;
@@ -10,7 +10,6 @@ use crate::state::title;
 const TRACK_HEIGHT: f32 = 18.0;
 /// Height of the line that explains colours and scale.
 const LEGEND_HEIGHT: f32 = 16.0;
-const FONT_SIZE: f32 = 10.5;
 /// The slide speed whose bar fills a track.
 const MAX_METRES_PER_SEC: f32 = 0.5;
 /// At most this share of the width is for names.
@@ -44,10 +43,9 @@ fn short(name: &str) -> &str {
 /// Returns the width that the names of the feet take at the left; 0 if there are no tracks.
 pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
     let Some(tracks) = Tracks::of(shown) else { return 0.0 };
-    let font = egui::TextStyle::Small.resolve(ui.style());
     let widths = tracks.tracks.iter().map(|track| {
         let name = short(&tracks.name(shown, track)).to_owned();
-        ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x
+        ui.painter().layout_no_wrap(name, style::SMALL, egui::Color32::PLACEHOLDER).size().x
     });
     widths.fold(0.0, f32::max).ceil().min(MAX_GUTTER * ui.available_width())
 }
@@ -84,8 +82,7 @@ fn legend(ui: &Ui, room: Rect) {
     let palette = style::palette(ui);
     let mut x = room.left() + 2.0;
     for (color, label) in [(palette.chosen, text::FOOT_CONTACT), (palette.warning, text::FOOT_SLIDE)] {
-        let font = FontId::proportional(FONT_SIZE);
-        let galley = ui.painter().layout_no_wrap(label.to_owned(), font, palette.weak_text);
+        let galley = ui.painter().layout_no_wrap(label.to_owned(), style::SMALL, palette.weak_text);
         if x + SQUARE + 4.0 + galley.size().x > room.right() {
             return;
         }

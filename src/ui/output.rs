@@ -16,6 +16,8 @@ pub struct Output {
 /// A request that is not a change of the view state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UiAction {
+    /// Abandon the load under way.
+    CancelOpening,
     /// Choose files to open.
     OpenFiles,
     /// Show the gallery of samples.

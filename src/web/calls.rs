@@ -2,14 +2,17 @@
 //! the user and a `code` for scripts.
 
 use std::cell::RefCell;
+use std::pin::pin;
 use std::rc::Rc;
 
+use futures_util::future::{Either, select};
 use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
 
 use super::page::{Page, page, state_of_link};
-use crate::app::{App, Message, Opening, Reply, ScriptCall};
+use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, OpenError, Role, open_items, open_view};
 use crate::frame::PoseDocument;
@@ -18,7 +21,13 @@ use crate::samples;
 use crate::state::{
     Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
 };
-use crate::ui::title_and_hint;
+use crate::ui::{Progress, title_and_hint};
+
+/// Returns the font of the panels, for the rest of the page.
+#[wasm_bindgen]
+pub fn font() -> Uint8Array {
+    Uint8Array::from(crate::ui::FONT)
+}
 
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
@@ -214,9 +223,9 @@ struct Opened {
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
-    let latest = RefCell::new(Opening::default());
+    let latest = RefCell::new(Progress::default());
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
+        let opening = Progress { name: name.to_owned(), received_bytes, total_bytes };
         // What is in memory is read at once: a frame that shows it would only delay it.
         if received_bytes > 0 && page.loads.is_latest(number) {
             page.inbox.send(Message::OpenProgress(opening.clone()));
@@ -224,21 +233,32 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
         latest.replace(opening);
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
-    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
-        Request::Items { items, role, is_private, is_by_hand } => {
-            let contents = open_items(items, role, &progress).await;
-            let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
-            contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
-        }
-        Request::View { state, with_model, current_motions, environments, .. } => {
-            let held = Held { motions: &current_motions, environments: &environments };
-            let opened = open_view(*state, with_model, held, &progress).await;
-            opened.map(|(contents, state)| (contents, Some(Box::new(state))))
+    let read = async {
+        match request {
+            Request::Items { items, role, is_private, is_by_hand } => {
+                let contents = open_items(items, role, &progress).await;
+                let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
+                contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
+            }
+            Request::View { state, with_model, current_motions, environments, .. } => {
+                let held = Held { motions: &current_motions, environments: &environments };
+                let opened = open_view(*state, with_model, held, &progress).await;
+                opened.map(|(contents, state)| (contents, Some(Box::new(state))))
+            }
         }
     };
+    let cancelled = Promise::new(&mut |cancel, _| _ = page.cancel_load.replace(Some(cancel)));
+    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> =
+        match select(pin!(read), JsFuture::from(cancelled)).await {
+            Either::Left((opened, _)) => opened,
+            Either::Right(_) => {
+                // The last bytes may have arrived together with the click.
+                page.inbox.send(Message::OpenFailedSilently);
+                return Err(Refusal::cancelled("opening was cancelled"));
+            }
+        };
     if !page.loads.is_latest(number) {
-        let message = "something else was opened in the meantime".to_owned();
-        return Err(Refusal { code: ErrorCode::Cancelled, message });
+        return Err(Refusal::cancelled("something else was opened in the meantime"));
     }
     // Names what is opened or has failed, in the frame that shows it.
     page.inbox.send(Message::OpenProgress(latest.take()));
@@ -333,6 +353,12 @@ async fn settled(promise: Promise) -> Result<JsValue, String> {
 struct Refusal {
     code: ErrorCode,
     message: String,
+}
+
+impl Refusal {
+    fn cancelled(message: &str) -> Self {
+        Self { code: ErrorCode::Cancelled, message: message.to_owned() }
+    }
 }
 
 /// Only an instance that has stopped, or is about to, has no app to ask.

@@ -4,6 +4,7 @@ use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::ClipFormat;
+use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
@@ -197,7 +198,8 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
         3,
         "a copy fits: limbs, facing, rotations"
     );
-    assert!(harness.query_by_label(&text::labelled(text::COVERAGE, "100 %")).is_some());
+    assert!(harness.query_by_label(&format!("{}, good", text::labelled(text::COVERAGE, "100 %"))).is_some());
+    assert!(harness.query_by_label(&text::overall(Verdict::Good)).is_some());
     press(&mut harness, text::FILES);
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
     harness.run();

@@ -7,6 +7,7 @@ mod by_hand;
 mod call_sites;
 mod change;
 mod clips;
+mod design;
 mod exercise;
 mod header;
 mod inspector;

@@ -1,6 +1,6 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
-import { hasFullscreen, setTheme, theme, toggleFullscreen } from "./appearance.js";
+import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
@@ -86,6 +86,7 @@ async function start(renderer) {
       continue;
     }
     hasProgram = true;
+    shareFont(bindings);
     readLinksWith(bindings);
     session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);

@@ -6,6 +6,7 @@ import { focusCanvas, frames, messageOf } from "./dom.js";
 import { coded } from "./errors.js";
 import { extensionOf, fileName, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
+import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -49,6 +50,7 @@ export async function openByHand(items, options) {
   if (items.length === 0) return;
   try {
     await open(items, { ...options, isByHand: true });
+    hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);

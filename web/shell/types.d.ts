@@ -91,6 +91,7 @@ export interface Bindings {
     isPrivate: boolean,
     shell: ShellCalls,
   ): Promise<string>;
+  font(): Uint8Array<ArrayBuffer>;
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;

@@ -48,7 +48,7 @@ pub use map::{
     Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
     opposite_joints, propose, propose_recognized,
 };
-pub use measure::{Figures, FootTrack, StagePair};
+pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};
 pub(crate) use recognize::words;
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};
