@@ -21,3 +21,4 @@ mod layers;
 mod pairs;
 mod rests;
 mod soles;
+mod stack;

@@ -11,6 +11,7 @@ mod exercise;
 mod header;
 mod inspector;
 mod keys;
+mod layers;
 mod layout;
 mod mirror;
 mod models;
