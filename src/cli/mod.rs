@@ -6,6 +6,7 @@ mod convert;
 mod failure;
 mod inputs;
 mod inspect;
+mod layer;
 mod map;
 mod motion;
 mod output;
@@ -37,6 +38,7 @@ use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use change::ChangeOptions;
 use failure::{Failure, Outcome};
+use layer::LayerOptions;
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
 
@@ -92,6 +94,8 @@ struct Moment {
     /// first clip.
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// Seconds into the clip, clamped to its end.
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = read_seconds)]
     time: Option<f64>,
@@ -142,6 +146,8 @@ struct RetargetArguments {
     options: RetargetOptions,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
@@ -239,6 +245,8 @@ struct ConvertArguments {
     clip: Option<String>,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
@@ -426,6 +434,10 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
         && let Some(unknown) = unknown_clip(model, editor.state())
     {
         return Err(Failure::from(unknown).in_file(&model.source));
+    }
+    if let (false, Some(model)) = (moment.layers.layers.is_empty(), editor.library().active()) {
+        layer::check(&moment.layers.layers, model)?;
+        editor.apply(Command::SetLayers(moment.layers.layers.clone()));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {

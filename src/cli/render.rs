@@ -134,7 +134,9 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
     let aspect = aspect(arguments.size);
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        let overrides = Overrides { clip: arguments.moment.clip.is_some(), variant: arguments.variant.is_some() };
+        let moment = &arguments.moment;
+        let layers = !moment.layers.layers.is_empty();
+        let overrides = Overrides { clip: moment.clip.is_some(), layers, variant: arguments.variant.is_some() };
         apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     if let Some(name) = &arguments.variant {

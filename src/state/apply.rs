@@ -13,7 +13,7 @@ use super::{
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
-use crate::retarget::{ClipChanges, JointMap};
+use crate::retarget::{ClipChanges, ClipLayer, JointMap};
 
 const MAX_NAME_CHARS: usize = 80;
 
@@ -49,6 +49,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ClearPose => state.edits.pose.clear(),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
+        Command::SetLayers(layers) => set_layers(state, layers),
         Command::SetShow(show) => state.display.show = show,
         Command::SetChannel(channel) => state.display.channel = channel,
         Command::SetInspect(inspect) => state.inspect = inspect,
@@ -126,6 +127,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (name, changes) in wanted.edits.clips {
         insert_changes(state, name, changes.clamped());
     }
+    set_layers(state, wanted.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
     set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
@@ -292,9 +294,9 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
             state.playhead.time_secs = range.end_secs;
             state.playback.playing = false;
         }
-        // Whole loops are subtracted to keep the playhead small, however long it runs. Not below layers: they loop with
+        // Whole loops are subtracted to keep the playhead small, however long it runs. Not with layers: they loop with
         // durations of their own and would jump.
-        _ if !model.layers(clip).is_empty() => {}
+        _ if !model.layers(clip).is_empty() || !state.edits.layers.is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
             state.playhead.time_secs =
                 range.start_secs + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(length));
@@ -461,6 +463,10 @@ fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
     } else {
         state.edits.clips.insert(name, changes);
     }
+}
+
+fn set_layers(state: &mut ViewerState, layers: Vec<ClipLayer>) {
+    state.edits.layers = layers.into_iter().map(ClipLayer::clamped).collect();
 }
 
 /// Wraps an angle to −180°…180°.

@@ -161,7 +161,9 @@ impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
         matches!(self, Self::Edits(before)
-            if before.retarget != state.retarget || before.edits.clips != state.edits.clips)
+            if before.retarget != state.retarget
+                || before.edits.clips != state.edits.clips
+                || before.edits.layers != state.edits.layers)
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.

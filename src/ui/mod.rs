@@ -7,6 +7,7 @@ mod feet;
 mod gestures;
 mod header;
 mod keys;
+mod layers;
 mod motion;
 mod output;
 mod tabs;

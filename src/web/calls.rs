@@ -254,7 +254,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             Either::Right(_) => {
                 // The last bytes may have arrived together with the click.
                 page.inbox.send(Message::OpenFailedSilently);
-                return Err(Refusal::cancelled("opening was cancelled"));
+                return Err(Refusal::cancelled("Opening was cancelled."));
             }
         };
     if !page.loads.is_latest(number) {

@@ -12,6 +12,7 @@ mod exercise;
 mod header;
 mod inspector;
 mod keys;
+mod layers;
 mod layout;
 mod mirror;
 mod models;
