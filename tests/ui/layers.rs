@@ -72,7 +72,8 @@ fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
     let below = text::below_joint(skeleton.name(skeleton.joint_of_source(5).expect("a joint")));
     scrolled_to(&mut harness, &below);
     press(&mut harness, &below);
-    let limited = ClipLayer { mask: LayerMask { joints: [5].into(), ..LayerMask::default() }, ..wave.clone() };
+    let mut limited = wave.clone();
+    limited.mask.joints.insert(5);
     assert_eq!(layers(&harness), [limited]);
     press(&mut harness, &below);
     assert_eq!(layers(&harness), [wave]);
