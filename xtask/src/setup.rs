@@ -22,9 +22,9 @@ pub fn page() -> anyhow::Result<()> {
     npm_packages()
 }
 
-/// Whether there is a C compiler for wasm, which the page's FBX reader needs.
+/// Whether there is a C compiler for wasm, which the page's FBX reader needs. Apple's clang isn't one.
 pub fn has_clang() -> bool {
-    output("clang", &["--version"]).is_some()
+    output("clang", &["--print-targets"]).is_some_and(|targets| targets.contains("wasm32"))
 }
 
 /// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver and clang. These are system packages, so they
