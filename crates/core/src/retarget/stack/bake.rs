@@ -86,13 +86,14 @@ impl Times {
             if period_secs > 0.0 {
                 self.jump(at(0.0), rounding);
             }
-            for (times, is_step) in clip.timelines().iter().zip(&steps) {
-                for &time in times {
-                    if *is_step {
-                        self.jump(at(time.into()), rounding);
-                    } else {
-                        self.push(at(time.into()));
-                    }
+            let timelines = clip.timelines().iter().zip(&steps);
+            let keys =
+                timelines.flat_map(|(times, is_step)| times.iter().map(move |&time| (f64::from(time), *is_step)));
+            for (secs, is_step) in keys {
+                if is_step {
+                    self.jump(at(secs), rounding);
+                } else {
+                    self.push(at(secs));
                 }
             }
         }
