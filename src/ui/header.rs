@@ -31,7 +31,8 @@ fn has_samples(ui: &Ui) -> bool {
 fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Clips, local);
     if ui.ctx().content_rect().width() >= NAME_WIDTH {
-        ui.label(RichText::new(text::NAME).heading());
+        let name = RichText::new(text::NAME).strong();
+        ui.label(if local.layout.is_narrow { name } else { name.heading() });
         ui.add_space(4.0);
     }
     if local.layout.is_narrow {

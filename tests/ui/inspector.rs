@@ -309,7 +309,7 @@ fn warnings_lead_to_their_nodes_and_have_badges() {
     };
     assert_eq!((described("First"), described("Second")), (None, Some(text::node_warnings(1))));
     harness.get_by_role_and_label(Role::TreeItem, "Second").hover();
-    harness.run();
+    harness.run_steps(60);
     assert!(harness.query_by_label(&text::node_warnings(1)).is_some(), "the tooltip");
     let harness = sample_bench(WIDE);
     assert_eq!(badge(&harness), None);
@@ -419,7 +419,7 @@ fn materials_and_images_are_listed_with_what_they_are() {
         "KHR_materials_clearcoat",
         "Default material",
         "weave",
-        "PNG, 8 × 4, 0.0 MB, base colour, emissive",
+        "PNG, 8 × 4, base colour, emissive, 0.0 MB on the GPU",
     ] {
         assert!(harness.query_by_label(line).is_some(), "{line}");
     }

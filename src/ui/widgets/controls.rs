@@ -54,7 +54,8 @@ pub const ROW_HEIGHT: f32 = 30.0;
 
 /// The height of a row that reacts to the pointer: `height`, or more on sheets, for fingers.
 pub fn row_height(ui: &Ui, height: f32) -> f32 {
-    height.max(ui.spacing().interact_size.y)
+    let least = ui.spacing().interact_size.y;
+    if least < style::TOUCH { height } else { height.max(least) }
 }
 
 /// A row with a label on the left and a switch on the right; returns true when it was flipped.
