@@ -86,14 +86,12 @@ impl Times {
             if period_secs > 0.0 {
                 self.jump(at(0.0), rounding);
             }
-            let timelines = clip.timelines().iter().zip(&steps);
-            let keys =
-                timelines.flat_map(|(times, is_step)| times.iter().map(move |&time| (f64::from(time), *is_step)));
-            for (secs, is_step) in keys {
-                if is_step {
-                    self.jump(at(secs), rounding);
+            for (times, is_step) in clip.timelines().iter().zip(&steps) {
+                let secs = times.iter().map(|&time| at(time.into()));
+                if *is_step {
+                    secs.for_each(|secs| self.jump(secs, rounding));
                 } else {
-                    self.push(at(secs));
+                    secs.for_each(|secs| self.push(secs));
                 }
             }
         }
