@@ -37,9 +37,8 @@ fn cargo_checks() -> anyhow::Result<()> {
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    // Node's tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them. With the
-    // tests, so that their dependencies' features, and everything compiled for them, stay the same.
-    process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
+    // Node's tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them.
+    process::run("cargo", &["build", "--workspace"])
 }
 
 /// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
