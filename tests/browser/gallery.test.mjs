@@ -159,7 +159,7 @@ for (const renderer of BACK_ENDS)
       await page.evaluate(() => document.querySelector("#gallery")?.removeAttribute("hidden"));
       await page.locator("#gallery-own").click();
       await page.locator("#open-files").setInputFiles({ name: "mine.gltf", mimeType: "model/gltf+json", buffer: Buffer.from(triangle().text) });
-      await whenModel(page, "file:mine.gltf");
+      await whenModel(page, "mine.gltf");
       await gallery(page).waitFor({ state: "hidden" });
     });
 
