@@ -9,6 +9,7 @@ mod inspect;
 mod map;
 mod motion;
 mod output;
+mod pin;
 mod pose;
 #[cfg(feature = "render")]
 mod quiet;
@@ -37,6 +38,7 @@ use change::ChangeOptions;
 use failure::{Failure, Outcome};
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
+use pin::PinOptions;
 
 /// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
@@ -96,6 +98,8 @@ struct Moment {
     /// The skinning method.
     #[arg(long, value_enum)]
     skinning: Option<Skinning>,
+    #[command(flatten)]
+    pins: PinOptions,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -140,6 +144,8 @@ struct RetargetArguments {
     options: RetargetOptions,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    pins: PinOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
@@ -237,6 +243,8 @@ struct ConvertArguments {
     clip: Option<String>,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    pins: PinOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
@@ -435,6 +443,11 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
             Skinning::Rigid => SkinningMode::Rigid,
             Skinning::DualQuaternion => SkinningMode::DualQuaternion,
         }));
+    }
+    if let Some(model) = editor.library().active().filter(|_| !moment.pins.is_empty()) {
+        for (joint, pin) in moment.pins.pins(&model.asset, model.recognition())? {
+            editor.apply(Command::SetPin { joint, pin: Some(pin) });
+        }
     }
     Ok(())
 }

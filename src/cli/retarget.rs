@@ -79,6 +79,7 @@ pub(super) fn make(
     let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
     let symmetry = || Symmetry::of(&model.asset, model.recognition());
     let ChangedClip { clip, seam } = arguments.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
+    let clip = arguments.pins.bake(&model.asset, model.recognition(), clip)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);

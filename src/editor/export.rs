@@ -1,14 +1,16 @@
 //! Exports: the active joint map, the model with a retargeted clip, a clip alone. Images are up to the shell, which has the
 //! graphics device.
 
+use glam::Vec3;
+
 use super::names::stem;
 use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;
-use crate::retarget::{bake_layers, baking};
-use crate::state::{active_clip, active_map, written_skeleton};
+use crate::retarget::{ChangedClip, bake_layers, baking};
+use crate::state::{ViewerState, active_clip, active_map, looks_at_camera, pinned_clip, written_skeleton};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +20,7 @@ pub enum Export {
         /// Index into [`Library::motions`](crate::library::Library::motions).
         motion: usize,
     },
-    /// The model with one of its retargeted or changed clips.
+    /// The model with one of its retargeted, changed or pinned clips.
     Model {
         /// Index among all clips of the active model; one of its own clips as it is in the file is an error.
         clip: usize,
@@ -54,7 +56,12 @@ impl ExportedFile {
     }
 }
 
-/// A clip with its layers baked in, if it has any.
+/// Whether a clip as it plays is not in the model's file: it is retargeted, changed or pinned.
+pub fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
+    model.is_derived(clip) || !state.edits.pins.is_empty()
+}
+
+/// A clip with its layers and pins baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
     remark: Option<String>,
@@ -134,15 +141,15 @@ impl Editor {
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        if !model.is_derived(clip) {
+        if !is_derived(model, &self.state, clip) {
             return Err("this clip is in the model's file as it is".to_owned());
         }
         let borrowed = model.borrowed(clip);
-        let changed = model.changed_clip(clip).filter(|_| borrowed.is_none());
-        let renamed = changed.map(|changed| changed.clone().renamed());
         let baked = self.baked_clip(clip)?;
-        let derived = renamed.as_ref().or(baked.clip.as_ref()).or_else(|| model.clip(clip));
-        let clips = [derived.ok_or("there is no such clip")?];
+        let derived = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
+        // The file has the original of one of the model's own clips under the same name.
+        let renamed = borrowed.is_none().then(|| ChangedClip { clip: derived.clone(), seam: None }.renamed());
+        let clips = [renamed.as_ref().unwrap_or(derived)];
         let mut remark = None;
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
@@ -164,13 +171,22 @@ impl Editor {
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
         let layers = model.layers(clip);
-        let Some(clip) = model.clip(clip).filter(|_| !layers.is_empty()) else {
-            return Ok(BakedClip { clip: None, remark: None });
-        };
+        let Some(clip) = model.clip(clip) else { return Ok(BakedClip { clip: None, remark: None }) };
+        let period_secs = f64::from(clip.duration_secs());
         let baking = baking(clip, layers, None);
-        let clip = bake_layers(&model.asset, clip, layers, &baking);
+        let layered = (!layers.is_empty()).then(|| bake_layers(&model.asset, clip, layers, &baking));
+        let eye = looks_at_camera(&self.state).then(|| self.eye());
+        let pinned = pinned_clip(model, &self.state, layered.as_ref().unwrap_or(clip), period_secs, eye);
         let seam =
             "The loop has a seam: the lengths of the model's own clip and the retargeted one don't divide evenly.";
-        Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })
+        let remark = (layered.is_some() && !baking.seamless).then(|| seam.to_owned());
+        Ok(BakedClip { clip: pinned.or(layered), remark })
+    }
+
+    /// The camera's position in the current view.
+    fn eye(&self) -> Vec3 {
+        let mut frame = Frame::default();
+        evaluate(&self.library, &self.state, self.aspect, &mut frame);
+        frame.view.eye
     }
 }

@@ -20,7 +20,7 @@ mod validation;
 pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
-pub use export::{Export, ExportedFile};
+pub use export::{Export, ExportedFile, is_derived};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
 pub use validation::{ValidatorGroup, ValidatorReport};

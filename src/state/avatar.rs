@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::pins::apply_pins;
 use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
 use super::{UpAxis, ViewerState};
 use crate::anim::{
@@ -12,6 +13,7 @@ use crate::anim::{
 };
 use crate::avatar::{Avatar, LookAt, SpringCache, SpringMotion, apply_expressions, resolve_weights};
 use crate::library::{Model, ModelId};
+use crate::retarget::Pin;
 
 /// The target of an avatar's gaze.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -48,6 +50,7 @@ struct SpringsKey {
     repeats: bool,
     up: UpAxis,
     joints: BTreeMap<usize, [f32; 3]>,
+    pins: BTreeMap<usize, Pin>,
 }
 
 impl AvatarPose {
@@ -131,8 +134,9 @@ fn gaze_direction(
 
 impl SpringsKey {
     fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
-        let (revision, up, joints) = (model.clips_revision(), state.edits.up, state.edits.pose.clone());
-        Self { model: model.id, revision, clip, range, repeats, up, joints }
+        let (revision, up) = (model.clips_revision(), state.edits.up);
+        let (joints, pins) = (state.edits.pose.clone(), state.edits.pins.clone());
+        Self { model: model.id, revision, clip, range, repeats, up, joints, pins }
     }
 
     /// Whether [`Self::new`] would return the same, without allocating.
@@ -147,10 +151,11 @@ impl SpringsKey {
         (self.model, self.revision, self.clip) == (model.id, model.clips_revision(), clip)
             && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
             && self.joints == state.edits.pose
+            && self.pins == state.edits.pins
     }
 }
 
-/// The active clip with manually posed joints and constraints, without a crossfade.
+/// The active clip with manually posed and pinned joints and constraints, without a crossfade and gazes at the camera.
 struct ClipMotion<'a> {
     model: &'a Model,
     state: &'a ViewerState,
@@ -164,6 +169,7 @@ impl SpringMotion for ClipMotion<'_> {
         let skeleton = &self.model.asset.skeleton;
         sample_pose(self.model, self.clip, time_secs, time_secs, self.cursor, pose);
         pose_joints(self.model, self.state, pose);
+        apply_pins(self.model, self.state, None, Some(time_secs), pose);
         for constraint in &self.model.asset.avatar.constraints {
             constraint.apply(skeleton, pose);
         }

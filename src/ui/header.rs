@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
 use super::icons::{Icon, icon_button};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
-use crate::editor::{ClipFormat, Export};
+use crate::editor::{ClipFormat, Export, is_derived};
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -138,7 +138,7 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
         let formats = ClipFormat::ALL.into_iter().filter(|format| format.fits(model));
         formats.map(move |format| (text::save_clip(format), Export::Clip { clip, format }))
     });
-    let derived = clip.filter(|&clip| model.is_derived(clip));
+    let derived = clip.filter(|&clip| is_derived(model, shown.state, clip));
     let model_with_clip = derived.map(|clip| (text::SAVE_GLB, Export::Model { clip }));
     let others = [
         borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),

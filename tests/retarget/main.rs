@@ -19,5 +19,6 @@ mod figure;
 mod laws;
 mod layers;
 mod pairs;
+mod pins;
 mod rests;
 mod soles;

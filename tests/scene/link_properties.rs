@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
-use gaitway::retarget::{ClipChanges, ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{
+    ClipChanges, ClipRef, Feet, JointMap, MapEntry, Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
+};
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
     LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice,
@@ -104,7 +106,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..39 {
+        for field in 0..40 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -136,6 +138,15 @@ impl Random {
     fn clips(&mut self) -> BTreeMap<String, ClipChanges> {
         let changes = ClipChanges { reverse: true, mirror: self.often(), ..ClipChanges::default() };
         (0..self.below(4)).map(|_| (self.text(), changes.clone())).collect()
+    }
+
+    fn pin(&mut self) -> Pin {
+        let point = Vec3::new(self.number(), self.number(), self.number());
+        let goals =
+            [PinGoal::Point(point), PinGoal::Joint(self.below(300), point), PinGoal::Look(point), PinGoal::Camera];
+        let [start_secs, end_secs, blend_secs] = [0; 3].map(|_| f64::from(self.number()));
+        let times = PinTimes { start_secs, end_secs, blend_secs };
+        Pin { goal: self.one(&goals), times: self.often().then_some(times) }
     }
 
     fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
@@ -204,6 +215,7 @@ impl Random {
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
             37 => state.edits.clips = self.clips(),
+            38 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
             26 => state.camera_options.turntable = self.number(),
             27 => {
                 state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();

@@ -159,6 +159,7 @@ export interface State {
   hidden: string;
   camera: string;
   pose: string;
+  pin: string[];
   names: string;
   embed: boolean;
   exposure: number;

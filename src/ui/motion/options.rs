@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use egui::{RichText, Ui};
 
 use super::{Contents, Pairing};
-use crate::editor::{ClipFormat, Export};
+use crate::editor::{ClipFormat, Export, is_derived};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
@@ -130,7 +130,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
-    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.is_derived(clip));
+    let clip = active_clip(pairing.model, shown.state).filter(|&clip| is_derived(pairing.model, shown.state, clip));
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
     if wide(ui, clip.is_some(), text::SAVE_GLB)

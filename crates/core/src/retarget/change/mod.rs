@@ -5,7 +5,7 @@ mod mirror;
 mod path;
 mod seam;
 mod time;
-mod track;
+pub(in crate::retarget) mod track;
 
 use serde::{Deserialize, Serialize};
 
