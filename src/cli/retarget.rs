@@ -171,6 +171,7 @@ fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
     set(&mut map.root.yaw, options.yaw);
     map.root.extract |= options.extract_root;
     map.feet = options.feet.map_or(map.feet, Into::into);
+    map.contacts = options.contacts.map_or(map.contacts, Into::into);
     map.translations = options.translations.map_or(map.translations, Into::into);
     map.scales = options.scales.map_or(map.scales, Into::into);
     map.rest.model = options.rest_model.map_or(map.rest.model, Into::into);
@@ -288,10 +289,13 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          limb directions   mean error {}, max. {}\n\
          facing            mean error {}, max. {}\n\
          rotations         mean error {}, max. {}\n\
+         largest turn      {} per sixtieth of a second\n\
          foot slide        {} (source: {})\n\
          hover             {}\n\
          sole penetration  {}\n\
          joint penetration {}\n\
+         in itself         {}\n\
+         contact error     {}\n\
          planted feet      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
@@ -304,11 +308,14 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.facing_error_degrees_max, "°"),
         number(figures.orientation_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_max, "°"),
+        number(figures.largest_turn_degrees_per_frame, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.foot_hover_metres_mean, " m"),
         number(figures.sole_penetration_metres_max, " m"),
         number(figures.ground_penetration_metres_max, " m"),
+        number(figures.self_penetration_share.map(|share| 100.0 * share), " %"),
+        number(figures.contact_error_metres_mean, " m"),
         retargeted.planting.map_or("–".to_owned(), |planting| planting.to_string()),
     )
 }

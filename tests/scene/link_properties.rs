@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
-use gaitway::retarget::{ClipChanges, ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{ClipChanges, ClipRef, Contacts, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
     LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice,
@@ -85,7 +85,9 @@ impl Random {
         });
         let joints: BTreeMap<usize, MapEntry> = joints.collect();
         let root = if self.often() { self.root() } else { RootOptions::default() };
-        let map = JointMap { joints, root, feet: self.one(&[Feet::Off, Feet::Plant]), ..JointMap::default() };
+        let feet = self.one(&[Feet::Off, Feet::Plant]);
+        let contacts = self.one(&[Contacts::Off, Contacts::Keep]);
+        let map = JointMap { joints, root, feet, contacts, ..JointMap::default() };
         MotionMap::Numbers(NumberedMap { checksum: self.word(), map })
     }
 
@@ -104,7 +106,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..39 {
+        for field in 0..40 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -203,6 +205,7 @@ impl Random {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
+            39 => state.retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),
             37 => state.edits.clips = self.clips(),
             26 => state.camera_options.turntable = self.number(),
             27 => {

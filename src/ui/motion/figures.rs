@@ -76,6 +76,9 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         ground_penetration_metres_max,
         foot_hover_metres_mean,
         sole_penetration_metres_max,
+        largest_turn_degrees_per_frame,
+        self_penetration_share,
+        contact_error_metres_mean,
         coverage,
     } = *figures;
     let degrees = |name, value: Option<f64>| figure(name, value.map(|value| format!("{value:.2}°")));
@@ -95,12 +98,16 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         group(capitals!(text::ROTATION_ERROR), "Difference from the source's rotations, each from its own rest pose."),
         degrees(text::MEAN, orientation_error_degrees_mean),
         degrees("Largest", orientation_error_degrees_max),
+        degrees("Largest turn per frame", largest_turn_degrees_per_frame),
         group("FEET", "Measured while the source's foot is on the ground, next to the source's own slide."),
         speed("Slide", foot_slide_metres_per_sec),
         speed("Slide of the source", foot_slide_source_metres_per_sec),
         length("Mean height of the soles", foot_hover_metres_mean),
         length("Max. sole penetration", sole_penetration_metres_max),
         length("Max. joint penetration", ground_penetration_metres_max),
+        group("CONTACTS", "Where the source touches itself, and limbs inside other parts of the body."),
+        length("Mean error of contacts", contact_error_metres_mean),
+        figure("Inside the body", self_penetration_share.map(|share| format!("{:.1} %", 100.0 * share))),
     ];
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));

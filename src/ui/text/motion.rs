@@ -185,6 +185,7 @@ pub const REDO_KEY: &str = "Redo (Ctrl+Y)";
 // Options
 /// Switch that plants the feet.
 pub const PLANT_FEET: &str = "Hold feet on the ground";
+pub const KEEP_CONTACTS: &str = "Keep contacts of the body";
 /// Option of several choices: decides by the file.
 pub const AUTOMATIC: &str = "Automatic";
 /// Option: keeps translations, scales or a part of the root motion.

@@ -2,7 +2,7 @@
 //! format.
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
-//! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
+//! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps contacts, `bake` builds the clip, `measure` compares it
 //! with its source. `change` mirrors, trims, loops and moves any clip. `pose`, `keys` and `math` are shared by all.
 //!
 //! ```
@@ -29,6 +29,7 @@
 mod align;
 mod bake;
 mod change;
+mod contacts;
 mod feet;
 mod keys;
 mod map;
@@ -44,8 +45,8 @@ pub use bake::{RetargetError, Retargeted};
 pub use change::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 pub use feet::Planting;
 pub use map::{
-    ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
-    Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
+    Pair, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
     opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FootTrack, StagePair};

@@ -5,9 +5,11 @@ use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
+use crate::retarget::contacts::{Bodies, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
@@ -44,6 +46,13 @@ pub struct Figures {
     pub foot_hover_metres_mean: Option<f64>,
     /// How deep the lowest point of either sole goes below the same ground, at any measured time.
     pub sole_penetration_metres_max: Option<f64>,
+    /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
+    pub largest_turn_degrees_per_frame: Option<f64>,
+    /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
+    /// parts are solids fitted to the mesh; `None` without one.
+    pub self_penetration_share: Option<f64>,
+    /// Mean distance of the source's contacts with itself from where the target has them.
+    pub contact_error_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -58,11 +67,14 @@ const FACING: [(Slot, Slot); 6] = [
     (Slot::RightHand, Slot::RightMiddleProximal),
 ];
 
+/// Contacts of the body are looked for at most this often: a bit more than 30 times per second.
+const TOUCH_STEP_SECS: f32 = 0.03;
+
 /// A clip of the target to measure.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredClip<'a> {
     pub clip: &'a Clip,
-    /// The same without planted feet, if they are planted.
+    /// The same without planted feet and kept contacts, if they are.
     pub unplanted: Option<&'a Clip>,
 }
 
@@ -93,8 +105,8 @@ impl Spread {
 /// Measures a clip and tracks its feet over time.
 pub fn measure(
     transfer: &Transfer,
-    source_slots: &Humanoid,
-    target_slots: &Humanoid,
+    bodies: Option<&Bodies>,
+    [source_slots, target_slots]: [&Humanoid; 2],
     measured: MeasuredClip,
 ) -> (Figures, Vec<FootTrack>) {
     let times = measured_times(transfer.tracks.clip);
@@ -114,6 +126,10 @@ pub fn measure(
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet);
+    let bodies = bodies.filter(|bodies| bodies.target.has_mesh);
+    let mut touches = TouchFigures::default();
+    let mut touches_secs = f32::NEG_INFINITY;
+    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
     let mut scratches = [Scratch::default(), Scratch::default()];
     for (index, &time) in times.iter().enumerate() {
         let source = transfer.source_pose(time);
@@ -125,6 +141,11 @@ pub fn measure(
         add_orientation_errors(&mut orientation, transfer, &source, unplanted.as_ref().unwrap_or(&target), turn_back);
         add_direction_errors(&mut direction, &segments, &source, &target, turn_back);
         add_direction_errors(&mut facing, &facing_segments, &source, &target, turn_back);
+        if let Some(bodies) = bodies.filter(|_| time - touches_secs >= TOUCH_STEP_SECS) {
+            touches_secs = time;
+            let frames = [bodies.source.frames(&source), bodies.target.frames(&target)];
+            touches.add(bodies, frames, (turn_back.conjugate(), scale));
+        }
         if let Some(ground) = ground {
             let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
             penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
@@ -150,6 +171,13 @@ pub fn measure(
         ground_penetration_metres_max: penetration,
         foot_hover_metres_mean: contacts.hover,
         sole_penetration_metres_max: sole_penetration,
+        largest_turn_degrees_per_frame: largest_turn_degrees(
+            transfer.target_skeleton,
+            &transfer.map.pairs,
+            measured.clip,
+        ),
+        self_penetration_share: touches.self_penetration_share(),
+        contact_error_metres_mean: touches.contact_error(),
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)
