@@ -76,6 +76,7 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         ground_penetration_metres_max,
         foot_hover_metres_mean,
         sole_penetration_metres_max,
+        largest_turn_degrees_per_frame,
         coverage,
     } = *figures;
     let degrees = |name, value: Option<f64>| figure(name, value.map(|value| format!("{value:.2}°")));
@@ -95,6 +96,7 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         group(capitals!(text::ROTATION_ERROR), "Difference from the source's rotations, each from its own rest pose."),
         degrees(text::MEAN, orientation_error_degrees_mean),
         degrees("Largest", orientation_error_degrees_max),
+        degrees("Largest turn in 1/60 s", largest_turn_degrees_per_frame),
         group("FEET", "Measured while the source's foot is on the ground, next to the source's own slide."),
         speed("Slide", foot_slide_metres_per_sec),
         speed("Slide of the source", foot_slide_source_metres_per_sec),

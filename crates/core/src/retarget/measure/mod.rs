@@ -3,6 +3,7 @@
 mod figures;
 mod foot_track;
 mod stage;
+mod turn;
 
 pub use figures::{Figures, MeasuredClip, measure};
 pub use foot_track::FootTrack;
