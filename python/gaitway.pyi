@@ -88,6 +88,7 @@ class RetargetOptions(TypedDict, total=False):
     make_loop: float | None
     offset: tuple[float, float] | None
     turn: float | None
+    layer: list[str] | None
     loops: int | None
 
 def load_model(*paths: _Path) -> Model: ...

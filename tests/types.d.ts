@@ -40,6 +40,7 @@ export interface RetargetReport {
 export interface Reply {
   result?: any;
   error?: string;
+  code?: string;
 }
 
 declare global {

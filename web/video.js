@@ -1,6 +1,8 @@
-// Encodes a video frame by frame, however long each takes to draw. A part of the page that is downloaded when the first
-// video is recorded. Uses WebCodecs, and MediaRecorder where that is missing.
+// Encodes a video frame by frame, however long each takes to draw, or an archive with an image of each. A part of the page
+// that is downloaded when it is first used. Uses WebCodecs, and MediaRecorder where that is missing.
 //! Contains Mediabunny (MPL-2.0), unmodified; its source code: https://github.com/Vanilagy/mediabunny
+//! Contains fflate (MIT), Copyright (c) 2023 Arjun Barrett
+import { Zip, ZipPassThrough } from "fflate";
 import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampleSource, WebMOutputFormat, getFirstEncodableVideoCodec } from "mediabunny";
 
 /**
@@ -10,12 +12,13 @@ import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampl
  * @property {number} framesPerSec
  * @property {number} frameCount
  * @property {boolean} isTransparent
+ * @property {boolean} asImages An archive of PNGs instead of a video.
  * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight
  *   alpha.
  * @property {AbortSignal} signal
  */
 
-/** @typedef {{ blob: Blob, extension: "mp4" | "webm" }} EncodedVideo */
+/** @typedef {{ blob: Blob, extension: "mp4" | "webm" | "zip" }} EncodedVideo */
 
 /** @typedef {import("mediabunny").VideoCodec} Codec */
 
@@ -38,6 +41,7 @@ const RECORDER_BITS_PER_SEC = 12_000_000;
  * @returns {Promise<EncodedVideo>}
  */
 export async function encode(video) {
+  if (video.asImages) return encodeImages(video);
   const quality = new Quality("high");
   const { width, height, isTransparent } = video;
   const canEncode = typeof VideoEncoder !== "undefined";
@@ -77,6 +81,35 @@ async function encodeFrames(video, codec, quality) {
   }
   if (encodedCount !== frameCount || target.buffer === null) throw new Error(`the browser encoded ${encodedCount} of ${frameCount} frames`);
   return { blob: new Blob([target.buffer]), extension: isMp4 ? "mp4" : "webm" };
+}
+
+/**
+ * @param {Video} video
+ * @returns {Promise<EncodedVideo>}
+ */
+async function encodeImages(video) {
+  const { width, height, frameCount } = video;
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (context === null) throw new Error("this browser can't encode images of this size.");
+  const digits = String(frameCount).length;
+  /** @type {Uint8Array<ArrayBuffer>[]} */
+  const chunks = [];
+  const zip = new Zip((error, chunk) => {
+    if (error !== null) throw error;
+    chunks.push(/** @type {Uint8Array<ArrayBuffer>} */ (chunk));
+  });
+  for (let index = 0; index < frameCount; index++) {
+    const data = await nextFrame(video, index);
+    context.putImageData(new ImageData(new Uint8ClampedArray(data.buffer), width, height), 0, 0);
+    const png = await canvas.convertToBlob({ type: "image/png" });
+    // Stored as they are, since PNGs are compressed.
+    const file = new ZipPassThrough(`frame-${String(index + 1).padStart(digits, "0")}.png`);
+    zip.add(file);
+    file.push(new Uint8Array(await png.arrayBuffer()), true);
+  }
+  zip.end();
+  return { blob: new Blob(chunks), extension: "zip" };
 }
 
 /**

@@ -58,7 +58,8 @@ pub fn propose_map(py: Python<'_>, model: PyRef<'_, Model>, motion: PyRef<'_, Mo
 /// Retargets a clip of a motion to a model.
 ///
 /// `map` is a joint map: a dictionary or the path of a file; without one it is proposed. Options are those of `gaitway retarget`
-/// with `_` for `-`, which override the map: `clip="run"`, `feet="plant"`, `horizontal="in-place"`, `mirror=True`, `trim=(0.5, 1.7)`.
+/// with `_` for `-`, which override the map: `clip="run"`, `feet="plant"`, `horizontal="in-place"`, `mirror=True`, `trim=(0.5, 1.7)`. A
+/// list repeats an option.
 #[pyfunction]
 #[pyo3(signature = (model, motion, map = None, **options))]
 pub fn retarget(
@@ -84,21 +85,26 @@ fn read_map(map: &Bound<'_, PyAny>) -> PyResult<OpenedMap> {
     raised(map.py().detach(|| functions::load_map(&path)))
 }
 
-/// Writes keyword arguments as the command line has them: a flag is `True`, several numbers are a tuple or a list.
+/// Writes keyword arguments as the command line has them: a flag is `True`, several numbers are a tuple, and a list repeats the option.
 fn arguments(options: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
     let mut arguments = Vec::new();
     for (name, value) in options {
         let name = format!("--{}", name.cast::<PyString>()?.to_string().replace('_', "-"));
         if let Ok(flag) = value.cast::<PyBool>() {
             arguments.extend(flag.is_true().then_some(name));
-        } else if value.is_instance_of::<PyTuple>() || value.is_instance_of::<PyList>() {
-            let parts: PyResult<Vec<String>> = value.try_iter()?.map(|part| Ok(part?.str()?.to_string())).collect();
-            arguments.push(format!("{name}={}", parts?.join(",")));
+        } else if let Ok(numbers) = value.cast::<PyTuple>() {
+            arguments.push(format!("{name}={}", texts(numbers)?.join(",")));
+        } else if let Ok(values) = value.cast::<PyList>() {
+            arguments.extend(texts(values)?.iter().map(|value| format!("{name}={value}")));
         } else if !value.is_none() {
             arguments.push(format!("{name}={}", value.str()?));
         }
     }
     Ok(arguments)
+}
+
+fn texts(values: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    values.try_iter()?.map(|value| Ok(value?.str()?.to_string())).collect()
 }
 
 /// Turns a document into dictionaries, lists and numbers.

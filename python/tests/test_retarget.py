@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from support import MODEL, MOTION, cli, text_of_cli
+from support import MODEL, MOTION, SAMPLES, cli, text_of_cli
 
 import gaitway
 
@@ -15,7 +15,7 @@ OPTIONS = {
     "clip": ({"clip": 0}, ["--clip", "0"]),
     "planted": ({"feet": "plant", "horizontal": "in-place"}, ["--feet", "plant", "--horizontal", "in-place"]),
     "changed": (
-        {"mirror": True, "reverse": False, "trim": (0.1, 0.5), "offset": [-1, 0.5], "turn": -90, "speed": None},
+        {"mirror": True, "reverse": False, "trim": (0.1, 0.5), "offset": (-1, 0.5), "turn": -90, "speed": None},
         ["--mirror", "--trim", "0.1,0.5", "--offset", "-1,0.5", "--turn", "-90"],
     ),
 }
@@ -40,6 +40,16 @@ def test_figures_and_files(
     assert result.figures["coverage"] > 0.5
     assert result.clip.name == report["clip"]
     assert result.clip.duration_secs == pytest.approx(report["duration_secs"])
+
+
+def test_options_that_repeat(motion: gaitway.Motion, tmp_path: Path) -> None:
+    pilot, layers = SAMPLES / "pilot.glb", ["wave:weight:0.5", "idle:additive"]
+    arguments = ["retarget", "--model", pilot, "--motion", MOTION, "--layer", layers[0], "--layer", layers[1]]
+    report = cli(*arguments, "--clip-only", "--out", tmp_path / "theirs.glb")
+    result = gaitway.retarget(gaitway.load_model(pilot), motion, layer=layers)
+    result.clip.write(tmp_path / "ours.glb")
+    assert result.report == report
+    assert (tmp_path / "ours.glb").read_bytes() == (tmp_path / "theirs.glb").read_bytes()
 
 
 def test_models_with_clips(model: gaitway.Model, motion: gaitway.Motion, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ use crate::files::Role;
 use crate::library::ModelId;
 use crate::state::ViewerState;
 
-/// A video to record.
+/// A video, or a sequence of images, to record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Video {
     /// File name without its extension, which depends on what the host can encode.
@@ -19,12 +19,17 @@ pub struct Video {
     pub frame_count: u32,
     /// Keeps the frames' alpha.
     pub transparent: bool,
+    /// Saves PNGs in an archive instead of a video.
+    pub as_images: bool,
 }
 
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.
 pub trait Host {
     /// Lets the user choose files, which are then opened.
     fn choose_files(&self, role: Role, inbox: &Inbox);
+
+    /// Abandons the load under way: nothing of it is shown.
+    fn cancel_opening(&self) {}
 
     /// Whether there is a gallery of samples.
     fn has_gallery(&self) -> bool {

@@ -8,11 +8,12 @@ use std::sync::{Arc, Mutex};
 use crate::editor::{Contents, ExportedFile};
 use crate::library::ModelId;
 use crate::state::{Command, ViewerState};
+use crate::ui::Progress;
 
 /// A message to the frame loop.
 pub enum Message {
     /// A load has started or progressed; displayed until `Opened` or `OpenFailed`.
-    OpenProgress(Opening),
+    OpenProgress(Progress),
     /// Files are ready: models to activate, motions to retarget. With `state` (a link), that replaces the state too.
     Opened {
         /// The models, motions and joint map that were read.
@@ -42,17 +43,6 @@ pub enum Message {
     Validated(ModelId, Result<String, String>),
     /// A call from the script interface.
     Script(ScriptCall),
-}
-
-/// Progress of a load.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Opening {
-    /// Name of the file being read, as shown to the user.
-    pub name: String,
-    /// Bytes read so far.
-    pub received_bytes: u64,
-    /// 0 if unknown.
-    pub total_bytes: u64,
 }
 
 /// Called once with the result, or with the message for the user.

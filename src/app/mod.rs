@@ -17,7 +17,7 @@ mod viewport;
 
 pub use device::{FatalHook, set_fatal_hook};
 pub use host::{Host, Video};
-pub use inbox::{Inbox, Loads, Message, Opening, Reply, ScriptCall};
+pub use inbox::{Inbox, Loads, Message, Reply, ScriptCall};
 pub use run::App;
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -4,11 +4,12 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use super::{App, Host, Inbox, Loads, Message, Opening, native_options};
+use super::{App, Host, Inbox, Loads, Message, native_options};
 use crate::editor::{Contents, ExportedFile};
 use crate::files::{Disk, OpenError, Role, save_file};
 use crate::samples;
 use crate::state::ViewerState;
+use crate::ui::Progress;
 
 /// Why the window could not be opened, or stopped.
 #[derive(Debug, thiserror::Error)]
@@ -78,8 +79,7 @@ impl Window {
     fn open(&self, paths: Vec<PathBuf>, role: Role, inbox: &Inbox) {
         let number = self.loads.start();
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
-        let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
-        inbox.send(Message::OpenProgress(opening));
+        inbox.send(Message::OpenProgress(Progress { name: name.unwrap_or_default(), ..Progress::default() }));
         let (sender, context) = (self.sender.clone(), self.context.clone());
         std::thread::spawn(move || {
             let disk = Disk::default();
@@ -112,6 +112,11 @@ impl Host for Window {
             let paths = files.await?.iter().map(|file| file.path().to_owned()).collect();
             Some(Answer::Open(paths, role))
         });
+    }
+
+    fn cancel_opening(&self) {
+        // Its result arrives too late.
+        self.loads.start();
     }
 
     fn save_file(&self, file: ExportedFile, _inbox: &Inbox) {
@@ -195,6 +200,11 @@ mod tests {
         }
         window.before_frame(&inbox);
         assert!(matches!(inbox.take(), Some(Message::OpenFailed(name)) if name == "new"));
+        assert!(inbox.take().is_none());
+        let cancelled = Loaded { number: new, contents: Err("cancelled".to_owned()), files_read: Vec::new() };
+        window.sender.send(cancelled).expect("the window is open");
+        window.cancel_opening();
+        window.before_frame(&inbox);
         assert!(inbox.take().is_none());
     }
 

@@ -1,4 +1,4 @@
-//! Recording a video of one loop of the clip. The host asks for one frame after the other and encodes it, so the video is the
+//! Recording one loop of the clip as a video or as images. The host asks for one frame after the other and encodes it, so the video is the
 //! same however long a frame takes. What is on screen stays as it is.
 
 use super::save::saved;
@@ -25,10 +25,11 @@ impl App {
         let Some(model) = library.active() else { return };
         let aspect = size[0] as f32 / size[1] as f32;
         let Some(frames) = LoopFrames::new(library, state, aspect, settings.frames_per_sec) else { return };
+        let VideoSettings { frames_per_sec, as_images, .. } = settings;
         let transparent = settings.transparent || state.display.background == Background::Transparent;
         let (frame_count, model) = (frames.count(), model.id);
         let name = self.editor.file_stem();
-        let video = Video { name, size, frames_per_sec: settings.frames_per_sec, frame_count, transparent };
+        let video = Video { name, size, frames_per_sec, frame_count, transparent, as_images };
         match self.host.record(video, &self.inbox) {
             Ok(()) => {
                 let remark = (size != settings.size).then(|| format!("It is {} × {} pixels.", size[0], size[1]));

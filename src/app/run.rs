@@ -8,13 +8,13 @@ use super::record::Recording;
 use super::save::saved;
 use super::timing::Timing;
 use super::viewport::Viewport;
-use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device};
+use super::{Host, Inbox, Message, Reply, ScriptCall, device};
 use crate::editor::{Admit, Contents, Editor};
 use crate::files::{Role, set_largest_image, set_texture_formats};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::texture_formats;
 use crate::state::{Command, PageOptions, ViewerState, to_link};
-use crate::ui::{self, Output, Progress, Shown, UiAction, UiState};
+use crate::ui::{self, Output, Shown, UiAction, UiState};
 
 /// The app that eframe runs, in a window or a page: owns the editor, the viewport and the panels.
 pub struct App {
@@ -134,7 +134,7 @@ impl App {
 
     fn handle(&mut self, message: Message) {
         match message {
-            Message::OpenProgress(opening) => self.panels.messages.progress = Some(progress(&opening)),
+            Message::OpenProgress(progress) => self.panels.messages.progress = Some(progress),
             Message::Opened { contents, state, is_change, reply } => {
                 let progress = self.panels.messages.progress.take();
                 let opened = match state {
@@ -255,6 +255,10 @@ impl App {
             UiAction::Redo => {
                 self.editor.redo();
                 Ok(())
+            }
+            UiAction::CancelOpening => {
+                self.panels.messages.progress = None;
+                return self.host.cancel_opening();
             }
             UiAction::OpenFiles => return self.host.choose_files(Role::Any, &self.inbox),
             UiAction::ShowGallery => return self.host.show_gallery(),
@@ -444,10 +448,4 @@ impl eframe::App for App {
     fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
         Some(self)
     }
-}
-
-fn progress(opening: &Opening) -> Progress {
-    let total = opening.total_bytes;
-    let fraction = (total > 0).then(|| (opening.received_bytes as f64 / total as f64).clamp(0.0, 1.0) as f32);
-    Progress { name: opening.name.clone(), fraction }
 }

@@ -35,7 +35,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
     let Ok([(name, asset)]) = <[_; 1]>::try_from(models) else { return Err(SortError::SeveralModels { found }.into()) };
     let options = LoadOptions { bvh_unit_metres: arguments.unit.map(Unit::metres), ..LoadOptions::default() };
     let format = clip_format_of(&arguments.out).filter(|&format| {
-        let is_copy = asset.format == "vrma" && arguments.clip.is_none() && arguments.changes.changes().is_none();
+        let is_copy = asset.format == "vrma" && arguments.clip.is_none() && !changes_clip(arguments);
         format == ClipFormat::Bvh || (format == ClipFormat::Vrma && !is_copy)
     });
     if let Some(format) = format {
@@ -44,7 +44,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         let extensions = vec![format.extension()];
         return Ok((clip_alone(name, asset, arguments, format)?, extensions));
     }
-    if !arguments.changes.changes().is_none() {
+    if changes_clip(arguments) {
         if arguments.unit.is_some() {
             let failure = Failure::expected("a .bvh or .vrma to change a clip of a .bvh with a unit", "a .glb");
             return Err(failure.at("--unit"));
@@ -68,6 +68,11 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
     Ok((bytes, model_extensions(asset)))
 }
 
+/// Whether the arguments ask for another clip than the file's.
+fn changes_clip(arguments: &ConvertArguments) -> bool {
+    !arguments.changes.changes().is_none() || !arguments.layers.layers.is_empty()
+}
+
 /// Writes one clip with its skeleton.
 fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: ClipFormat) -> Outcome<Vec<u8>> {
     let clip = changed_clip(&name, &asset, arguments)?.clip;
@@ -75,17 +80,18 @@ fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: 
     Ok(write_clip(&model, &model.asset.skeleton, &clip, clip.frames_per_sec(), format)?)
 }
 
-/// Returns the chosen clip with its changes, and prints its seam and warnings.
+/// Returns the chosen clip with its changes and layers, and prints its seam and warnings.
 fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
     let clip = &asset.clips[choose_clip(name, asset, arguments.clip.as_deref())?];
     let mut warnings = Vec::new();
     let symmetry = || Symmetry::of(asset, &recognize(asset));
-    let changed = arguments.changes.change(asset, clip.clone(), symmetry, &mut warnings)?;
+    let ChangedClip { clip, seam } = arguments.changes.change(asset, clip.clone(), symmetry, &mut warnings)?;
+    let clip = arguments.layers.bake(asset, clip, || recognize(asset), false, &mut warnings)?;
     warnings.iter().for_each(|(_, message)| warn(message));
-    if let Some(seam) = changed.seam {
+    if let Some(seam) = seam {
         print_error(&format!("seam: {seam}; blended"));
     }
-    Ok(changed)
+    Ok(ChangedClip { clip, seam })
 }
 
 /// Writes a model of another format in the pose of a link.

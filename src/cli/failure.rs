@@ -97,7 +97,7 @@ impl From<UnknownName> for Failure {
 
 fn load_parts(error: &LoadError) -> Failure {
     match error {
-        LoadError::Invalid { file, place, expected, found } => {
+        LoadError::Invalid { file, place, expected, found } | LoadError::TooLarge { file, place, expected, found } => {
             let place = Some(place.as_str()).filter(|place| !place.is_empty());
             Failure::parts(Some(file), place, Some(expected), Some(found))
         }

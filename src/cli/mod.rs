@@ -7,6 +7,7 @@ mod failure;
 pub mod functions;
 mod inputs;
 mod inspect;
+mod layer;
 mod map;
 mod motion;
 mod output;
@@ -16,6 +17,8 @@ mod quiet;
 #[cfg(feature = "render")]
 mod render;
 mod retarget;
+#[cfg(feature = "render")]
+mod sequence;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -36,6 +39,7 @@ use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use change::ChangeOptions;
 use failure::{Failure, Outcome};
+use layer::LayerOptions;
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
 
@@ -62,7 +66,7 @@ enum Action {
     Retarget(Box<RetargetArguments>),
     /// Converts any supported model to a single .glb, or one of its clips to .bvh or .vrma.
     Convert(ConvertArguments),
-    /// Renders the same image as the page, without a window.
+    /// Renders the same image as the page, or the frames of a clip, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
 }
@@ -91,6 +95,8 @@ struct Moment {
     /// first clip.
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// Seconds into the clip, clamped to its end.
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = read_seconds)]
     time: Option<f64>,
@@ -166,6 +172,8 @@ struct RetargetChoices {
     options: RetargetOptions,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
@@ -245,6 +253,8 @@ struct ConvertArguments {
     clip: Option<String>,
     #[command(flatten)]
     changes: ChangeOptions,
+    #[command(flatten)]
+    layers: LayerOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
@@ -297,9 +307,13 @@ struct RenderArguments {
     input: Files,
     #[command(flatten)]
     motion: MotionArguments,
-    /// The image to write; `-` for standard output.
-    #[arg(long, value_name = "PNG")]
+    /// The image to write; `-` for standard output. With --frames, a new folder for images, or a video (.mp4, .webm; needs
+    /// ffmpeg).
+    #[arg(long, value_name = "PNG|FOLDER|VIDEO")]
     out: PathBuf,
+    /// Renders one loop of the clip, with the loop mode and speed of the view, at this many frames per second.
+    #[arg(long, value_name = "FPS", value_parser = clap::value_parser!(u32).range(1..=240), conflicts_with = "time")]
+    frames: Option<u32>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = read_size)]
     size: [u32; 2],
@@ -428,6 +442,10 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
         && let Some(unknown) = unknown_clip(model, editor.state())
     {
         return Err(Failure::from(unknown).in_file(&model.source));
+    }
+    if let (false, Some(model)) = (moment.layers.layers.is_empty(), editor.library().active()) {
+        layer::check(&moment.layers.layers, model)?;
+        editor.apply(Command::SetLayers(moment.layers.layers.clone()));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {

@@ -12,7 +12,9 @@ use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Held, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip, unknown_variant};
+use crate::state::{
+    ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip, unknown_layer, unknown_variant,
+};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
@@ -121,6 +123,7 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments, disk: &Di
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Overrides {
     pub clip: bool,
+    pub layers: bool,
     pub variant: bool,
 }
 
@@ -163,6 +166,10 @@ pub(super) fn apply_link(
     let unknown = editor.library().active().and_then(|model| unknown_clip(model, editor.state()));
     if let Some(unknown) = unknown.filter(|_| !overrides.clip && arguments.motion.is_none()) {
         warn(&format!("--view: clip: {unknown}; the rest pose is used"));
+    }
+    let unknown = editor.library().active().and_then(|model| unknown_layer(model, &editor.state().edits.layers));
+    if let Some(unknown) = unknown.filter(|_| !overrides.layers) {
+        warn(&format!("--view: layers: {unknown}; the layer is left out"));
     }
     let unknown = editor.library().active().and_then(|model| unknown_variant(model, editor.state()));
     if let Some(unknown) = unknown.filter(|_| !overrides.variant) {

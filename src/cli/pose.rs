@@ -12,7 +12,9 @@ use crate::frame::{NodePose, PoseDocument};
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     if let Some(link) = &arguments.view {
-        let overrides = Overrides { clip: arguments.moment.clip.is_some(), ..Overrides::default() };
+        let moment = &arguments.moment;
+        let layers = !moment.layers.layers.is_empty();
+        let overrides = Overrides { clip: moment.clip.is_some(), layers, ..Overrides::default() };
         apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;

@@ -1,49 +1,102 @@
-//! `gaitway render`: renders the same image as the page, without a window.
+//! `gaitway render`: renders the same image as the page, or the frames of one loop, without a window.
 
 use serde_json::json;
 
 use super::failure::{Failure, Outcome};
 use super::motion::{Overrides, apply_link, open_editor};
-use super::output::{check_output, print_error, write_output};
+use super::output::{check_output, is_standard_output, print_error, write_output};
 use super::quiet::Quiet;
+use super::sequence::{Format, Sequence};
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::{Contents, Editor};
 use crate::files::{Disk, Role, encode_png};
 use crate::frame::{Frame, current_orbit, evaluate};
+use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
-    CameraChoice, Command, EnvironmentChoice, NameKind, OrbitCamera, UnknownName, active_variant, from_object,
-    source_on_stage,
+    Background, CameraChoice, Command, EnvironmentChoice, LoopFrames, NameKind, OrbitCamera, UnknownName, ViewerState,
+    active_variant, from_object, source_on_stage,
 };
 
 /// File extensions for the image.
 const EXTENSIONS: &[&str] = &["png"];
 
+/// The message for pixels that didn't arrive.
+pub(super) const NOT_READ: &str = "couldn't read the image back from the graphics device";
+
 pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     let editor = open_requested_view(arguments, disk)?;
-    check_output(&arguments.out, EXTENSIONS, disk)?;
-    let (library, state) = (editor.library(), editor.state());
-    let [width, height] = arguments.size;
-    let mut frame = Frame::default();
-    evaluate(library, state, width as f32 / height as f32, &mut frame);
-
-    let quiet = Quiet::start();
-    let device = headless_device();
-    drop(quiet);
-    // On failure, try again without silencing the driver, whose output may explain why.
-    let (device, queue, adapter) = device.or_else(|_| headless_device())?;
-    print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
-    let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
-    let source = source_on_stage(library, state).map(|source| source.model);
-    for model in library.models().iter().chain(source) {
-        renderer.upload(&device, &queue, model)?;
+    match arguments.frames {
+        Some(frames_per_sec) => render_frames(arguments, frames_per_sec, &editor, disk),
+        None => render_picture(arguments, &editor, disk),
     }
-    renderer.draw(&device, &queue, &frame, arguments.size);
-    let pixels = pollster::block_on(read_pixels(&device, &queue, renderer.output()));
-    let Some(png) = encode_png(width, height, &pixels) else {
-        return Err(Failure::new("couldn't read the image back from the graphics device"));
-    };
+}
+
+fn render_picture(arguments: &RenderArguments, editor: &Editor, disk: &Disk) -> Outcome {
+    check_output(&arguments.out, EXTENSIONS, disk)?;
+    let [width, height] = arguments.size;
+    let pixels = Studio::new(editor, arguments.size)?.draw(editor.library(), editor.state());
+    let png = encode_png(width, height, &pixels).ok_or_else(|| Failure::new(NOT_READ))?;
     write_output(&arguments.out, &png, EXTENSIONS, disk)
+}
+
+/// Renders one loop of the clip, as the page records it.
+fn render_frames(arguments: &RenderArguments, frames_per_sec: u32, editor: &Editor, disk: &Disk) -> Outcome {
+    let (library, state, size) = (editor.library(), editor.state(), arguments.size);
+    if is_standard_output(&arguments.out) {
+        return Err(Failure::expected("a folder, or a file ending in .mp4 or .webm", "-").at("--out"));
+    }
+    let frames = LoopFrames::new(library, state, aspect(size), frames_per_sec)
+        .ok_or_else(|| Failure::new("nothing moves").with_hint("choose a clip with --clip").at("--frames"))?;
+    let is_transparent = state.display.background == Background::Transparent;
+    let format = Format { size, frames_per_sec, frame_count: frames.count(), is_transparent };
+    let mut sequence = Sequence::create(&arguments.out, format, disk)?;
+    let mut studio = Studio::new(editor, size)?;
+    for index in 0..frames.count() {
+        sequence.add(&studio.draw(library, &frames.state(library, index)), disk)?;
+    }
+    sequence.finish(disk)?;
+    print_error(&format!("{} frames written", frames.count()));
+    Ok(())
+}
+
+fn aspect([width, height]: [u32; 2]) -> f32 {
+    width as f32 / height as f32
+}
+
+/// Draws views without a window.
+struct Studio {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    renderer: Renderer,
+    frame: Frame,
+    size: [u32; 2],
+}
+
+impl Studio {
+    /// Opens a device and uploads what the editor holds.
+    fn new(editor: &Editor, size: [u32; 2]) -> Outcome<Self> {
+        let quiet = Quiet::start();
+        let device = headless_device();
+        drop(quiet);
+        // On failure, try again without silencing the driver, whose output may explain why.
+        let (device, queue, adapter) = device.or_else(|_| headless_device())?;
+        print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
+        let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
+        let library = editor.library();
+        let source = source_on_stage(library, editor.state()).map(|source| source.model);
+        for model in library.models().iter().chain(source) {
+            renderer.upload(&device, &queue, model)?;
+        }
+        Ok(Self { device, queue, renderer, frame: Frame::default(), size })
+    }
+
+    /// Returns RGBA rows from the top, with straight alpha; none if the device was lost.
+    fn draw(&mut self, library: &Library, state: &ViewerState) -> Vec<u8> {
+        evaluate(library, state, aspect(self.size), &mut self.frame);
+        self.renderer.draw(&self.device, &self.queue, &self.frame, self.size);
+        pollster::block_on(read_pixels(&self.device, &self.queue, self.renderer.output()))
+    }
 }
 
 fn show_variant(editor: &mut Editor, name: &str) -> Outcome {
@@ -78,11 +131,12 @@ fn light_with(editor: &mut Editor, name: &str, disk: &Disk) -> Outcome {
 /// Opens the link's view, overridden by the other options.
 fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Editor> {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
-    let [width, height] = arguments.size;
-    let aspect = width as f32 / height as f32;
+    let aspect = aspect(arguments.size);
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        let overrides = Overrides { clip: arguments.moment.clip.is_some(), variant: arguments.variant.is_some() };
+        let moment = &arguments.moment;
+        let layers = !moment.layers.layers.is_empty();
+        let overrides = Overrides { clip: moment.clip.is_some(), layers, variant: arguments.variant.is_some() };
         apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     if let Some(name) = &arguments.variant {

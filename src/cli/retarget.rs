@@ -81,6 +81,8 @@ pub(super) fn make(
     let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
     let symmetry = || Symmetry::of(&model.asset, model.recognition());
     let ChangedClip { clip, seam } = choices.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
+    let recognized = || model.recognition().clone();
+    let clip = choices.layers.bake(&model.asset, clip, recognized, choices.loops.is_some(), &mut warnings)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);
@@ -215,7 +217,7 @@ fn with_layers(
     if layers.is_empty() && loops.is_none_or(|loops| loops == 1) {
         return retargeted.clip.clone();
     }
-    let baking = baking(&retargeted.clip, &layers, loops);
+    let baking = baking(&retargeted.clip, &layers, &[], loops);
     if !baking.seamless {
         let message = format!(
             "the loop has a seam: {} loops of the retargeted clip don't end on a whole loop of the model's own clip on unmapped \

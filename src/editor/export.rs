@@ -7,8 +7,8 @@ use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;
-use crate::retarget::{bake_layers, baking};
-use crate::state::{active_clip, active_map, written_skeleton};
+use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
+use crate::state::{ViewerState, active_clip, active_map, has_layers, stacked_layers, written_skeleton};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum Export {
         /// Index into [`Library::motions`](crate::library::Library::motions).
         motion: usize,
     },
-    /// The model with one of its retargeted or changed clips.
+    /// The model with one of its clips that is retargeted, changed or below layers.
     Model {
         /// Index among all clips of the active model; one of its own clips as it is in the file is an error.
         clip: usize,
@@ -52,6 +52,11 @@ impl ExportedFile {
     fn new(name: String, bytes: Vec<u8>) -> Self {
         Self { name, bytes, remark: None }
     }
+}
+
+/// Whether a clip as it plays is not in the model's file: it is retargeted, changed or below layers.
+pub fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
+    model.is_derived(clip) || has_layers(model, state)
 }
 
 /// A clip with its layers baked in, if it has any.
@@ -134,14 +139,16 @@ impl Editor {
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        if !model.is_derived(clip) {
+        if !is_derived(model, &self.state, clip) {
             return Err("this clip is in the model's file as it is".to_owned());
         }
         let borrowed = model.borrowed(clip);
-        let changed = model.changed_clip(clip).filter(|_| borrowed.is_none());
-        let renamed = changed.map(|changed| changed.clone().renamed());
-        let baked = self.baked_clip(clip)?;
-        let derived = renamed.as_ref().or(baked.clip.as_ref()).or_else(|| model.clip(clip));
+        let mut baked = self.baked_clip(clip)?;
+        if borrowed.is_none() {
+            let derived = baked.clip.take().or_else(|| model.clip(clip).cloned());
+            baked.clip = derived.map(|clip| ChangedClip { clip, seam: None }.renamed());
+        }
+        let derived = baked.clip.as_ref().or_else(|| model.clip(clip));
         let clips = [derived.ok_or("there is no such clip")?];
         let mut remark = None;
         let skeleton = written_skeleton(model, &self.state, None);
@@ -163,14 +170,15 @@ impl Editor {
 
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
-        let layers = model.layers(clip);
-        let Some(clip) = model.clip(clip).filter(|_| !layers.is_empty()) else {
+        let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
+        let Some(clip) = model.clip(clip).filter(|_| !below.is_empty() || !over.is_empty()) else {
             return Ok(BakedClip { clip: None, remark: None });
         };
-        let baking = baking(clip, layers, None);
-        let clip = bake_layers(&model.asset, clip, layers, &baking);
-        let seam =
-            "The loop has a seam: the lengths of the model's own clip and the retargeted one don't divide evenly.";
+        let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
+        let baking = baking(clip, below, &periods, None);
+        let clip = bake_layers(&model.asset, clip, below, &baking);
+        let clip = bake_stack(&model.asset.skeleton, &clip, &over);
+        let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
         Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })
     }
 }

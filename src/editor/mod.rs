@@ -20,7 +20,7 @@ mod validation;
 pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
-pub use export::{Export, ExportedFile};
+pub use export::{Export, ExportedFile, is_derived};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
 pub use validation::{ValidatorGroup, ValidatorReport};
@@ -32,7 +32,7 @@ use serde_json::Value;
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
     Command, DEFAULT_ASPECT, EnvironmentChoice, History, OrbitCamera, ViewerState, from_object, unknown_clip,
-    unknown_variant,
+    unknown_layer, unknown_variant,
 };
 use motions::ClipIdentity;
 use open::Shelved;
@@ -228,14 +228,18 @@ impl Editor {
         new.model == now.model && new.motion == now.motion
     }
 
-    /// Notifies about a clip or variant that the model lacks. It isn't an error: the rest of the view is shown.
+    /// Notifies about a clip, layer or variant that the model lacks. It isn't an error: the rest of the view is shown.
     pub(super) fn notify_unknown_names(&mut self) {
         let model = self.library.active().filter(|model| !model.is_placeholder());
         let Some(model) = model else { return };
         let clip = unknown_clip(model, &self.state);
+        let layer = unknown_layer(model, &self.state.edits.layers);
         let variant = unknown_variant(model, &self.state);
         if let Some(unknown) = clip {
             self.notify(format!("clip: {unknown}; the rest pose is used."));
+        }
+        if let Some(unknown) = layer {
+            self.notify(format!("layers: {unknown}; the layer is left out."));
         }
         if let Some(unknown) = variant {
             self.notify(format!("variant: {unknown}; the file's own materials are used."));

@@ -26,6 +26,8 @@ pub struct ValidatorGroup {
     pub severity: usize,
     /// The validator's name for what is wrong.
     pub code: String,
+    /// The same in plain words; empty for a rare code.
+    pub meaning: String,
     /// Number of findings.
     pub count: u64,
     /// The first ones: the text, and the node that it is about.
@@ -48,6 +50,7 @@ impl ValidatorReport {
         let group = |group: &Value| ValidatorGroup {
             severity: number(&group["severity"]).min(3) as usize,
             code: text(&group["code"]),
+            meaning: text(&group["meaning"]),
             count: number(&group["count"]),
             findings: list(&group["findings"]).iter().map(finding).collect(),
         };

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::SortError;
+use crate::formats::LoadError;
 
 /// Names the file and, where possible, what to do next.
 #[derive(Debug, thiserror::Error)]
@@ -115,6 +116,84 @@ pub enum OpenError {
     /// The files were read, but cannot be used.
     #[error(transparent)]
     Files(#[from] SortError),
+}
+
+/// What kind of failure an error is, for scripts: the `code` of the errors that `window.gaitway` rejects with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorCode {
+    /// A file, sample or server is not there, or did not answer.
+    NotFound,
+    /// The browser does not let this page read the file.
+    CrossOrigin,
+    /// Gaitway cannot read such a file, or cannot show it here.
+    Unsupported,
+    /// A file, an argument or a value is invalid.
+    Malformed,
+    /// A limit on what is read is exceeded.
+    TooLarge,
+    /// Something else took the place of what was asked for.
+    Cancelled,
+    /// The program or its graphics device has stopped.
+    LostDevice,
+}
+
+impl ErrorCode {
+    /// Returns the code as scripts see it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotFound => "not-found",
+            Self::CrossOrigin => "cross-origin",
+            Self::Unsupported => "unsupported",
+            Self::Malformed => "malformed",
+            Self::TooLarge => "too-large",
+            Self::Cancelled => "cancelled",
+            Self::LostDevice => "lost-device",
+        }
+    }
+}
+
+impl OpenError {
+    /// Returns what kind of failure this is.
+    pub fn code(&self) -> ErrorCode {
+        match self {
+            Self::Nothing | Self::StandardInputTwice | Self::InvalidUrl { .. } => ErrorCode::Malformed,
+            Self::NoSuchSample { .. }
+            | Self::Read { .. }
+            | Self::Status { .. }
+            | Self::Unreachable { .. }
+            | Self::Silent { .. }
+            | Self::BrokeOff { .. }
+            | Self::PartMissing { .. } => ErrorCode::NotFound,
+            Self::Refused { .. } | Self::Insecure { .. } => ErrorCode::CrossOrigin,
+            Self::TooLarge { .. } | Self::TooManyFiles { .. } => ErrorCode::TooLarge,
+            Self::Files(problem) => match problem {
+                SortError::Load(problem) => load_code(problem),
+                SortError::Map { .. } | SortError::Hdr { .. } => ErrorCode::Malformed,
+                SortError::MapTooLarge { .. } | SortError::TooManyModels { .. } | SortError::TooManyMotions { .. } => {
+                    ErrorCode::TooLarge
+                }
+                SortError::SeveralModels { .. } | SortError::NoModel { .. } | SortError::SeveralMaps { .. } => {
+                    ErrorCode::Unsupported
+                }
+            },
+        }
+    }
+}
+
+fn load_code(problem: &LoadError) -> ErrorCode {
+    match problem {
+        LoadError::NoSuchFile { .. } | LoadError::MissingFile { .. } => ErrorCode::NotFound,
+        LoadError::NoModel { .. }
+        | LoadError::SeveralModels { .. }
+        | LoadError::UnsupportedFormat { .. }
+        | LoadError::UnsupportedVersion { .. }
+        | LoadError::RequiredExtension { .. } => ErrorCode::Unsupported,
+        LoadError::TooLarge { .. } => ErrorCode::TooLarge,
+        LoadError::Json { .. }
+        | LoadError::Invalid { .. }
+        | LoadError::Archive { .. }
+        | LoadError::Conversion { .. } => ErrorCode::Malformed,
+    }
 }
 
 /// Describes an error of the operating system without its number.

@@ -25,9 +25,9 @@ pub use address::raw_address;
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
 pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, read_paths};
-pub use error::OpenError;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
+pub use error::{ErrorCode, OpenError};
 pub use images::{set_largest_image, set_texture_formats};
 pub use png::encode_png;
 pub use read::Item;

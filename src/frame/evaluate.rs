@@ -12,9 +12,9 @@ use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, LookTarget, PoseSampler, SourceOnStage, ViewerState,
-    active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, panes, resolved_bounds,
-    source_on_stage, world_from_model,
+    COMPARED_SKINNING, Comparison, EnvironmentChoice, LayerSampler, LightSetup, LookTarget, PoseSampler, SourceOnStage,
+    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, panes,
+    resolved_bounds, source_on_stage, world_from_model,
 };
 
 /// Buffers and lookups reused between frames.
@@ -25,6 +25,7 @@ pub(super) struct Scratch {
     pub travel: Vec3,
     first_pose: Pose,
     first_cursor: SampleCursor,
+    first_layers: LayerSampler,
     rest_pose: Pose,
     rest_cursor: SampleCursor,
     source_pose: Pose,
@@ -267,6 +268,7 @@ fn travel(model: &Model, clip: Option<usize>, state: &ViewerState, scratch: &mut
     if let Some(clip) = model.clip(clip) {
         clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     }
+    scratch.first_layers.apply(model, state, 0.0, &mut scratch.first_pose);
     let position = |pose| {
         let world_from_root = world_from_model(state.edits.up) * model_from_single_joint(skeleton, pose, root);
         Vec3::from(world_from_root.translation)

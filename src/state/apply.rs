@@ -8,11 +8,12 @@ use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds}
 use super::maps;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState,
+    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, VertexChoice,
+    ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
-use crate::retarget::{ClipChanges, JointMap};
+use crate::retarget::{ClipChanges, ClipLayer, JointMap};
 
 const MAX_NAME_CHARS: usize = 80;
 
@@ -48,6 +49,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ClearPose => state.edits.pose.clear(),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
+        Command::SetLayers(layers) => set_layers(state, layers),
         Command::SetShow(show) => state.display.show = show,
         Command::SetChannel(channel) => state.display.channel = channel,
         Command::SetInspect(inspect) => state.inspect = inspect,
@@ -125,6 +127,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (name, changes) in wanted.edits.clips {
         insert_changes(state, name, changes.clamped());
     }
+    set_layers(state, wanted.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
     set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
@@ -291,9 +294,9 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
             state.playhead.time_secs = range.end_secs;
             state.playback.playing = false;
         }
-        // Whole loops are subtracted to keep the playhead small, however long it runs. Not below layers: they loop with
+        // Whole loops are subtracted to keep the playhead small, however long it runs. Not with layers: they loop with
         // durations of their own and would jump.
-        _ if !model.layers(clip).is_empty() => {}
+        _ if !model.layers(clip).is_empty() || !state.edits.layers.is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
             state.playhead.time_secs =
                 range.start_secs + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(length));
@@ -411,8 +414,6 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
     }
 }
 
-/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
-/// a reversed one is dropped.
 fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
     let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
     let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
@@ -421,18 +422,39 @@ fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, chan
     // A link may name the clip by its index.
     state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
     if active_clip(model, state) == Some(clip) {
-        let playhead = &mut state.playhead;
-        if changes.trim != before.trim {
-            (playhead.range, playhead.time_secs) = (None, 0.0);
-        }
-        let stretch = before.speed / changes.speed;
-        playhead.time_secs *= stretch;
-        playhead.range = playhead
-            .range
-            .filter(|_| changes.reverse == before.reverse)
-            .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+        follow_changes(&mut state.playhead, &before, &changes);
     }
     insert_changes(state, name, changes);
+}
+
+/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
+/// a reversed one is dropped.
+fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
+    if changes.trim != before.trim {
+        (playhead.range, playhead.time_secs) = (None, 0.0);
+    }
+    let stretch = before.speed / changes.speed;
+    playhead.time_secs *= stretch;
+    playhead.range = playhead
+        .range
+        .filter(|_| changes.reverse == before.reverse)
+        .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+}
+
+/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that those
+/// dropped returns.
+pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
+    let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
+    let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
+    let before = changed(state);
+    state.restore_undoable(from);
+    if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
+        follow_changes(&mut state.playhead, &before, &changes);
+        let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
+        if has_dropped && active_clip(model, from) == Some(clip) {
+            state.playhead.range = from.playhead.range;
+        }
+    }
 }
 
 fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
@@ -441,6 +463,10 @@ fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
     } else {
         state.edits.clips.insert(name, changes);
     }
+}
+
+fn set_layers(state: &mut ViewerState, layers: Vec<ClipLayer>) {
+    state.edits.layers = layers.into_iter().map(ClipLayer::clamped).collect();
 }
 
 /// Wraps an angle to −180°…180°.

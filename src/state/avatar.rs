@@ -6,12 +6,13 @@ use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
-use super::{UpAxis, ViewerState};
+use super::{LayerSampler, UpAxis, ViewerState};
 use crate::anim::{
     LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, Skeleton, TimeRange, model_from_joint,
 };
 use crate::avatar::{Avatar, LookAt, SpringCache, SpringMotion, apply_expressions, resolve_weights};
 use crate::library::{Model, ModelId};
+use crate::retarget::ClipLayer;
 
 /// The target of an avatar's gaze.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -36,6 +37,7 @@ pub(super) struct AvatarPose {
     springs: SpringCache,
     springs_key: Option<SpringsKey>,
     cursor: SampleCursor,
+    layers: LayerSampler,
 }
 
 /// Everything that a simulation of the springs depends on.
@@ -48,6 +50,7 @@ struct SpringsKey {
     repeats: bool,
     up: UpAxis,
     joints: BTreeMap<usize, [f32; 3]>,
+    layers: Vec<ClipLayer>,
 }
 
 impl AvatarPose {
@@ -106,7 +109,8 @@ impl AvatarPose {
             self.springs_key = Some(SpringsKey::new(model, state, clip, range, repeats));
         }
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
-        let mut motion = ClipMotion { model, state, clip, cursor: &mut self.cursor };
+        let (cursor, layers) = (&mut self.cursor, &mut self.layers);
+        let mut motion = ClipMotion { model, state, clip, cursor, layers };
         self.springs.apply(skeleton, springs, time_secs, &mut motion, pose);
     }
 }
@@ -131,8 +135,9 @@ fn gaze_direction(
 
 impl SpringsKey {
     fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
-        let (revision, up, joints) = (model.clips_revision(), state.edits.up, state.edits.pose.clone());
-        Self { model: model.id, revision, clip, range, repeats, up, joints }
+        let (revision, up) = (model.clips_revision(), state.edits.up);
+        let (joints, layers) = (state.edits.pose.clone(), state.edits.layers.clone());
+        Self { model: model.id, revision, clip, range, repeats, up, joints, layers }
     }
 
     /// Whether [`Self::new`] would return the same, without allocating.
@@ -147,22 +152,25 @@ impl SpringsKey {
         (self.model, self.revision, self.clip) == (model.id, model.clips_revision(), clip)
             && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
             && self.joints == state.edits.pose
+            && self.layers == state.edits.layers
     }
 }
 
-/// The active clip with manually posed joints and constraints, without a crossfade.
+/// The active clip with layers, manually posed joints and constraints, without a crossfade.
 struct ClipMotion<'a> {
     model: &'a Model,
     state: &'a ViewerState,
     clip: Option<usize>,
     cursor: &'a mut SampleCursor,
+    layers: &'a mut LayerSampler,
 }
 
 impl SpringMotion for ClipMotion<'_> {
-    /// Samples the layers below the clip as in its first loop.
+    /// Samples the layers below and over the clip as in its first loop.
     fn pose_at(&mut self, time_secs: f64, pose: &mut Pose, world: &mut Vec<Affine3A>) {
         let skeleton = &self.model.asset.skeleton;
         sample_pose(self.model, self.clip, time_secs, time_secs, self.cursor, pose);
+        self.layers.apply(self.model, self.state, time_secs, pose);
         pose_joints(self.model, self.state, pose);
         for constraint in &self.model.asset.avatar.constraints {
             constraint.apply(skeleton, pose);

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, Feet, JointMap, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Feet, JointMap, RootOptions, Unmapped};
 
 /// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +80,8 @@ pub enum Command {
         /// Replaces the changes it had.
         changes: Box<ClipChanges>,
     },
+    /// Sets the layers over the active clip, the lowest first. Numbers out of range are clamped.
+    SetLayers(Vec<ClipLayer>),
     /// Sets what is drawn.
     SetShow(super::Show),
     /// Sets what surfaces show.

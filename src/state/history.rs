@@ -2,6 +2,7 @@
 
 use std::mem::Discriminant;
 
+use super::apply::restore_edits;
 use super::{Command, SavedMotion, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 
@@ -160,7 +161,9 @@ impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
         matches!(self, Self::Edits(before)
-            if before.retarget != state.retarget || before.edits.clips != state.edits.clips)
+            if before.retarget != state.retarget
+                || before.edits.clips != state.edits.clips
+                || before.edits.layers != state.edits.layers)
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.
@@ -168,7 +171,7 @@ impl Step {
         match self {
             Self::Edits(edits) => {
                 let before = state.clone();
-                state.restore_undoable(&edits);
+                restore_edits(state, library.active(), &edits);
                 Self::Edits(before)
             }
             Self::View(view, view_motion, loaded) => {

@@ -3,6 +3,7 @@
 
 mod changes;
 mod files;
+mod layers;
 mod values;
 
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
@@ -15,6 +16,7 @@ pub use self::files::{
 pub use self::values::with_current_member;
 use self::values::*;
 use super::ViewerState;
+use crate::retarget::ClipLayer;
 
 /// A part of a link, or of an object from a script, that is not understood. All other parts still apply.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -114,7 +116,7 @@ macro_rules! word {
 
 /// A key with any number of values.
 macro_rules! list {
-    ($name:literal, $group:ident.$field:ident, $read:expr, $write:expr, $expected:literal) => {
+    ($name:literal, $group:ident.$field:ident, $read:expr, $write:expr, $expected:expr) => {
         Key {
             name: $name,
             repeatable: true,
@@ -176,6 +178,7 @@ const KEYS: &[Key] = &[
         write: changes::write_change,
         reset: changes::reset_change,
     },
+    list!("layers", edits.layers, layers::read, layers::text, layers::EXPECTED),
     key!("speed", playback.speed, finite, write_number, "a factor such as 0.5"),
     word!("loop", playback.loop_mode, LOOP_MODES, "once, loop or ping-pong"),
     key!(
@@ -290,6 +293,14 @@ pub fn to_link(state: &ViewerState) -> String {
         }
     }
     text
+}
+
+/// Reads a value of the key `layers`, as the command line has it.
+///
+/// # Errors
+/// What was expected.
+pub fn read_layer(text: &str) -> Result<ClipLayer, &'static str> {
+    layers::read(text).ok_or(layers::EXPECTED)
 }
 
 /// Reads the part after `#`, with or without a leading `#`. Bad values are reported and skipped; unknown keys are kept.

@@ -9,6 +9,7 @@ mod comparison;
 mod framing;
 mod hidden;
 mod history;
+mod layers;
 mod lighting;
 mod link;
 mod loop_frames;
@@ -33,8 +34,9 @@ pub use framing::{
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
+pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layer};
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
-pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
+pub use link::{LinkError, from_link, from_object, read_layer, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
     linked_files, most_similar_link, public_link, shown_files,

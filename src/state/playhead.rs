@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::avatar::AvatarPose;
-use super::{ClipChoice, NameKind, UnknownName, UpAxis, ViewerState};
+use super::{ClipChoice, LayerSampler, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
-use crate::retarget::ClipChanges;
+use crate::retarget::{ClipChanges, ClipOverLayers};
 
 /// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
@@ -92,6 +92,7 @@ pub struct PoseSampler {
     before: Pose,
     before_properties: PropertyValues,
     before_cursor: SampleCursor,
+    layers: LayerSampler,
     avatar: AvatarPose,
 }
 
@@ -102,9 +103,9 @@ impl PoseSampler {
         self.apply_avatar(model, state, None);
     }
 
-    /// Samples the rest pose, layers below the clip, the clip, the crossfade from the previous clip, then manually
-    /// posed joints. A crossfade doesn't blend properties but switches them halfway. Allocates nothing once the buffers
-    /// have grown.
+    /// Samples the rest pose, layers below the clip, the clip, the crossfade from the previous clip, the layers over it,
+    /// then manually posed joints. A crossfade doesn't blend properties but switches them halfway, and layers leave them
+    /// alone. Allocates nothing once the buffers have grown.
     pub fn sample_motion(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
@@ -127,6 +128,7 @@ impl PoseSampler {
             // Smoothstep: eases in and out.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
+        self.layers.apply(model, state, state.playhead.time_secs, &mut self.pose);
         pose_joints(model, state, &mut self.pose);
     }
 
@@ -179,12 +181,13 @@ pub(super) fn sample_pose(
     pose: &mut Pose,
 ) {
     let skeleton = &model.asset.skeleton;
-    pose.copy_from(skeleton.rest());
-    let Some((index, clip)) = clip.and_then(|index| Some((index, model.clip(index)?))) else { return };
-    for layer in model.layers(index) {
-        layer.sample(skeleton, elapsed_secs, cursor, pose);
+    match clip.and_then(|index| Some((index, model.clip(index)?))) {
+        Some((index, clip)) => {
+            let source = ClipOverLayers { clip, below: model.layers(index) };
+            source.sample(skeleton, time_secs, elapsed_secs, cursor, pose);
+        }
+        None => pose.copy_from(skeleton.rest()),
     }
-    clip.sample(skeleton, time_secs as f32, cursor, pose);
 }
 
 /// Samples like [`sample_pose`], and the clip's animated properties.

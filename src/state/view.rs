@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, Feet, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Feet, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -90,7 +90,7 @@ impl ViewerState {
     }
 
     /// Copies the groups that undo covers from another state.
-    pub fn restore_undoable(&mut self, from: &Self) {
+    pub(super) fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();
         self.retarget.clone_from(retarget);
         self.edits.clone_from(edits);
@@ -162,6 +162,8 @@ pub struct Edits {
     pub names: BTreeMap<usize, String>,
     /// Changes to clips, by their name, or index in decimal, as in [`ClipChoice::Named`]; never empty ones.
     pub clips: BTreeMap<String, ClipChanges>,
+    /// Clips over the active one, the lowest first.
+    pub layers: Vec<ClipLayer>,
     /// Name of the material variant (KHR_materials_variants); `None` shows the file's own materials.
     pub variant: Option<String>,
     /// Nodes and materials that are not shown.

@@ -11,8 +11,8 @@ use crate::state::{ClipChoice, Command, choice_of_clip};
 /// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;
 const BORROW_WIDTH: f32 = 56.0;
-/// Including the space below.
-const ROW_HEIGHT: f32 = 32.0;
+/// Below a row.
+const ROW_SPACING: f32 = 2.0;
 /// Height of the clip list's heading.
 const CLIPS_HEADING_HEIGHT: f32 = 40.0;
 /// Longer lists have a search field.
@@ -141,12 +141,13 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
     controls::section(ui, "MODELS");
     let room = ui.available_height();
     // What the clips leave free, but at least a fair share.
-    let clips_need = CLIPS_HEADING_HEIGHT + (active.clip_count() + 1) as f32 * ROW_HEIGHT;
-    let max_height = (room - clips_need).max(0.4 * room).max(2.0 * ROW_HEIGHT);
+    let row_height = controls::row_height(ui, controls::ROW_HEIGHT) + ROW_SPACING;
+    let clips_need = CLIPS_HEADING_HEIGHT + (active.clip_count() + 1) as f32 * row_height;
+    let max_height = (room - clips_need).max(0.4 * room).max(2.0 * row_height);
     let seen = (active.id, room as u32);
     let scrolls = list.seen_model.replace(seen) != Some(seen);
     ScrollArea::vertical().id_salt("models").max_height(max_height).auto_shrink([false, true]).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
+        ui.spacing_mut().item_spacing.y = ROW_SPACING;
         let models = shown.library.models();
         let names = names_of(models.iter().map(|model| &*model.source));
         for (model, name) in models.iter().zip(&names) {
@@ -155,7 +156,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
                 ui.spacing_mut().item_spacing.x = 2.0;
                 let has_motion = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
                 let borrow_width = if has_motion { BORROW_WIDTH + 2.0 } else { 0.0 };
-                let size = egui::vec2(ui.available_width() - borrow_width - CLEAR_SIZE - 2.0, ROW_HEIGHT);
+                let size = egui::vec2(ui.available_width() - borrow_width - CLEAR_SIZE - 2.0, row_height);
                 let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", is_active)).inner;
                 if scrolls && is_active {
                     row.scroll_to_me(None);

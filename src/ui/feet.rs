@@ -1,6 +1,6 @@
 //! Foot-contact tracks under the timeline: when each foot is planted, and how fast it slides meanwhile.
 
-use egui::{FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Shown, controls, scrub, style, text};
 use crate::library::Model;
@@ -10,7 +10,6 @@ use crate::state::title;
 const TRACK_HEIGHT: f32 = 18.0;
 /// Height of the line that explains colours and scale.
 const LEGEND_HEIGHT: f32 = 16.0;
-const FONT_SIZE: f32 = 10.5;
 /// The slide speed whose bar fills a track.
 const MAX_METRES_PER_SEC: f32 = 0.5;
 /// At most this share of the width is for names.
@@ -44,28 +43,45 @@ fn short(name: &str) -> &str {
 /// Returns the width that the names of the feet take at the left; 0 if there are no tracks.
 pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
     let Some(tracks) = Tracks::of(shown) else { return 0.0 };
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    let widths = tracks.tracks.iter().map(|track| {
-        let name = short(&tracks.name(shown, track)).to_owned();
-        ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x
-    });
+    widest(ui, &mut tracks.tracks.iter().map(|track| short(&tracks.name(shown, track)).to_owned()))
+}
+
+/// Returns the width of a gutter for the names of tracks.
+pub(super) fn widest(ui: &Ui, names: &mut dyn Iterator<Item = String>) -> f32 {
+    let widths = names.map(|name| ui.painter().layout_no_wrap(name, style::SMALL, egui::Color32::PLACEHOLDER).size().x);
     widths.fold(0.0, f32::max).ceil().min(MAX_GUTTER * ui.available_width())
+}
+
+/// Shows a track with its name in the gutter and the playhead over what `paint` draws. Returns its rectangle and response.
+pub(super) fn row(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    gutter: f32,
+    name: &str,
+    accessible_name: &str,
+    paint: impl FnOnce(&Ui, Rect),
+) -> (Rect, Response) {
+    let palette = style::palette(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK_HEIGHT), Sense::hover());
+    let lane = rect.with_min_x(rect.left() + gutter).shrink2(vec2(scrub::MARGIN, 1.0));
+    response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, accessible_name));
+    controls::elided_small(ui, rect.with_max_x(rect.left() + gutter), name, palette.weak_text);
+    paint(ui, lane);
+    let duration_secs = shown.clip().map_or(0.0, |clip| f64::from(clip.duration_secs()));
+    let x = lane.left() + (shown.clip_time_secs() / duration_secs).clamp(0.0, 1.0) as f32 * lane.width();
+    ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
+    (lane, response)
 }
 
 /// Shows the tracks of a borrowed clip, with their names in the gutter and their legend below.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, gutter: f32) {
     let Some(tracks) = Tracks::of(shown) else { return };
     let duration_secs = tracks.duration_secs;
-    let palette = style::palette(ui);
     for track in tracks.tracks {
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK_HEIGHT), Sense::hover());
-        let lane = rect.with_min_x(rect.left() + gutter).shrink2(vec2(scrub::MARGIN, 1.0));
         let name = tracks.name(shown, track);
-        response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, text::foot_contacts(&name)));
-        controls::elided_small(ui, rect.with_max_x(rect.left() + gutter), short(&name), palette.weak_text);
-        contacts(ui, lane, track, duration_secs);
-        let x = lane.left() + (shown.clip_time_secs() as f32 / duration_secs).clamp(0.0, 1.0) * lane.width();
-        ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
+        let (lane, response) = row(ui, shown, gutter, short(&name), &text::foot_contacts(&name), |ui, lane| {
+            contacts(ui, lane, track, duration_secs);
+        });
         if let Some(pointer) = response.hover_pos() {
             let secs = (pointer.x - lane.left()) / lane.width() * duration_secs;
             let at = track.times.partition_point(|&time| time < secs).min(track.times.len().saturating_sub(1));
@@ -84,8 +100,7 @@ fn legend(ui: &Ui, room: Rect) {
     let palette = style::palette(ui);
     let mut x = room.left() + 2.0;
     for (color, label) in [(palette.chosen, text::FOOT_CONTACT), (palette.warning, text::FOOT_SLIDE)] {
-        let font = FontId::proportional(FONT_SIZE);
-        let galley = ui.painter().layout_no_wrap(label.to_owned(), font, palette.weak_text);
+        let galley = ui.painter().layout_no_wrap(label.to_owned(), style::SMALL, palette.weak_text);
         if x + SQUARE + 4.0 + galley.size().x > room.right() {
             return;
         }

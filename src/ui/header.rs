@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
 use super::icons::{Icon, icon_button};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
-use crate::editor::{ClipFormat, Export};
+use crate::editor::{ClipFormat, Export, is_derived};
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -31,7 +31,8 @@ fn has_samples(ui: &Ui) -> bool {
 fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Clips, local);
     if ui.ctx().content_rect().width() >= NAME_WIDTH {
-        ui.label(RichText::new(text::NAME).strong().size(16.0));
+        let name = RichText::new(text::NAME).strong();
+        ui.label(if local.layout.is_narrow { name } else { name.heading() });
         ui.add_space(4.0);
     }
     if local.layout.is_narrow {
@@ -138,7 +139,7 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
         let formats = ClipFormat::ALL.into_iter().filter(|format| format.fits(model));
         formats.map(move |format| (text::save_clip(format), Export::Clip { clip, format }))
     });
-    let derived = clip.filter(|&clip| model.is_derived(clip));
+    let derived = clip.filter(|&clip| is_derived(model, shown.state, clip));
     let model_with_clip = derived.map(|clip| (text::SAVE_GLB, Export::Model { clip }));
     let others = [
         borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),
@@ -147,9 +148,10 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     ];
     let files = model_with_clip.into_iter().chain(clips).chain(others.into_iter().flatten());
     let files = files.map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
-    let video = shown.is_animated().then(|| (text::RECORD, UiAction::Record(pictures.video())));
+    let recordings = [(text::RECORD, false), (text::RECORD_IMAGES, true)].into_iter().filter(|_| shown.is_animated());
+    let recordings = recordings.map(|(label, as_images)| (label, UiAction::Record(pictures.recording(as_images))));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
-    for (label, action) in [image].into_iter().chain(video).chain(files) {
+    for (label, action) in [image].into_iter().chain(recordings).chain(files) {
         if ui.button(label).clicked() {
             out.actions.push(action);
         }

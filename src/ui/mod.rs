@@ -7,6 +7,7 @@ mod feet;
 mod gestures;
 mod header;
 mod keys;
+mod layers;
 mod motion;
 mod output;
 mod tabs;
@@ -34,6 +35,7 @@ pub use viewport::labels::labels;
 pub use viewport::notices::{Messages, Progress, Toast};
 pub use viewport::overlays::overlays;
 pub use viewport::{ViewportSlot, ViewportState, viewport};
+pub use widgets::style::FONT;
 
 use viewport::{overlays, sheet};
 use widgets::{controls, icons, scrub, style};
@@ -346,7 +348,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     local.layout.sheet_rect = has_sheet.then(|| sheet::rect(free));
     match local.layout.sheet_rect {
         // The viewport ends where the sheet begins, so that the character is not behind it.
-        Some(rect) => free.with_max_y(rect.top() + f32::from(sheet::CORNER)),
+        Some(rect) => free.with_max_y(rect.top() + f32::from(style::WINDOW_CORNER)),
         None => free,
     }
 }

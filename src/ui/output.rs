@@ -16,6 +16,8 @@ pub struct Output {
 /// A request that is not a change of the view state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UiAction {
+    /// Abandon the load under way.
+    CancelOpening,
     /// Choose files to open.
     OpenFiles,
     /// Show the gallery of samples.
@@ -38,7 +40,7 @@ pub enum UiAction {
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
-    /// Record one loop of the clip.
+    /// Record one loop of the clip, as a video or as images.
     Record(VideoSettings),
     /// Discard the recording.
     CancelRecording,
@@ -74,7 +76,7 @@ pub enum Saved {
     },
 }
 
-/// Settings of a video.
+/// Settings of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VideoSettings {
     /// Width and height in pixels. The app reduces both to even numbers that the device can draw.
@@ -83,4 +85,6 @@ pub struct VideoSettings {
     pub frames_per_sec: u32,
     /// Leaves out the background of the view.
     pub transparent: bool,
+    /// Saves the frames as images in an archive instead of a video.
+    pub as_images: bool,
 }

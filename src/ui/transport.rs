@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::icons::{Icon, icon_button, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
-use super::{Output, Shown, UiState, controls, feet, style, text};
+use super::{Output, Shown, UiState, controls, feet, layers, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
@@ -13,7 +13,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
     let has_tracks = shown.state.display.show.source && !shown.state.page.embed;
-    let gutter = if has_tracks { feet::gutter(ui, shown) } else { 0.0 };
+    let has_layers = !shown.state.edits.layers.is_empty() && !shown.state.page.embed;
+    let feet_gutter = if has_tracks { feet::gutter(ui, shown) } else { 0.0 };
+    let gutter = if has_layers { feet_gutter.max(layers::gutter(ui, shown)) } else { feet_gutter };
     let range = shown.state.playhead.range;
     let bar = Scrub {
         clip: shown.clip(),
@@ -28,6 +30,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
         Some(Scrubbed::Seek(secs)) => out.commands.push(Command::Seek(secs)),
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
+    }
+    if has_layers {
+        layers::show(ui, shown, gutter);
     }
     if has_tracks {
         feet::show(ui, shown, gutter);

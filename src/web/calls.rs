@@ -1,136 +1,146 @@
-//! Functions for the shell's `window.gaitway` and dialogs. Documents are passed as JSON text, errors as messages for the user.
+//! Functions for the shell's `window.gaitway` and dialogs. Documents are passed as JSON text. An error has the message for
+//! the user and a `code` for scripts.
 
 use std::cell::RefCell;
+use std::pin::pin;
 use std::rc::Rc;
 
-use js_sys::{Array, Function, Promise, Uint8Array};
+use futures_util::future::{Either, select};
+use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
 
 use super::page::{Page, page, state_of_link};
-use crate::app::{App, Message, Opening, Reply, ScriptCall};
+use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
-use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
+use crate::files::{ErrorCode, Held, Item, OpenError, Role, open_items, open_view};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
 use crate::samples;
 use crate::state::{
     Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
 };
-use crate::ui::title_and_hint;
+use crate::ui::{Progress, title_and_hint};
+
+/// Returns the font of the panels, for the rest of the page.
+#[wasm_bindgen]
+pub fn font() -> Uint8Array {
+    Uint8Array::from(crate::ui::FONT)
+}
 
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
 /// `{shown, document}`: which of `model`, `motion`, `light` and `map` it was, and the inspect document. Changes nothing on failure.
 /// `is_by_hand`: the user opened it, not a script.
 #[wasm_bindgen]
-pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_hand: bool) -> Result<String, JsError> {
-    let page = page().map_err(error)?;
-    let items = items_of(items).map_err(error)?;
+pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_hand: bool) -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
+    let items = items_of(items).map_err(malformed)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
-    let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await.map_err(error)?;
+    let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await?;
     Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
 }
 
 /// Opens a link, given the part after `#`. Loads its files if they differ from the loaded ones, or all of them with `reload`.
 /// Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
 #[wasm_bindgen]
-pub async fn follow_link(link: String, reload: bool) -> Result<String, JsError> {
-    let page = page().map_err(error)?;
+pub async fn follow_link(link: String, reload: bool) -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
     let state = state_of_link(&link, &page.shell);
-    open_state(&page, state, reload, true).await.map_err(error)
+    Ok(open_state(&page, state, reload, true).await?)
 }
 
 /// Sets some keys of the link; resolves like [`follow_link`], after the frame that shows the result.
 #[wasm_bindgen]
-pub async fn apply(partial: String) -> Result<String, JsError> {
-    let page = page().map_err(error)?;
-    let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
+pub async fn apply(partial: String) -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
+    let partial: Value = serde_json::from_str(&partial).map_err(|problem| malformed(problem.to_string()))?;
     // Keys that it doesn't set keep the values of a link, whatever the preference for reduced motion has stopped.
-    let before = with_app(&page, |app| app.editor().shared_state()).map_err(error)?;
+    let before = with_app(&page, |app| app.editor().shared_state()).map_err(stopped)?;
     let (state, errors) = from_object(&before, &partial);
     if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
-        return settled(promise).await.map(|_| report(&[], &[])).map_err(error);
+        return settled(promise).await.map(|_| report(&[], &[])).map_err(malformed);
     }
-    open_state(&page, state.or_sample(samples::WALKER), false, false).await.map_err(error)
+    Ok(open_state(&page, state.or_sample(samples::WALKER), false, false).await?)
 }
 
 /// Shows why the shell refused a request.
 #[wasm_bindgen]
-pub fn refuse(problem: String) -> Result<(), JsError> {
-    page().map_err(error)?.inbox.send(Message::Failed(problem));
+pub fn refuse(problem: String) -> Result<(), JsValue> {
+    page().map_err(stopped)?.inbox.send(Message::Failed(problem));
     Ok(())
 }
 
 /// Whether anything loaded is one of the user's local files.
 #[wasm_bindgen]
-pub fn is_private() -> Result<bool, JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, |app| app.editor().is_private()).map_err(error)
+pub fn is_private() -> Result<bool, JsValue> {
+    let page = page().map_err(stopped)?;
+    with_app(&page, |app| app.editor().is_private()).map_err(stopped)
 }
 
 /// Returns the link's keys as JSON.
 #[wasm_bindgen]
-pub fn state() -> Result<String, JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, |app| to_object(app.state()).to_string()).map_err(error)
+pub fn state() -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
+    with_app(&page, |app| to_object(app.state()).to_string()).map_err(stopped)
 }
 
 /// Returns the pose document of the current pose.
 #[wasm_bindgen]
-pub fn pose() -> Result<String, JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, |app| PoseDocument::new(app.library(), app.state()).to_string()).map_err(error)
+pub fn pose() -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
+    with_app(&page, |app| PoseDocument::new(app.library(), app.state()).to_string()).map_err(stopped)
 }
 
 #[wasm_bindgen]
-pub fn stats() -> Result<String, JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, |app| app.stats().to_string()).map_err(error)
+pub fn stats() -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
+    with_app(&page, |app| app.stats().to_string()).map_err(stopped)
 }
 
 /// Returns the viewport as PNG bytes.
 #[wasm_bindgen]
-pub async fn screenshot() -> Result<Uint8Array, JsError> {
-    let page = page().map_err(error)?;
+pub async fn screenshot() -> Result<Uint8Array, JsValue> {
+    let page = page().map_err(stopped)?;
     let (promise, reply) = promise::<Vec<u8>>(|png| Uint8Array::from(png.as_slice()).into());
     page.inbox.send(Message::Script(ScriptCall::Screenshot(reply)));
-    settled(promise).await.map(JsValue::unchecked_into).map_err(error)
+    settled(promise).await.map(JsValue::unchecked_into).map_err(stopped)
 }
 
 /// Returns the pixels of a frame of the video that is being recorded: RGBA rows from the top, with straight alpha.
 #[wasm_bindgen]
-pub async fn video_frame(index: u32) -> Result<Uint8Array, JsError> {
-    let page = page().map_err(error)?;
-    let pixels = with_app(&page, |app| app.video_frame(index)).flatten().map_err(error)?;
-    pixels.await.map(|pixels| Uint8Array::from(pixels.as_slice())).map_err(error)
+pub async fn video_frame(index: u32) -> Result<Uint8Array, JsValue> {
+    let page = page().map_err(stopped)?;
+    let pixels = with_app(&page, |app| app.video_frame(index)).flatten().map_err(stopped)?;
+    pixels.await.map(|pixels| Uint8Array::from(pixels.as_slice())).map_err(stopped)
 }
 
 /// Returns the glTF that a model was read from as it was opened, or the file that it refers to by a URI.
 #[wasm_bindgen]
-pub fn gltf_file(model: f64, uri: Option<String>) -> Result<Uint8Array, JsError> {
-    let page = page().map_err(error)?;
+pub fn gltf_file(model: f64, uri: Option<String>) -> Result<Uint8Array, JsValue> {
+    let page = page().map_err(stopped)?;
     let read = |app: &mut App| {
         app.editor().gltf_file(ModelId(model as u64), uri.as_deref()).map(|file| Uint8Array::from(file.as_slice()))
     };
-    with_app(&page, read).map_err(error)?.ok_or_else(|| error("there is no such file"))
+    with_app(&page, read).map_err(stopped)?.ok_or_else(|| error(ErrorCode::NotFound, "there is no such file"))
 }
 
 /// Resolves when the first image has been drawn, and starts time.
 #[wasm_bindgen]
-pub async fn begin() -> Result<(), JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, |app| app.drawn()).map_err(error)?.await;
-    with_app(&page, App::begin).map_err(error)
+pub async fn begin() -> Result<(), JsValue> {
+    let page = page().map_err(stopped)?;
+    with_app(&page, |app| app.drawn()).map_err(stopped)?.await;
+    with_app(&page, App::begin).map_err(stopped)
 }
 
 /// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
 /// the rest pose; `isEmpty` is true without a model.
 #[wasm_bindgen]
-pub fn summary() -> Result<String, JsError> {
-    let page = page().map_err(error)?;
+pub fn summary() -> Result<String, JsValue> {
+    let page = page().map_err(stopped)?;
     let named = |model: &Model| match model.is_placeholder() {
         true => title_and_hint(model).0,
         false => short_name(&model.source),
@@ -149,7 +159,7 @@ pub fn summary() -> Result<String, JsError> {
         })
         .to_string()
     };
-    with_app(&page, summary).map_err(error)
+    with_app(&page, summary).map_err(stopped)
 }
 
 /// Whether files must be read to go from `before` to `state`.
@@ -164,7 +174,7 @@ fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
 
 /// Opens a state. Loads its files if they differ from the loaded ones, or all of them with `reload`. For a link, the shell
 /// reports what is missing.
-async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: bool) -> Result<String, String> {
+async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: bool) -> Result<String, Refusal> {
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
@@ -211,11 +221,11 @@ struct Opened {
 }
 
 /// Loads what was requested and shows it, unless another load starts in the meantime.
-async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
+async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
-    let latest = RefCell::new(Opening::default());
+    let latest = RefCell::new(Progress::default());
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
+        let opening = Progress { name: name.to_owned(), received_bytes, total_bytes };
         // What is in memory is read at once: a frame that shows it would only delay it.
         if received_bytes > 0 && page.loads.is_latest(number) {
             page.inbox.send(Message::OpenProgress(opening.clone()));
@@ -223,30 +233,45 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
         latest.replace(opening);
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
-    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
-        Request::Items { items, role, is_private, is_by_hand } => {
-            let contents = open_items(items, role, &progress).await;
-            let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
-            contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
-        }
-        Request::View { state, with_model, current_motions, environments, .. } => {
-            let held = Held { motions: &current_motions, environments: &environments };
-            let opened = open_view(*state, with_model, held, &progress).await;
-            opened.map(|(contents, state)| (contents, Some(Box::new(state))))
+    let read = async {
+        match request {
+            Request::Items { items, role, is_private, is_by_hand } => {
+                let contents = open_items(items, role, &progress).await;
+                let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
+                contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
+            }
+            Request::View { state, with_model, current_motions, environments, .. } => {
+                let held = Held { motions: &current_motions, environments: &environments };
+                let opened = open_view(*state, with_model, held, &progress).await;
+                opened.map(|(contents, state)| (contents, Some(Box::new(state))))
+            }
         }
     };
+    let cancelled = Promise::new(&mut |cancel, _| _ = page.cancel_load.replace(Some(cancel)));
+    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> =
+        match select(pin!(read), JsFuture::from(cancelled)).await {
+            Either::Left((opened, _)) => opened,
+            Either::Right(_) => {
+                // The last bytes may have arrived together with the click.
+                page.inbox.send(Message::OpenFailedSilently);
+                return Err(Refusal::cancelled("Opening was cancelled."));
+            }
+        };
     if !page.loads.is_latest(number) {
-        return Err("something else was opened in the meantime".to_owned());
+        return Err(Refusal::cancelled("something else was opened in the meantime"));
     }
     // Names what is opened or has failed, in the frame that shows it.
     page.inbox.send(Message::OpenProgress(latest.take()));
     match opened {
-        Ok((contents, state)) => show(page, contents, state, shell_reports).await,
+        Ok((contents, state)) => {
+            let shown = show(page, contents, state, shell_reports).await;
+            shown.map_err(|message| Refusal { code: ErrorCode::Unsupported, message })
+        }
         Err(problem) => {
-            let problem = problem.to_string();
-            let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(problem.clone()) };
+            let (code, message) = (problem.code(), problem.to_string());
+            let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(message.clone()) };
             page.inbox.send(failed);
-            Err(problem)
+            Err(Refusal { code, message })
         }
     }
 }
@@ -324,6 +349,42 @@ async fn settled(promise: Promise) -> Result<JsValue, String> {
     settled.map_err(|message| message.as_string().unwrap_or_default())
 }
 
-fn error(message: impl AsRef<str>) -> JsError {
-    JsError::new(message.as_ref())
+/// Why a call failed.
+struct Refusal {
+    code: ErrorCode,
+    message: String,
+}
+
+impl Refusal {
+    fn cancelled(message: &str) -> Self {
+        Self { code: ErrorCode::Cancelled, message: message.to_owned() }
+    }
+}
+
+/// Only an instance that has stopped, or is about to, has no app to ask.
+impl From<String> for Refusal {
+    fn from(message: String) -> Self {
+        Self { code: ErrorCode::LostDevice, message }
+    }
+}
+
+impl From<Refusal> for JsValue {
+    fn from(Refusal { code, message }: Refusal) -> Self {
+        error(code, &message)
+    }
+}
+
+fn error(code: ErrorCode, message: &str) -> JsValue {
+    let error = js_sys::Error::new(message);
+    // Only a frozen object refuses a property.
+    let _ = Reflect::set(&error, &"code".into(), &code.name().into());
+    error.into()
+}
+
+fn stopped(message: String) -> JsValue {
+    error(ErrorCode::LostDevice, &message)
+}
+
+fn malformed(message: String) -> JsValue {
+    error(ErrorCode::Malformed, &message)
 }

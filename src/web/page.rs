@@ -25,6 +25,8 @@ pub(super) struct Page {
     pub context: egui::Context,
     pub shell: Shell,
     pub loads: Loads,
+    /// Cancels the latest load.
+    pub cancel_load: RefCell<Option<js_sys::Function>>,
 }
 
 thread_local! {
@@ -100,7 +102,8 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         return Err("Gaitway was stopped".to_owned());
     }
     let (inbox, context) = started.borrow_mut().take().ok_or("Gaitway couldn't start")?;
-    let page = Page { runner, inbox, context, shell: shell.clone(), loads: Loads::default() };
+    let (loads, cancel_load) = (Loads::default(), RefCell::default());
+    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
     Ok(())
 }
@@ -223,6 +226,12 @@ impl Host for PageHost {
         self.shell.choose(if role == Role::Motion { "motion" } else { "any" });
     }
 
+    fn cancel_opening(&self) {
+        if let Some(cancel) = page().ok().and_then(|page| page.cancel_load.take()) {
+            let _ = cancel.call0(&JsValue::UNDEFINED);
+        }
+    }
+
     fn has_gallery(&self) -> bool {
         true
     }
@@ -239,8 +248,9 @@ impl Host for PageHost {
     fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {
         let (shell, inbox) = (self.shell.clone(), inbox.clone());
         wasm_bindgen_futures::spawn_local(async move {
-            let Video { name, size: [width, height], frames_per_sec, frame_count, transparent } = video;
-            let recorded = shell.record(&name, width, height, frames_per_sec, frame_count, transparent).await;
+            let Video { name, size: [width, height], frames_per_sec, frame_count, transparent, as_images } = video;
+            let recorded =
+                shell.record(&name, width, height, frames_per_sec, frame_count, transparent, as_images).await;
             let recorded = recorded.map(|name| name.as_string()).map_err(|error| text_of(&error));
             inbox.send(Message::Recorded(recorded));
         });

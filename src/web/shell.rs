@@ -33,6 +33,7 @@ extern "C" {
         frames_per_sec: u32,
         frame_count: u32,
         transparent: bool,
+        as_images: bool,
     ) -> Result<JsValue, JsValue>;
 
     /// Ends the recording without saving it.

@@ -6,6 +6,7 @@ import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
+import { triangle } from "../three/triangle.mjs";
 import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
@@ -142,6 +143,24 @@ for (const renderer of BACK_ENDS)
       assert.equal(await gallery(page).isVisible(), true);
       await page.goBack();
       await whenModel(page, scenes[0].model);
+    });
+
+    onFirstScreen("what the user opens hides the gallery, by URL as well (phone)", { viewport: PHONE }, async (page) => {
+      const own = "https://files.example/own.gltf";
+      await page.route("https://files.example/**", (route) => route.fulfill({ body: triangle().text, headers: { "access-control-allow-origin": "*" } }));
+      await page.locator("#gallery-own").click();
+      await page.locator("#open-url").fill(own);
+      await page.locator("#open-go").click();
+      await whenModel(page, own);
+      await gallery(page).waitFor({ state: "hidden" });
+      await until(page, (height) => document.querySelector("canvas")?.getBoundingClientRect().height === height, PHONE.height);
+      await page.goBack();
+      await whenModel(page, scenes[0].model);
+      await page.evaluate(() => document.querySelector("#gallery")?.removeAttribute("hidden"));
+      await page.locator("#gallery-own").click();
+      await page.locator("#open-files").setInputFiles({ name: "mine.gltf", mimeType: "model/gltf+json", buffer: Buffer.from(triangle().text) });
+      await whenModel(page, "file:mine.gltf");
+      await gallery(page).waitFor({ state: "hidden" });
     });
 
     onFirstScreen("dropping a file hides the gallery", {}, async (page) => {

@@ -312,7 +312,8 @@ for (const renderer of BACK_ENDS)
         assert.ok((await call("screenshot")).result > 1000, "bytes of a PNG");
         assert.match((await call("apply", { speed: "quickly" })).error ?? "", /speed/);
         assert.match((await call("destroy")).error ?? "", /there is no such call/);
-        assert.match((await call("open", [site.data("nothing.glb")])).error ?? "", /404/);
+        const { error = "", code } = await call("open", [site.data("nothing.glb")]);
+        assert.match(`${code}: ${error}`, /^not-found: .*404/);
         assert.equal((await call("open", site.data(CESIUM_MAN))).result.vertices, CESIUM_MAN_VERTICES);
         await page.waitForFunction(() => window.events.includes("ready") && window.events.includes("change"));
         // A sibling frame is not the parent page.
@@ -320,7 +321,7 @@ for (const renderer of BACK_ENDS)
 
         await drop(frame, [{ name: "Mine.glb", url: site.data(FOX) }]);
         await whenShown(frame, FOX_VERTICES);
-        const nothing = { result: undefined, error: undefined };
+        const nothing = { result: undefined, error: undefined, code: undefined };
         const withheld = async () => {
           for (const name of ["state", "pose", "stats", "screenshot"]) {
             const { result, error } = await call(name);
@@ -369,9 +370,9 @@ const AROUND = `<!doctype html>
   addEventListener("message", async ({ data, source }) => {
     if (source !== frame.contentWindow || data?.gaitway !== 1) return;
     if (data.event !== undefined) return void window.events.push(data.event);
-    const { result, error } = data;
+    const { result, error, code } = data;
     // Playwright returns plain values only.
-    waiting.get(data.id)?.({ result: result instanceof Blob ? result.size : result, error });
+    waiting.get(data.id)?.({ result: result instanceof Blob ? result.size : result, error, code });
   });
   let last = 0;
   const post = (call, given) =>

@@ -194,6 +194,31 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         }
       });
 
+      onPage("layers play over the current clip, by script and link", model, async (page) => {
+        await apply(page, { clip: "agree", t: 0.2, play: 0 });
+        const agree = await pose(page);
+        await apply(page, { clip: "run", t: 0.2 });
+        const [run, running] = [await pose(page), await picture(page)];
+        await apply(page, { layers: ["agree:weight:0"] });
+        assert.equal(furthest(await pose(page), run), 0);
+        await apply(page, { layers: ["agree"] });
+        assert.equal(furthest(await pose(page), agree), 0);
+        await apply(page, { layers: ["agree:mask:head", "headShake:additive,weight:0.5,mask:left-arm:right-arm"] });
+        const layered = await pose(page);
+        assert.ok(furthest(layered, run) > 0.01 && furthest(layered, agree) > 0.1);
+        const foot = (/** @type {typeof run} */ shown) => shown.nodes.find((node) => node.name === "mixamorig:LeftFoot")?.world;
+        assert.deepEqual(foot(layered), foot(run));
+        assert.ok(meanDifference(await picture(page), running) > 0);
+        await assert.rejects(apply(page, { layers: ["agree:weight:NaN"] }), /layers=agree:weight:NaN: expected a clip/);
+        const kept = await state(page);
+        assert.deepEqual(kept.layers, ["agree:mask:head", "headShake:additive,weight:0.5,mask:left-arm:right-arm"]);
+        // The link has them, and they return with it.
+        await apply(page, { layers: null });
+        assert.equal(furthest(await pose(page), run), 0);
+        await apply(page, { layers: kept.layers });
+        assert.equal(furthest(await pose(page), layered), 0);
+      });
+
       onPage("the model is saved with the borrowed clip", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });

@@ -271,6 +271,41 @@ for (const renderer of BACK_ENDS) {
       }
     });
 
+    test("gives every error a code", async () => {
+      const page = await site.page({ renderer });
+      try {
+        const codes = await page.evaluate(async (missing) => {
+          const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text).buffer;
+          const joints = "JOINT b { OFFSET 0 0 0 CHANNELS 0 } ".repeat(300_000);
+          /** @type {Record<string, () => unknown>} */
+          const calls = {
+            missing: () => window.gaitway.open(missing),
+            sample: () => window.gaitway.open("sample:nobody"),
+            argument: () => window.gaitway.open(/** @type {any} */ (5)),
+            value: () => window.gaitway.apply({ speed: "quickly" }),
+            broken: () => window.gaitway.open({ "broken.glb": bytes("glTF but not really, and then some more") }),
+            format: () => window.gaitway.open({ "scene.blend": bytes("BLENDER") }),
+            nodes: () => window.gaitway.open({ "many.bvh": bytes(`HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 0 ${joints}}`) }),
+            overtaken: async () => {
+              const calls = [missing, "sample:walker"].map((item) => window.gaitway.open(item));
+              await calls[1];
+              return calls[0];
+            },
+          };
+          /** @type {Record<string, string>} */
+          const codes = {};
+          for (const [name, call] of Object.entries(calls)) {
+            codes[name] = await (async () => call())().then(() => "resolved", (error) => (error instanceof Error ? /** @type {any} */ (error).code : "not an Error"));
+          }
+          return codes;
+        }, site.data("nothing-here.glb"));
+        const expected = { missing: "not-found", sample: "not-found", argument: "malformed", value: "malformed", broken: "malformed", format: "unsupported", nodes: "too-large", overtaken: "cancelled" };
+        assert.deepEqual(codes, expected);
+      } finally {
+        await page.finish();
+      }
+    });
+
     test("stops when the graphics process dies and restarts with the same view", { skip: skipWithoutData }, async () => {
       const own = await startSite();
       try {

@@ -202,6 +202,16 @@ function withoutHashes() {
   Object.defineProperty(crypto, "subtle", { value: undefined });
 }
 
+/** Simulates a page that was built without clang: its list of parts lacks the FBX reader. */
+function withoutFbx() {
+  const { querySelector } = Document.prototype;
+  Document.prototype.querySelector = function (/** @type {string} */ selector) {
+    const found = querySelector.call(this, selector);
+    if (selector.includes("gaitway-parts")) found?.setAttribute("content", JSON.stringify({ ...JSON.parse(found.getAttribute("content") ?? ""), fbx: undefined }));
+    return found;
+  };
+}
+
 /** Shortens a part's time limit from a minute to half a second. */
 function withShortMinute() {
   const { setTimeout } = window;
@@ -406,6 +416,15 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(borrowing.troubles, []);
         await borrowing.finish();
       }
+    });
+
+    test("a page that was built without clang says so of an FBX file, and goes on", async () => {
+      const page = await site.page({ renderer, before: withoutFbx });
+      await assert.rejects(open(page, site.data(SAMBA)), /Samba_Dancing\.fbx: needs Gaitway's FBX reader, which cannot be loaded: this page was built without it/);
+      assert.deepEqual(requested(page), []);
+      await open(page, site.data(FOX));
+      assert.match((await state(page)).model[0], /Fox-gltfpack/);
+      await page.finish();
     });
 
     const otherVersion = new RegExp(

@@ -2,26 +2,14 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
+import { unzipSync } from "fflate";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, eventually, furthest, toggleInspector, pose, startSite, state, stats, untilStill } from "./browser.mjs";
+import { BACK_ENDS, apply, control, eventually, furthest, toggleInspector, pose, startSite, state, stats } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
 const FOREARM = "mixamorig:LeftForeArm";
-
-/** @typedef {[x: number, y: number]} Place */
-
-// The canvas has no elements to ask for. Places at the end of the Camera tab, in a window of 1280×800.
-/** @type {Place} */
-const WIDTH = [1035, 501];
-/** @type {Place} */
-const HEIGHT = [1133, 501];
-/** @type {Place} */
-const TRANSPARENT = [1244, 535];
-/** @type {Place} */
-const SAVE_IMAGE = [1125, 571];
-/** @type {Place} */
-const RECORD = [1125, 649];
+const RECORD = "Record one loop";
 
 /**
  * Plays a video in the page: seeks to the middle of each frame and compares it with the one before.
@@ -121,45 +109,87 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual(await pose(page), before);
     });
 
-    /**
-     * Opens the end of the Camera tab. The canvas has no elements to ask for, so the places of its controls are known here.
-     * @param {import("./browser.mjs").TestPage} page
-     */
+    /** @param {import("./browser.mjs").TestPage} page */
     async function openCameraTab(page) {
       await page.setViewportSize({ width: 1280, height: 800 });
       await toggleInspector(page);
-      await page.mouse.click(1183, 69);
-      await untilStill(page);
-      await page.mouse.move(1130, 400);
-      await page.mouse.wheel(0, 2400);
-      await untilStill(page);
+      await control(page, "tab", "Camera").press("Enter");
+      await control(page, "button", RECORD).waitFor({ state: "attached" });
+    }
+
+    /** @param {import("./browser.mjs").TestPage} page */
+    async function leaveOutBackground(page) {
+      const box = control(page, "checkbox", "Transparent background");
+      await box.press("Enter");
+      await eventually(async () => (await box.getAttribute("aria-checked")) === "true");
     }
 
     /**
+     * Returns the file that a button saves.
      * @param {import("./browser.mjs").TestPage} page
-     * @param {Place} at
+     * @param {string} name
      */
-    async function press(page, [x, y]) {
-      await page.mouse.click(x, y);
-      await untilStill(page);
+    async function savedBy(page, name) {
+      const download = page.waitForEvent("download");
+      await control(page, "button", name).press("Enter");
+      const file = await download;
+      return { name: file.suggestedFilename(), bytes: fs.readFileSync(await file.path()) };
     }
+
+    /**
+     * Chooses a size for what is saved.
+     * @param {import("./browser.mjs").TestPage} page
+     * @param {number} width
+     * @param {number} height
+     */
+    async function chooseSize(page, width, height) {
+      for (const [name, pixels] of /** @type {const} */ ([["Width in pixels", width], ["Height in pixels", height]])) {
+        const field = control(page, "spinbutton", name);
+        await field.fill(String(pixels));
+        await eventually(async () => (await field.inputValue()) === String(pixels));
+      }
+    }
+
+    /**
+     * Decodes a picture in the page, and returns the alpha of one of its corners beside a sum over all pixels.
+     * @param {import("./browser.mjs").TestPage} page
+     * @param {Uint8Array} png
+     */
+    const decodedPicture = (page, png) =>
+      page.evaluate(async (base64) => {
+        const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
+        const { width, height } = bitmap;
+        const context = new OffscreenCanvas(width, height).getContext("2d");
+        if (context === null) throw new Error("no 2D context");
+        context.drawImage(bitmap, 0, 0);
+        const { data } = context.getImageData(0, 0, width, height);
+        return { width, height, cornerAlpha: data[4 * width * 2 + 4 * 2 + 3], sum: data.reduce((sum, byte) => sum + byte, 0) };
+      }, Buffer.from(png).toString("base64"));
 
     onPage("images of any size are saved", async (page) => {
       await openCameraTab(page);
-      await press(page, TRANSPARENT);
-      const picture = page.waitForEvent("download");
-      await page.mouse.click(...SAVE_IMAGE);
-      const file = await picture;
-      assert.equal(file.suggestedFilename(), "Soldier-walk.png");
-      const png = fs.readFileSync(await file.path());
-      assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [1920, 1080]);
-      const corner = await page.evaluate(async (base64) => {
-        const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
-        const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-        context?.drawImage(bitmap, 0, 0);
-        return context?.getImageData(2, 2, 1, 1).data[3];
-      }, png.toString("base64"));
-      assert.equal(corner, 0, "nothing is behind the model");
+      await leaveOutBackground(page);
+      const { name, bytes } = await savedBy(page, "Save image (PNG)");
+      assert.equal(name, "Soldier-walk.png");
+      const { width, height, cornerAlpha } = await decodedPicture(page, bytes);
+      assert.deepEqual([width, height], [1920, 1080]);
+      assert.equal(cornerAlpha, 0, "nothing is behind the model");
+    });
+
+    onPage("one loop is saved as images", async (page) => {
+      await apply(page, { range: "0.1,0.5" });
+      await openCameraTab(page);
+      await chooseSize(page, 320, 180);
+      await leaveOutBackground(page);
+      const { name, bytes } = await savedBy(page, "Save one loop as images");
+      assert.equal(name, "Soldier-walk.zip");
+      const files = unzipSync(bytes);
+      const names = Array.from({ length: 12 }, (_, index) => `frame-${String(index + 1).padStart(2, "0")}.png`);
+      assert.deepEqual(Object.keys(files), names);
+      const pictures = [];
+      for (const file of names) pictures.push(await decodedPicture(page, files[file]));
+      for (const { width, height, cornerAlpha } of pictures) assert.deepEqual([width, height, cornerAlpha], [320, 180, 0]);
+      assert.ok(new Set(pictures.map(({ sum }) => sum)).size > 6, "it moves");
     });
 
     /** @type {{ name: string, extension: string, isTransparent?: boolean, before?: () => void }[]} */
@@ -174,19 +204,12 @@ for (const renderer of BACK_ENDS)
         async (page) => {
           await apply(page, { range: "0.1,0.5" });
           await openCameraTab(page);
-          for (const [field, pixels] of /** @type {const} */ ([[WIDTH, 320], [HEIGHT, 180]])) {
-            // Its blinking caret never comes to rest.
-            await page.mouse.click(...field);
-            await page.keyboard.type(`${pixels}\n`);
-            await untilStill(page);
-          }
-          if (isTransparent) await press(page, TRANSPARENT);
+          await chooseSize(page, 320, 180);
+          if (isTransparent) await leaveOutBackground(page);
           const shown = await state(page);
-          const saved = page.waitForEvent("download");
-          await page.mouse.click(...RECORD);
-          const file = await saved;
-          assert.equal(file.suggestedFilename(), `Soldier-walk.${extension}`);
-          const video = await decoded(page, fs.readFileSync(await file.path()), 30);
+          const { name, bytes } = await savedBy(page, RECORD);
+          assert.equal(name, `Soldier-walk.${extension}`);
+          const video = await decoded(page, bytes, 30);
           const isExact = before === undefined;
           assert.deepEqual([video.width, video.height], [320, 180]);
           // MediaRecorder has its own clock: on a busy machine, 11 of 12 frames were seen.
@@ -205,11 +228,11 @@ for (const renderer of BACK_ENDS)
       page.on("download", (download) => downloads.push(download.suggestedFilename()));
       await page.route("**/parts/video-*", (route) => route.abort());
       await openCameraTab(page);
-      await page.mouse.click(...RECORD);
+      await control(page, "button", RECORD).press("Enter");
       const said = (/** @type {string} */ id, /** @type {RegExp} */ text) => eventually(async () => text.test((await page.locator(id).textContent()) ?? ""), String(text));
       await said("#problem", /Couldn't record the video: .*can't be loaded/);
       await page.unroute("**/parts/video-*");
-      await page.mouse.click(...RECORD);
+      await control(page, "button", RECORD).press("Enter");
       await eventually(() => page.requests.filter((url) => url.includes("/parts/video-")).length > 1);
       await page.keyboard.press("Escape");
       await said("#news", /Recording cancelled/);

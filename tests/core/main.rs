@@ -4,6 +4,7 @@ mod allocation;
 mod bounds;
 mod build;
 mod clip;
+mod layer;
 mod layering;
 mod lobes;
 mod morph;

@@ -1,5 +1,7 @@
 //! `gaitway render` as scripts use it.
 
+use std::fs;
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use gaitway::render::headless_device;
@@ -109,4 +111,95 @@ fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
     let says = "expected the name of a material variant, found “Green”; its variants are Red, Blue & more, Coat";
     assert!(said(&refused).contains(says) && said(&refused).contains("gaitway-variants"), "{}", said(&refused));
     std::fs::remove_file(&path).expect("it was written");
+}
+
+/// A folder that is removed again.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("gaitway-test-{name}-{}", std::process::id()));
+        fs::create_dir(&path).expect("a new folder");
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().expect("Unicode").to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Eight by eight pixels, seen from so near that a leg covers them all from time to time.
+const WALKING: [&str; 6] = ["--clip", "Walk", "--camera", "0,0,1.2", "--frames", "10"];
+
+fn refusal(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(1));
+    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn the_frames_of_a_loop_become_pictures() {
+    if or_skipped(headless_device()).is_none() {
+        return;
+    }
+    let folder = Folder::new("frames");
+    let out = folder.path("walk");
+    let render_walk = || render(&[&WALKING[..], &["--out", &out]].concat());
+    let output = render_walk();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut names: Vec<PathBuf> =
+        fs::read_dir(&out).expect("the folder").map(|entry| entry.expect("an entry").path()).collect();
+    names.sort();
+    // The walker's stride takes 1.2 seconds.
+    assert_eq!(names.len(), 12);
+    assert_eq!(names[0].file_name().expect("a name"), "frame-01.png");
+    // The frame at 0.5 seconds is the picture at 0.5 seconds.
+    let still = render(&["--clip", "Walk", "--camera", "0,0,1.2", "--time", "0.5", "--out", "-"]);
+    let pixels = |png: &[u8]| image::load_from_memory(png).expect("a PNG").into_rgba8().into_raw();
+    let frames: Vec<Vec<u8>> = names.iter().map(|name| pixels(&fs::read(name).expect("a frame"))).collect();
+    assert_eq!(frames[5], pixels(&still.stdout));
+    assert!(frames.iter().skip(1).any(|frame| *frame != frames[0]), "something should move");
+
+    let again = refusal(&render_walk());
+    assert_eq!(again, format!("error: {out}: expected a new or an empty folder, found one with files"));
+    let rest = refusal(&render(&["--frames", "10", "--out", &folder.path("rest")]));
+    assert_eq!(rest, "error: --frames: nothing moves; choose a clip with --clip");
+}
+
+#[test]
+fn the_frames_of_a_loop_become_a_video() {
+    if or_skipped(headless_device()).is_none() {
+        return;
+    }
+    let folder = Folder::new("video");
+    for name in ["walk.mp4", "walk.webm"] {
+        let out = folder.path(name);
+        let output = render(&[&WALKING[..], &["--out", &out]].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let decode = ["-v", "error", "-i", &out, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"];
+        let decoded = Command::new("ffmpeg").args(decode).output().expect("ffmpeg");
+        assert_eq!(decoded.stdout.len(), 12 * 8 * 8 * 3, "{name}");
+    }
+    let refused = |arguments: &[&str]| refusal(&render(&[&WALKING[..], arguments].concat()));
+    let gif = folder.path("walk.gif");
+    let found = refused(&["--out", &gif]);
+    assert_eq!(found, format!("error: {gif}: file extension: expected .mp4 or .webm, found .gif"));
+    let found = refused(&["--out", "-"]);
+    assert_eq!(found, "error: --out: expected a folder, or a file ending in .mp4 or .webm, found -");
+    let clear = folder.path("clear.mp4");
+    let found = refused(&["--out", &clear, "--view", "background=transparent"]);
+    assert!(found.starts_with(&format!("error: {clear}: an .mp4 can't be transparent; ")), "{found}");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
+    let command = command.args(["render", "sample:walker", "--out", &clear]).args(WALKING).env("PATH", "");
+    let found = refusal(&command.output().expect("the program runs"));
+    assert!(found.starts_with(&format!("error: {clear}: ffmpeg, which encodes videos, isn't installed; ")), "{found}");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
+    let command = command.args(["render", "sample:walker", "--size", "7x8", "--out", &clear]).args(WALKING);
+    let found = refusal(&command.output().expect("the program runs"));
+    assert_eq!(found, "error: --size: expected an even width and height for a video, found 7x8");
 }

@@ -1,12 +1,16 @@
 //! Material maps and their sampling: laws rather than colours.
 
+use gaitway::files::decode_images;
 use gaitway::library::ImageData;
 use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
 use gaitway::render::{Renderer, RendererOptions, texture_formats};
-use gaitway_ktx2::{Format, Formats, Texture as Ktx2, decode, request};
+use gaitway::state::Channel;
+use gaitway_ktx2::{Format, Formats, MAGIC, Texture as Ktx2, decode, request};
 use glam::{Affine2, Vec2, Vec3, Vec4};
+use serde_json::json;
 
-use crate::device::{Gpu, gpu};
+use crate::build_gltf::Build;
+use crate::device::{Gpu, gl, gpu};
 use crate::scene::{SIZE, Scene, near, square, unlit};
 
 const MAP: Option<TextureRef> = Some(TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY });
@@ -169,6 +173,55 @@ fn ktx2_textures_look_the_same_in_every_format_of_the_device() {
         }
     }
     println!("{supported:?}: {compared:?}");
+}
+
+/// A KTX2 file of 4 × 4 pixels of one colour with its mip levels. UASTC keeps such blocks exactly (mode 8, whose code is 10111).
+fn uastc(color: [u8; 4]) -> Vec<u8> {
+    const LEVELS: u32 = 3;
+    // Linear RGB in blocks of 4 × 4 texels and 16 bytes: one sample of 128 bits.
+    let description = [44, 0, 2 | 40 << 16, 166 | 1 << 16, 3 | 3 << 8, 16, 0, 127 << 16, 0, 0, u32::MAX];
+    let after_index = 80 + 24 * LEVELS;
+    // No Vulkan format, bytes, the size, one face, the levels, no supercompression.
+    let header = [0, 1, 4, 4, 0, 0, 1, LEVELS, 0, after_index, description[0], 0, 0, 0, 0, 0, 0];
+    let index = (0..LEVELS).flat_map(|level| [after_index + description[0] + 16 * level, 0, 16, 0, 16, 0]);
+    let words = header.into_iter().chain(index).chain(description).flat_map(u32::to_le_bytes);
+    let block = (u128::from(u32::from_le_bytes(color)) << 5 | 0b10111).to_le_bytes();
+    MAGIC.into_iter().chain(words).chain(block.repeat(LEVELS as usize)).collect()
+}
+
+/// One image as a colour map, which is sRGB, and as a normal map, which is linear. The channels show both as they were encoded.
+#[test]
+fn a_ktx2_image_is_linear_as_a_normal_map_and_srgb_as_a_colour_map() {
+    let color = [204, 128, 230, 255];
+    let mut build = Build::triangle();
+    let view = build.view(&uastc(color));
+    build.json["images"] = json!([{ "bufferView": view, "mimeType": "image/ktx2" }]);
+    build.json["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+    let map = json!({ "index": 0 });
+    build.json["materials"] = json!([{ "normalTexture": map, "pbrMetallicRoughness": { "baseColorTexture": map } }]);
+    build.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+    build.json["extensionsUsed"] = json!(["KHR_texture_basisu"]);
+    let mut asset = build.loaded();
+    let file = asset.images[0].bytes.clone();
+    let plain = decode_images(&mut asset).remove(0).expect("a sound image");
+    assert!(asset.warnings.is_empty(), "{:?}", asset.warnings);
+    for gpu in [gpu(), gl()].into_iter().flatten() {
+        let supported = texture_formats(gpu.device.features());
+        let compressed = [Formats::BC7, Formats::ASTC].into_iter().filter(|one| supported.contains(*one));
+        let transcoded = compressed.map(|formats| {
+            let output = decode(&request(formats, 4096, &file)).expect("a sound file");
+            ImageData::Ktx2(Ktx2::read(&output.bytes).expect("an answer of the transcoder"))
+        });
+        for image in [plain.clone()].into_iter().chain(transcoded) {
+            let [geometry, _] = squares();
+            let (materials, textures) = (asset.materials.clone(), asset.textures.clone());
+            let mut scene = Scene::textured(vec![geometry], materials, textures, vec![Some(image)]);
+            for channel in [Channel::Normal, Channel::BaseColor] {
+                scene.frame.look.channel = channel;
+                near(scene.draw(&gpu).at(0.1, 0.1), color, 2);
+            }
+        }
+    }
 }
 
 #[test]

@@ -21,3 +21,5 @@ mod layers;
 mod pairs;
 mod rests;
 mod soles;
+mod stack;
+mod verdicts;

@@ -363,3 +363,45 @@ fn clips_are_changed_on_the_way() {
     assert!(run(&["convert", &motion, "--trim", "0.2,0.5004", "--out", &out]).status.success());
     check_fails(&["convert", &motion, "--speed", "0", "--out", &out], 2, "0.1 to 10");
 }
+
+#[test]
+fn layers_are_posed_and_written() {
+    let (folder, motion) = folder("layers");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let at = |layer: &[&str], time: &str| {
+        let pose = [&["pose", "sample:walker", "--clip", "Walk", "--time", time, "--json"], layer].concat();
+        document(&pose)["nodes"].clone()
+    };
+    let wave = document(&["pose", "sample:walker", "--clip", "Wave", "--time", "0.5", "--json"])["nodes"].clone();
+    assert_eq!(at(&["--layer", "Wave"], "0.5"), wave);
+    assert_eq!(at(&["--layer", "Wave:weight:0"], "0.5"), at(&[], "0.5"));
+    let arm = at(&["--layer", "Wave:mask:right-arm"], "0.5");
+    assert!(arm != wave && arm != at(&[], "0.5"));
+    assert_eq!(at(&["--view", "v=1&layers=Wave:mask:right-arm"], "0.5"), arm);
+    // On what a motion gives the model, and written.
+    let out = path("out.glb");
+    let retarget =
+        ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--json", "--out", &out];
+    let layers = ["--layer", "Wave:speed:5.6,mask:right-arm:left-arm"];
+    let report = document(&[&retarget[..], &layers].concat());
+    let codes = report["warnings"].as_array().expect("a list").iter().map(|warning| warning["code"].clone());
+    assert_eq!(codes.collect::<Vec<_>>(), ["unit-guessed"], "the wave ends with the walk");
+    let (names, plain) = (places(&out, "0", "0.25"), path("plain.glb"));
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--out", &plain];
+    assert!(run(&retarget).status.success());
+    let apart = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let moved: Vec<f64> = names.iter().zip(&places(&plain, "0", "0.25")).map(|(a, b)| apart(a, b)).collect();
+    assert!(moved.iter().any(|&distance| distance > 0.1) && moved.iter().any(|&distance| distance == 0.0), "{moved:?}");
+    // A clip of a file over another of the same file.
+    let turned = path("turned.glb");
+    let convert = ["convert", &motion, "--layer", "walk:additive,start:0.25,weight:0.5", "--out", &turned];
+    assert!(run(&convert).status.success());
+    assert_ne!(places(&turned, "1", "0.1"), places(&motion, "0", "0.1"));
+    let clips = "--layer: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave";
+    check_fails(&["pose", "sample:walker", "--clip", "Walk", "--layer", "Fly"], 1, clips);
+    check_fails(&["convert", &motion, "--layer", "Fly", "--out", &turned], 1, "found “Fly”");
+    check_fails(&["pose", "sample:walker", "--layer", "Wave:mask:wing"], 2, "left-arm");
+    check_fails(&["pose", "sample:walker", "--layer", "Wave:weight:NaN"], 2, "expected a clip");
+    check_fails(&["pose", "sample:walker", "--layer", "Wave:weight:2"], 2, "a weight from 0 to 1");
+    check_fails(&["pose", "sample:walker", "--layer", "Wave:mask:4000"], 1, "found 4000");
+}

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    ClipChanges, ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions,
-    RootPart, SourceRef, Unmapped,
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
+    MutedChannel, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
@@ -157,6 +157,18 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let looped = ClipChanges { loop_secs: Some(0.0), ..ClipChanges::default() };
                 let clips = [("Walk: fast, 100 % & more", all), ("3", mirrored), ("歩", looped)];
                 state.edits.clips = clips.into_iter().map(|(clip, changes)| (clip.to_owned(), changes)).collect();
+            }),
+        ),
+        (
+            "edits.layers",
+            with(&|state| {
+                let mut mask = LayerMask::of_parts(&[BodyPart::Head, BodyPart::LeftArm]);
+                mask.joints.extend([4, 17]);
+                let (mode, weight) = (LayerMode::AdditiveToRest, 1.0 / 3.0);
+                let all = ClipLayer { clip: "a: b, c".to_owned(), weight, speed: 0.5, start_secs: -0.1, mode, mask };
+                let plain = ClipLayer { clip: "歩 50 % & more".to_owned(), ..ClipLayer::default() };
+                let sum = ClipLayer { mode: LayerMode::Additive, ..plain.clone() };
+                state.edits.layers = vec![all, plain, sum];
             }),
         ),
         (

@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
-use gaitway::retarget::{ClipChanges, ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, LayerMask, LayerMode, MapEntry, RootOptions, RootPart,
+    Unmapped,
+};
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
     LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice,
@@ -104,7 +107,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..39 {
+        for field in 0..40 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -136,6 +139,16 @@ impl Random {
     fn clips(&mut self) -> BTreeMap<String, ClipChanges> {
         let changes = ClipChanges { reverse: true, mirror: self.often(), ..ClipChanges::default() };
         (0..self.below(4)).map(|_| (self.text(), changes.clone())).collect()
+    }
+
+    fn layer(&mut self) -> ClipLayer {
+        let mut mask = LayerMask::default();
+        for (part, _) in BodyPart::ALL.into_iter().filter(|_| self.below(4) == 0) {
+            mask.toggle(part);
+        }
+        mask.joints = (0..self.below(3)).map(|_| self.below(300)).collect();
+        let [weight, speed, start_secs] = [(); 3].map(|()| f64::from(self.number()));
+        ClipLayer { clip: self.text(), weight, speed, start_secs, mode: self.one(&LayerMode::ALL), mask }
     }
 
     fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
@@ -204,6 +217,7 @@ impl Random {
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
             37 => state.edits.clips = self.clips(),
+            38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
             26 => state.camera_options.turntable = self.number(),
             27 => {
                 state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();

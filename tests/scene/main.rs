@@ -30,6 +30,7 @@ mod generator_animations;
 mod hidden;
 mod history;
 mod instancing;
+mod layers;
 mod link;
 mod link_files;
 mod link_properties;

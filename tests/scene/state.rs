@@ -6,12 +6,15 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::Library;
 use gaitway::retarget::ClipChanges;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, NameKind, OrbitCamera, Playback, Playhead, UnknownName,
+    CameraChoice, CameraOptions, ClipChoice, Command, History, NameKind, OrbitCamera, Playback, Playhead, UnknownName,
     ViewerState, active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
 };
 use glam::Vec3;
 
 use crate::data::{moving_box, walker};
+use crate::history::{redo, undo};
+
+type Step = fn(&mut History, &mut ViewerState, &mut Library) -> bool;
 
 fn after(library: &Library, commands: impl IntoIterator<Item = Command>) -> ViewerState {
     let mut state = ViewerState::default();
@@ -165,6 +168,31 @@ fn a_change_of_speed_keeps_the_pose_and_the_range() {
     // The part in the range is somewhere else now.
     apply(&mut state, &library, change(0, ClipChanges { speed: 0.5, reverse: true, ..ClipChanges::NONE }));
     check(&state, 1.0, None);
+}
+
+#[test]
+fn undoing_a_change_of_a_clip_restores_pose_and_range() {
+    let mut library = walker();
+    let range = |start_secs, end_secs| Some(TimeRange { start_secs, end_secs });
+    let mut state = after(&library, [Command::Seek(0.5), Command::SetRange(range(0.25, 0.75))]);
+    let mut history = History::default();
+    let twice = ClipChanges { speed: 2.0, ..ClipChanges::NONE };
+    let reversed = ClipChanges { reverse: true, ..twice.clone() };
+    for changes in [twice, reversed] {
+        history.apply(&mut state, &library, Command::ChangeClip { clip: 0, changes: Box::new(changes) });
+        history.end_gesture();
+    }
+    assert_eq!((state.playhead.time_secs, state.playhead.range), (0.25, None));
+    let expected =
+        [(undo as Step, 0.25, range(0.125, 0.375)), (undo, 0.5, range(0.25, 0.75)), (redo, 0.25, range(0.125, 0.375))];
+    for (step, time_secs, range) in expected {
+        assert!(step(&mut history, &mut state, &mut library));
+        assert_eq!((state.playhead.time_secs, state.playhead.range), (time_secs, range));
+    }
+    // A range that was set meanwhile stretches as well.
+    apply(&mut state, &library, Command::SetRange(range(0.0, 0.25)));
+    undo(&mut history, &mut state, &mut library);
+    assert_eq!((state.playhead.time_secs, state.playhead.range), (0.5, range(0.0, 0.5)));
 }
 
 #[test]

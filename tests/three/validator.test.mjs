@@ -1,6 +1,8 @@
 // What the page makes of the Khronos validator's findings (web/validator).
 import assert from "node:assert/strict";
+import fs from "node:fs";
 import { test } from "node:test";
+import { MEANINGS } from "../../web/validator/meanings.js";
 import { userOf } from "../../web/validator/places.js";
 import { validate } from "../../web/validator/report.js";
 import { BODY, LOWER, triangle } from "./triangle.mjs";
@@ -32,6 +34,16 @@ test("findings are grouped, errors first, and lead to what nodes use", async () 
     [2, "UNSUPPORTED_EXTENSION", 1, ["/extensionsUsed/0"]],
   ]);
   assert.match(groups[1].findings[0].text, new RegExp(`^${WEIGHTS}: .* sum: 0\\.5`));
+});
+
+test("codes are explained in plain words", async () => {
+  const { groups } = await report(triangle({ weight: 0.5 }).document);
+  assert.deepEqual(groups.map(({ code, meaning }) => [code, meaning]), [["ACCESSOR_WEIGHTS_NON_NORMALIZED", "Joint weights of a vertex don't add up to 1"]]);
+  const listed = fs.readFileSync("node_modules/gltf-validator/ISSUES.md", "utf8");
+  for (const [code, meaning] of Object.entries(MEANINGS)) {
+    assert.ok(listed.includes(`|${code}|`), `the validator has no ${code}`);
+    assert.match(meaning, /^[A-Z][^_]*[^.]$/, code);
+  }
 });
 
 test("other files are read by their URIs, and a missing one is a finding", async () => {

@@ -4,6 +4,7 @@ use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::ClipFormat;
+use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
@@ -153,14 +154,17 @@ fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::Camera.label());
     let rate = text::labelled(text::FRAME_RATE, &text::frames_per_sec(60));
-    for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
+    for label in
+        [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD, text::RECORD_IMAGES]
+    {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
         press(&mut harness, label);
     }
     let picture = Saved::Picture { size: [1080, 1080], transparent: true };
-    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true };
-    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video)]);
+    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true, as_images: false };
+    let images = VideoSettings { as_images: true, ..video };
+    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video), UiAction::Record(images)]);
 }
 
 #[test]
@@ -194,7 +198,8 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
         3,
         "a copy fits: limbs, facing, rotations"
     );
-    assert!(harness.query_by_label(&text::labelled(text::COVERAGE, "100 %")).is_some());
+    assert!(harness.query_by_label(&format!("{}, good", text::labelled(text::COVERAGE, "100 %"))).is_some());
+    assert!(harness.query_by_label(&text::overall(Verdict::Good)).is_some());
     press(&mut harness, text::FILES);
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
     harness.run();

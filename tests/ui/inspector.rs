@@ -149,7 +149,7 @@ fn the_file_report_counts_and_groups() {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());
-    assert!(harness.query_by_label(&text::counted("matrix-not-decomposable", 2)).is_some());
+    assert!(harness.query_by_label(&text::warning_title("matrix-not-decomposable", 2)).is_some());
     assert_eq!(harness.query_all_by_label_contains("sheared or singular").count(), 2);
 }
 
@@ -298,10 +298,19 @@ fn warnings_lead_to_their_nodes_and_have_badges() {
         let tab = harness.get_by_label(Tab::Info.label());
         tab.accesskit_node().data().description().map(str::to_owned)
     };
-    assert_eq!(badge(&harness), Some(text::warning_count(1)));
+    assert_eq!(badge(&harness), Some(text::file_warnings(1)));
     press(&mut harness, Tab::Info.label());
+    assert!(harness.query_by_label("Matrix not decomposable").is_some(), "a code in words");
     assert_eq!(reach(&mut harness, &text::go_to("Second")), [Command::SelectJoint(Some(1))]);
     assert_eq!(harness.state().panels.layout.tab, Tab::Scene);
+    let described = |name: &str| {
+        let row = harness.get_by_role_and_label(Role::TreeItem, name);
+        row.accesskit_node().data().description().map(str::to_owned)
+    };
+    assert_eq!((described("First"), described("Second")), (None, Some(text::node_warnings(1))));
+    harness.get_by_role_and_label(Role::TreeItem, "Second").hover();
+    harness.run_steps(60);
+    assert!(harness.query_by_label(&text::node_warnings(1)).is_some(), "the tooltip");
     let harness = sample_bench(WIDE);
     assert_eq!(badge(&harness), None);
 }
@@ -335,28 +344,30 @@ fn the_validator_reports_beside_the_warnings_and_leads_to_nodes() {
     show(&mut harness, id, Validation::Done(ValidatorReport::default()));
     assert!(harness.query_by_label(text::NO_FINDINGS).is_some());
 
-    let group = |severity, code: &str, count, findings: &[(&str, Option<JointIndex>)]| ValidatorGroup {
+    let group = |severity, code: &str, meaning: &str, count, findings: &[(&str, Option<JointIndex>)]| ValidatorGroup {
         severity,
         code: code.to_owned(),
+        meaning: meaning.to_owned(),
         count,
         findings: findings.iter().map(|(text, joint)| ((*text).to_owned(), *joint)).collect(),
     };
     let long = "ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION";
     let groups = vec![
-        group(0, long, 1, &[("/skins/0: long", None)]),
-        group(0, "BAD", 3, &[("/nodes/1: bad", Some(JointIndex(1))), ("/asset: worse", None)]),
-        group(3, "BAD", 1, &[("/nodes/0: hint", Some(JointIndex(0)))]),
+        group(0, long, "", 1, &[("/skins/0: long", None)]),
+        group(0, "BAD", "It is bad", 1315, &[("/nodes/1: bad", Some(JointIndex(1))), ("/asset: worse", None)]),
+        group(3, "BAD", "", 1, &[("/nodes/0: hint", Some(JointIndex(0)))]),
     ];
-    let report = ValidatorReport { counts: [3, 0, 0, 1], is_truncated: false, groups };
+    let report = ValidatorReport { counts: [1316, 0, 0, 1], is_truncated: false, groups };
     show(&mut harness, id, Validation::Done(report.clone()));
-    for label in ["3 errors, 1 hint", "Error: BAD (3)", "/nodes/1: bad", "/asset: worse", "and 1 more", "Hint: BAD (1)"]
-    {
+    let summary = "2 kinds of error in 1\u{2009}316 places, 1 hint";
+    let title = "Error: It is bad (1\u{2009}315 places)\nBAD";
+    for label in [summary, title, "/nodes/1: bad", "/asset: worse", "and 1313 more", "Hint: BAD"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label("/nodes/0: hint").is_none(), "hints are collapsed");
     let edge = |label: &str| harness.get_by_label(label).rect().right();
-    assert!(edge(&format!("Error: {long} (1)")) <= edge(text::VALIDATE_AGAIN), "wrapped");
-    press(&mut harness, "Hint: BAD (1)");
+    assert!(edge(&format!("Error: {long}")) <= edge(text::VALIDATE_AGAIN), "wrapped");
+    press(&mut harness, "Hint: BAD");
     assert!(harness.query_by_label(&text::go_to("First")).is_some());
     assert_eq!(reach(&mut harness, &text::go_to("Second")), [Command::SelectJoint(Some(1))]);
     assert_eq!(harness.state().panels.layout.tab, Tab::Scene);
@@ -408,7 +419,7 @@ fn materials_and_images_are_listed_with_what_they_are() {
         "KHR_materials_clearcoat",
         "Default material",
         "weave",
-        "PNG, 8 × 4, 0.0 MB, base colour, emissive",
+        "PNG, 8 × 4, base colour, emissive, 0.0 MB on the GPU",
     ] {
         assert!(harness.query_by_label(line).is_some(), "{line}");
     }

@@ -157,9 +157,16 @@ fn an_error_stays_until_dismissed() {
 #[test]
 fn a_load_shows_how_far_it_is() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.messages.progress = Some(Progress { name: "large.glb".to_owned(), fraction: Some(0.5) });
-    harness.run();
-    assert!(harness.query_by_label(&text::opening("large.glb")).is_some());
+    let name = "large.glb".to_owned();
+    for (total_bytes, amount) in [(0, "3.5 MB"), (7_000_000, "3.5 of 7.0 MB")] {
+        let progress = Progress { name: name.clone(), received_bytes: 3_500_000, total_bytes };
+        harness.state_mut().panels.messages.progress = Some(progress);
+        // An unknown end is a moving bar, which never comes to rest.
+        harness.run_steps(3);
+        assert!(harness.query_by_label(&text::opening(&name)).is_some() && harness.query_by_label(amount).is_some());
+    }
+    press(&mut harness, text::CANCEL);
+    assert_eq!(harness.state().actions, [UiAction::CancelOpening]);
 }
 
 #[test]

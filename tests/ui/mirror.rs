@@ -54,18 +54,25 @@ fn everything_that_takes_the_focus_has_a_name() {
 }
 
 #[test]
-fn the_joint_table_has_rows_of_two_cells() {
+fn the_joint_table_is_one_grid_with_rows_of_two_cells_and_headings() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
     let tree = Arc::new(Mutex::new(None));
     harness.ctx.add_plugin(Spy(tree.clone()));
     harness.state_mut().panels.layout.tab = Tab::Motion;
     harness.run();
     let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
-    let mut rows: BTreeMap<u64, usize> = BTreeMap::new();
-    for cell in entries(&update).iter().filter(|entry| entry["role"] == "gridcell") {
-        *rows.entry(cell["row"].as_u64().expect("a row")).or_default() += 1;
+    let entries = entries(&update);
+    let is_cell = |entry: &Value| entry["role"] == "gridcell";
+    let first = entries.iter().position(is_cell).expect("cells");
+    let cells = entries[first..].iter().take_while(|entry| is_cell(entry));
+    assert_eq!(cells.clone().count(), entries.iter().filter(|entry| is_cell(entry)).count(), "one grid");
+    let mut rows: BTreeMap<u64, Vec<&Value>> = BTreeMap::new();
+    for cell in cells {
+        rows.entry(cell["row"].as_u64().expect("a row")).or_default().push(cell);
     }
-    assert!(rows.len() > 10 && rows.values().all(|&cells| cells == 2), "{rows:?}");
+    let (headings, joints): (Vec<_>, Vec<_>) = rows.values().partition(|cells| !cells[0]["expanded"].is_null());
+    assert!(headings.len() > 3 && headings.iter().all(|cells| cells.len() == 1), "{headings:?}");
+    assert!(joints.len() > 10 && joints.iter().all(|cells| cells.len() == 2), "{joints:?}");
 }
 
 /// From left to right and from the top to the bottom.

@@ -1,4 +1,4 @@
-// What the browser lends: full screen, and the theme of page and panels, which is remembered.
+// What the browser lends, full screen and the theme of page and panels, which is remembered; and the font of both.
 const KEY = "gaitway-theme";
 
 export const hasFullscreen = () => document.fullscreenEnabled;
@@ -27,6 +27,18 @@ export function setTheme(name) {
   } catch {
     // It lasts as long as the page.
   }
+}
+
+/** @type {FontFace | undefined} */
+let font;
+
+/**
+ * Gives the page the font of the panels. A program contains it, so it isn't downloaded twice.
+ * @param {import("./types.d.ts").Bindings} program
+ */
+export function shareFont(program) {
+  font ??= new FontFace("Gaitway", program.font());
+  document.fonts.add(font);
 }
 
 document.documentElement.style.colorScheme = theme();

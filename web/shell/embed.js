@@ -1,7 +1,8 @@
 // Gaitway in a frame of another page: `window.gaitway` by messages. The page around it sends `{gaitway: 1, id, call,
-// arguments}` and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error}`; events are `{gaitway: 1, event}`. It
+// arguments}` and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error, code}`; events are `{gaitway: 1, event}`. It
 // never learns anything about files that the user dropped or chose in the frame.
 import { messageOf } from "./dom.js";
+import { codeOf, coded } from "./errors.js";
 import { open } from "./opening.js";
 import { isPrivate, seenPrivate } from "./privacy.js";
 import { session } from "./session.js";
@@ -12,7 +13,7 @@ import { session } from "./session.js";
  */
 
 const READS = /** @type {const} */ (["state", "pose", "stats", "screenshot"]);
-const WITHHELD = "withheld: the user has opened local files in this frame; what they show stays here";
+const withheld = () => coded("cross-origin", "withheld: the user has opened local files in this frame; what they show stays here");
 
 /** @type {Record<string, Call>} */
 const CALLS = {
@@ -27,10 +28,10 @@ const CALLS = {
  * @param {unknown[]} given
  */
 async function answer(call, given) {
-  if (!Object.hasOwn(CALLS, call)) throw new Error(`${call}: there is no such call; expected one of ${Object.keys(CALLS).join(", ")}`);
+  if (!Object.hasOwn(CALLS, call)) throw coded("malformed", `${call}: there is no such call; expected one of ${Object.keys(CALLS).join(", ")}`);
   const reads = READS.some((name) => name === call);
   const [wasPrivate, seen] = [isPrivate(), seenPrivate()];
-  if (wasPrivate && reads) throw new Error(WITHHELD);
+  if (wasPrivate && reads) throw withheld();
   // A file may have been dropped meanwhile, and closed again.
   const isPrivateNow = () => wasPrivate || isPrivate() || seenPrivate() !== seen;
   let result;
@@ -38,10 +39,10 @@ async function answer(call, given) {
     result = await CALLS[call](...given);
   } catch (error) {
     // Error messages name joints and files.
-    throw isPrivateNow() ? new Error(WITHHELD) : error;
+    throw isPrivateNow() ? withheld() : error;
   }
   if (!isPrivateNow()) return result;
-  if (reads) throw new Error(WITHHELD);
+  if (reads) throw withheld();
   // The document that `open` returns lists borrowed clips too.
   return undefined;
 }
@@ -63,7 +64,7 @@ export function answerParent() {
     try {
       reply({ result: await answer(data.call, Array.isArray(data.arguments) ? data.arguments : []) });
     } catch (error) {
-      reply({ error: messageOf(error) });
+      reply({ error: messageOf(error), code: codeOf(error) });
     }
   });
   addEventListener("gaitway:change", () => tell("change"));

@@ -1,5 +1,5 @@
 // The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page
-// and opening local files hide them until they are asked for.
+// and what the user opens hide them until they are asked for.
 import { byId, button, focusCanvas } from "./dom.js";
 import { mostSimilarLink } from "./links.js";
 
@@ -11,6 +11,9 @@ export function showGallery() {
   const first = cards.find((card) => card.ariaCurrent === "true") ?? gallery.querySelector(".card");
   /** @type {HTMLElement | null} */ (first)?.focus();
 }
+
+/** For what the user opens, which needs the room. */
+export const hideGallery = () => setShown(false);
 
 /** @param {boolean} isShown */
 function setShown(isShown) {

@@ -1,10 +1,11 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
-import { hasFullscreen, setTheme, theme, toggleFullscreen } from "./appearance.js";
+import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
+import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
 import { showGallery } from "./gallery.js";
@@ -71,7 +72,7 @@ async function start(renderer) {
   const lacking = missingCapabilities();
   if (lacking !== null) {
     showCannotRun(lacking.missing, lacking.attempts);
-    throw new Error(lacking.missing.join(" "));
+    throw coded("unsupported", lacking.missing.join(" "));
   }
   const problems = [];
   let hasProgram = false;
@@ -85,6 +86,7 @@ async function start(renderer) {
       continue;
     }
     hasProgram = true;
+    shareFont(bindings);
     readLinksWith(bindings);
     session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);
@@ -99,7 +101,7 @@ async function start(renderer) {
     problems.push(problem);
   }
   showCannotRun(problems, hasProgram ? graphicsToTry(renderer) : TRY_DOWNLOAD);
-  throw new Error(problems.join(" "));
+  throw coded(hasProgram ? "unsupported" : "not-found", problems.join(" "));
 }
 
 /**
@@ -174,7 +176,7 @@ async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
   presentFrames();
   // The first presented frame, before it is seen.
   await frames(2);
-  if (session.stopReason !== null) throw new Error(session.stopReason);
+  if (session.stopReason !== null) throw coded("lost-device", session.stopReason);
   canvas.style.visibility = "";
   // egui makes its canvas a stop of the Tab key, and receives text through a hidden input while it has the keyboard.
   canvas.tabIndex = -1;
@@ -194,7 +196,7 @@ function callsFor(bindings) {
     choose: showOpenDialog,
     gallery: showGallery,
     save: download,
-    record: (name, width, height, framesPerSec, frameCount, isTransparent) => record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }),
+    record: (name, width, height, framesPerSec, frameCount, isTransparent, asImages) => record(name, { width, height, framesPerSec, frameCount, isTransparent, asImages, frame: bindings.video_frame }),
     cancelRecording,
     validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),
     share,
@@ -218,7 +220,7 @@ function callsFor(bindings) {
 /** @param {string} message */
 function stopped(message) {
   if (panel() === "stopped" || panel() === "cannot-run") return;
-  abortStart?.(new Error(message));
+  abortStart?.(coded("lost-device", message));
   session.stopReason = message;
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
   const other = otherBackend(backend);

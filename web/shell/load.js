@@ -1,5 +1,6 @@
 // Gets files into the app: reads them, hands them over and holds on to them.
 import { messageOf } from "./dom.js";
+import { coded } from "./errors.js";
 import { hold, holdLast, releaseNamed } from "./held.js";
 import { beginPrivate, endPrivate, forgetRejected, rememberRejected } from "./privacy.js";
 import { running, unlessStopped } from "./session.js";
@@ -21,7 +22,7 @@ export async function read(items) {
       try {
         return [item.name, new Uint8Array(item.content instanceof Blob ? await item.content.arrayBuffer() : item.content)];
       } catch {
-        throw new Error(`${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
+        throw coded("not-found", `${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
       }
     }),
   );

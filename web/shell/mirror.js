@@ -288,9 +288,15 @@ function neighbourOf(target, key) {
   if (!(target instanceof HTMLElement) || list === null || step === undefined) return undefined;
   const [role, isSideways] = [list.getAttribute("role"), key === "ArrowLeft" || key === "ArrowRight"];
   if (role === "tree" && isSideways) return undefined;
+  if (role === "grid" && !isSideways) {
+    const { parentElement: row } = target;
+    const next = step < 0 ? row?.previousElementSibling : row?.nextElementSibling;
+    const cells = /** @type {HTMLElement[]} */ ([...(next?.children ?? [])]);
+    // A heading has one cell.
+    return cells[Math.min([...(row?.children ?? [])].indexOf(target), cells.length - 1)] ?? null;
+  }
   const items = itemsOf(list);
-  const width = role === "grid" && !isSideways ? (target.parentElement?.childElementCount ?? 1) : 1;
-  return items[items.indexOf(target) + step * width] ?? null;
+  return items[items.indexOf(target) + step] ?? null;
 }
 
 /** @param {Element} list */

@@ -3,8 +3,10 @@
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
+import { coded } from "./errors.js";
 import { extensionOf, fileName, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
+import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -48,6 +50,7 @@ export async function openByHand(items, options) {
   if (items.length === 0) return;
   try {
     await open(items, { ...options, isByHand: true });
+    hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);
@@ -68,11 +71,11 @@ function toItems(items) {
     if (item instanceof URL) return [item.href];
     if (item instanceof File) return [{ name: item.webkitRelativePath || item.name, content: item }];
     if (isNamedFile(item)) return [item];
-    if (item === null || typeof item !== "object") throw new Error("open: expected URLs, files, or an object with a buffer for each name");
+    if (item === null || typeof item !== "object") throw coded("malformed", "open: expected URLs, files, or an object with a buffer for each name");
     return Object.entries(item).map(([name, content]) => {
       if (content instanceof Blob || content instanceof ArrayBuffer) return { name, content };
       if (ArrayBuffer.isView(content)) return { name, content: new Uint8Array(/** @type {ArrayBuffer} */ (content.buffer), content.byteOffset, content.byteLength) };
-      throw new Error(`open: ${name}: expected an ArrayBuffer`);
+      throw coded("malformed", `open: ${name}: expected an ArrayBuffer`);
     });
   });
 }

@@ -1,5 +1,6 @@
 // What outlives an instance of the program: the link of the current view, and the instance that runs now.
 import { messageOf } from "./dom.js";
+import { coded } from "./errors.js";
 import { sayProblem } from "./panels.js";
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -38,7 +39,7 @@ export const session = {
 /** Returns the bindings once they run. */
 export async function running() {
   await session.started;
-  if (session.app === null) throw new Error(`Gaitway has stopped: ${session.stopReason}`);
+  if (session.app === null) throw coded("lost-device", `Gaitway has stopped: ${session.stopReason}`);
   return session.app;
 }
 
@@ -53,7 +54,7 @@ export async function unlessStopped(current, answer) {
   /** @type {ReturnType<typeof setInterval> | undefined} */
   let timer;
   const stopped = new Promise((_, reject) => {
-    const check = () => session.app !== current && reject(new Error(`Gaitway has stopped: ${session.stopReason ?? "it was restarted"}`));
+    const check = () => session.app !== current && reject(coded("lost-device", `Gaitway has stopped: ${session.stopReason ?? "it was restarted"}`));
     timer = setInterval(check, 100);
   });
   try {

@@ -20,6 +20,14 @@ export type Role = "motion" | undefined;
 
 export type Backend = "webgpu" | "webgl2";
 
+/** What kind of failure an error is; see `ErrorCode` in src/files/error.rs. */
+export type ErrorCode = "not-found" | "cross-origin" | "unsupported" | "malformed" | "too-large" | "cancelled" | "lost-device";
+
+/** What the calls of `window.gaitway` reject with. */
+export interface GaitwayError extends Error {
+  code: ErrorCode;
+}
+
 /** A `model`, `motion` or `light` of a link; see `LinkedFile` in src/state/link/files.rs. */
 export interface LinkedFile {
   role: "model" | "motion" | "light";
@@ -33,7 +41,7 @@ export interface ShellCalls {
   choose(role: "any" | "motion"): void;
   gallery(): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
-  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean): Promise<string | undefined>;
+  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean, asImages: boolean): Promise<string | undefined>;
   cancelRecording(): void;
   validate(model: number): Promise<string>;
   share(link: string): void;
@@ -83,6 +91,7 @@ export interface Bindings {
     isPrivate: boolean,
     shell: ShellCalls,
   ): Promise<string>;
+  font(): Uint8Array<ArrayBuffer>;
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;

@@ -1,5 +1,6 @@
 // Validates a glTF file with the Khronos validator, and finds the object that leads to the node of each finding.
 import { validateBytes } from "gltf-validator";
+import { MEANINGS } from "./meanings.js";
 import { userOf } from "./places.js";
 
 /** @typedef {import("gltf-validator").Issue} Issue */
@@ -13,8 +14,9 @@ import { userOf } from "./places.js";
  */
 
 /**
- * The findings with one code, of which only the first are listed. `place` is a JSON pointer.
- * @typedef {{ severity: number, code: string, count: number, findings: { text: string, place: string }[] }} Group
+ * The findings with one code, of which only the first are listed. `meaning` is the code in plain words, or empty; `place` is a
+ * JSON pointer.
+ * @typedef {{ severity: number, code: string, meaning: string, count: number, findings: { text: string, place: string }[] }} Group
  */
 
 /** The validator stops at this many findings, so that a broken file can't exhaust memory. */
@@ -35,7 +37,7 @@ export async function validate(bytes, readFile) {
   const groups = new Map();
   for (const issue of issues.messages) {
     const { severity, code, pointer = "" } = issue;
-    const group = groups.get(`${severity} ${code}`) ?? { severity, code, count: 0, findings: [] };
+    const group = groups.get(`${severity} ${code}`) ?? { severity, code, meaning: MEANINGS[code] ?? "", count: 0, findings: [] };
     groups.set(`${severity} ${code}`, group);
     group.count += 1;
     if (group.count <= MAX_LISTED) group.findings.push({ text: text(issue), place: wellFormed(userOf(document, pointer)) });

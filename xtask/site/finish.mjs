@@ -148,7 +148,7 @@ const head = [
 const index = path.join(dist, "index.html");
 let html = text("web/index.html");
 html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}"`);
-html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await minified("web/shell.css", { loader: "css" }))}"`);
+html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await bundled("web/shell.css"))}"`);
 html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundled("web/shell.js"))}"`);
 html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));

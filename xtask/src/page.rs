@@ -61,7 +61,8 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
             .into_iter()
             .try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
     })?;
-    PARTS.into_iter().try_for_each(build_part)?;
+    let (parts, has_clang) = (programs().join("parts"), setup::has_clang());
+    PARTS.into_iter().try_for_each(|part| build_part(part, &parts, has_clang))?;
     let (dist, programs) = (dist(), programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
@@ -116,12 +117,16 @@ fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
     run("node", &[&wasm_opt, &WASM_FEATURES[..], &[text(from)?, "-o", text(to)?]].concat())
 }
 
-fn build_part(part: &str) -> anyhow::Result<()> {
-    let folder = programs().join("parts");
-    fs::create_dir_all(&folder)?;
+/// Returns why a part cannot be built, and what the page won't do.
+fn omission(part: &str, has_clang: bool) -> Option<&'static str> {
+    (part == "fbx" && !has_clang).then_some("clang for wasm32 is missing, so this page will not open FBX files")
+}
+
+fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> {
+    fs::create_dir_all(folder)?;
     let wasm = folder.join(format!("{part}.wasm"));
-    if part == "fbx" && !setup::has_clang() {
-        eprintln!("clang is missing, so this page will not open FBX files");
+    if let Some(omission) = omission(part, has_clang) {
+        eprintln!("{omission}");
         // Left over from an earlier build.
         let _ = fs::remove_file(wasm);
         return Ok(());
@@ -138,4 +143,24 @@ fn compiled(program: &str) -> PathBuf {
 
 fn text(path: &Path) -> anyhow::Result<&str> {
     path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_clang_the_page_has_every_part_but_fbx() {
+        let omitted = |has_clang| PARTS.into_iter().filter(move |part| omission(part, has_clang).is_some());
+        assert_eq!(omitted(true).count(), 0);
+        assert_eq!(omitted(false).collect::<Vec<_>>(), ["fbx"]);
+        assert!(omission("fbx", false).is_some_and(|omission| omission.contains("FBX")));
+        // `finish.mjs` takes whatever is in the folder.
+        let folder = std::env::temp_dir().join(format!("gaitway-parts-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("fbx.wasm"), "of an earlier build").unwrap();
+        build_part("fbx", &folder, false).unwrap();
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+        fs::remove_dir(&folder).unwrap();
+    }
 }

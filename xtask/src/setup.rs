@@ -23,12 +23,12 @@ pub fn page() -> anyhow::Result<()> {
     npm_packages()
 }
 
-/// Whether there is a C compiler for wasm, which the page's FBX reader needs.
+/// Whether there is a C compiler for wasm, which the page's FBX reader needs. Apple's clang isn't one.
 pub fn has_clang() -> bool {
-    output("clang", &["--version"]).is_some()
+    output("clang", &["--print-targets"]).is_some_and(|targets| targets.contains("wasm32"))
 }
 
-/// What the tests need on top of [`page`]: a browser, a software Vulkan driver, clang and Python with some packages.
+/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver, clang and Python with some packages.
 pub fn tests() -> anyhow::Result<()> {
     let missing = missing_packages();
     if !missing.is_empty() {
@@ -56,6 +56,9 @@ fn missing_packages() -> Vec<&'static str> {
     let mut missing = Vec::new();
     if chromium().is_none() {
         missing.push("chromium");
+    }
+    if output("ffmpeg", &["-version"]).is_none() {
+        missing.push("ffmpeg");
     }
     if !python::is_present() {
         missing.push("python3-venv");

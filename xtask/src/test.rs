@@ -41,8 +41,9 @@ fn cargo_checks() -> anyhow::Result<()> {
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    // Other tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them.
-    process::run("cargo", &["build", "--workspace"])
+    // Other tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them. With the
+    // tests, so that their dependencies' features, and everything compiled for them, stay the same.
+    process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
 }
 
 /// Returns the path of the command line.

@@ -93,7 +93,9 @@ impl<'a> Archive<'a> {
             _ => decompress_to_vec_with_limit(packed, member.bytes)
                 .map_err(|problem| damaged(name, "deflated data", &format!("{:?}", problem.status)))?,
         };
-        if bytes.len() != member.bytes || crc32fast::hash(&bytes) != member.crc {
+        // A fuzzer can't be expected to get checksums right.
+        let has_checksum = cfg!(fuzzing) || crc32fast::hash(&bytes) == member.crc;
+        if bytes.len() != member.bytes || !has_checksum {
             return Err(damaged(name, &format!("{} bytes with checksum {:08x}", member.bytes, member.crc), "others"));
         }
         Ok(bytes)

@@ -32,14 +32,11 @@ pub async fn fetch(url: &str, name: &str, reading: &mut Reading<'_>) -> Result<V
     reading.check(name, total)?;
     let mut bytes: Vec<u8> = Vec::with_capacity(total as usize);
     let Some(body) = response.body() else { return Ok(bytes) };
-    let reader: web_sys::ReadableStreamDefaultReader = body.get_reader().unchecked_into();
+    let mut download = Download { reader: body.get_reader().unchecked_into(), is_over: false };
     loop {
         let broke_off = |received: usize| OpenError::BrokeOff { url: url.to_owned(), received: received as u64 };
-        let Some(chunk) = unless_silent(&window, reader.read()).await else {
-            // The connection is abandoned, whether or not cancelling works.
-            let _ = reader.cancel();
-            return Err(silent());
-        };
+        let chunk = unless_silent(&window, download.reader.read()).await.ok_or_else(silent)?;
+        download.is_over = chunk.is_err();
         let chunk = chunk.map_err(|_| broke_off(bytes.len()))?;
         if Reflect::get(&chunk, &"done".into()).is_ok_and(|done| done.is_truthy()) {
             break;
@@ -54,6 +51,21 @@ pub async fn fetch(url: &str, name: &str, reading: &mut Reading<'_>) -> Result<V
         (reading.progress)(name, received, if received > total { 0 } else { total });
     }
     Ok(bytes)
+}
+
+/// A download that ends when it is dropped: when the site has gone silent, or the user has cancelled it.
+struct Download {
+    reader: web_sys::ReadableStreamDefaultReader,
+    /// The connection broke off, and can't be closed.
+    is_over: bool,
+}
+
+impl Drop for Download {
+    fn drop(&mut self) {
+        if !self.is_over {
+            let _ = self.reader.cancel();
+        }
+    }
 }
 
 /// Awaits a promise that resolves to an object; `None` if it takes too long.

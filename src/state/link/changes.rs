@@ -58,7 +58,7 @@ fn reset(state: &mut ViewerState, one: fn(&mut ClipChanges)) {
     state.edits.clips.retain(|_, changes| !changes.is_none());
 }
 
-fn clip_name(text: &str) -> Option<String> {
+pub(super) fn clip_name(text: &str) -> Option<String> {
     let name = percent_decode_str(text).decode_utf8().ok()?.into_owned();
     (!name.is_empty()).then_some(name)
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Area, Context, FontId, Galley, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Area, Context, Galley, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
 
 use super::Pairing;
 use super::picker::Picking;
@@ -76,11 +76,7 @@ pub(in crate::ui) fn show(
     let state = matches!(clicking, Clicking::Target { .. }).then_some(shown.state);
     if let Some((joint, at)) = response.hover_pos().and_then(|position| nearest(&places, position)) {
         dot(at, 6.0);
-        let galley = painter.layout_no_wrap(
-            title(state, asset, joint).into_owned(),
-            FontId::proportional(13.0),
-            palette.on_accent,
-        );
+        let galley = painter.layout_no_wrap(title(state, asset, joint).into_owned(), style::SMALL, palette.on_accent);
         name_tag(painter, at, galley, &palette);
     }
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
@@ -109,7 +105,7 @@ pub(in crate::ui) fn show(
 /// Paints a name above a joint.
 fn name_tag(painter: &Painter, at: Pos2, name: Arc<Galley>, palette: &style::Palette) {
     let tag = Rect::from_center_size(at - vec2(0.0, 24.0), name.size() + vec2(16.0, 6.0));
-    painter.rect_filled(tag, 6.0, palette.accent);
+    painter.rect_filled(tag, style::CORNER, palette.accent);
     painter.galley(tag.center() - name.size() / 2.0, name, palette.on_accent);
 }
 
@@ -163,7 +159,7 @@ pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>,
         let frame = egui::Frame::new()
             .fill(palette.panel)
             .stroke(Stroke::new(1.0, palette.accent))
-            .corner_radius(10)
+            .corner_radius(style::WINDOW_CORNER)
             .inner_margin(egui::Margin::symmetric(12, 8));
         frame.show(ui, |ui| {
             ui.set_max_width((picture.width() - 56.0).clamp(120.0, 420.0));

@@ -76,7 +76,7 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
     // Unfilled, so that fields and buttons stand out.
     let card = egui::Frame::new()
         .stroke(egui::Stroke::new(1.0, palette.line))
-        .corner_radius(8)
+        .corner_radius(style::CORNER)
         .inner_margin(egui::Margin::same(9));
     card.show(ui, |ui| {
         ui.set_width(ui.available_width());

@@ -1,11 +1,11 @@
-//! The Fit part: how well the clip that plays does what its source does, in numbers.
+//! The Fit part: how well the clip that plays does what its source does, in numbers and in a word for each.
 
 use std::rc::Rc;
 
-use egui::{RichText, Sense, Ui, WidgetInfo, vec2};
+use egui::{Align2, Color32, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Contents, MotionTab, Pairing};
-use crate::retarget::{Figures, Planting};
+use crate::retarget::{Figures, Planting, Verdict, Verdicts};
 use crate::state::active_clip;
 use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Shown, style, text};
@@ -15,6 +15,8 @@ use crate::ui::{Shown, style, text};
 pub(super) struct Fit {
     contents: Rc<Contents>,
     clip: usize,
+    /// The worst of all verdicts, and it in words.
+    overall: Option<(Verdict, String)>,
     lines: Vec<Line>,
 }
 
@@ -27,7 +29,8 @@ enum Line {
     Figure {
         name: &'static str,
         value: String,
-        /// Both, for screen readers.
+        verdict: Option<Verdict>,
+        /// All, for screen readers.
         text: String,
     },
     Note(String),
@@ -48,8 +51,13 @@ pub(super) fn show(
     tab.fit.take_if(|fit| fit.clip != clip || !Rc::ptr_eq(&fit.contents, contents));
     let fit = tab.fit.get_or_insert_with(|| {
         let planting = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting);
-        Fit { contents: contents.clone(), clip, lines: lines(figures, planting) }
+        let verdicts = Verdicts::new(figures, pairing.model.size_metres());
+        let overall = verdicts.worst().map(|worst| (worst, text::overall(worst)));
+        Fit { contents: contents.clone(), clip, overall, lines: lines(figures, &verdicts, planting) }
     });
+    if let Some((verdict, overall)) = &fit.overall {
+        ui.label(RichText::new(overall).color(color(ui, *verdict)));
+    }
     controls::hint(ui, "Over the whole clip as it plays, with unmapped joints at rest.");
     for line in &fit.lines {
         match line {
@@ -57,73 +65,91 @@ pub(super) fn show(
                 controls::section(ui, title);
                 controls::hint(ui, *hint);
             }
-            Line::Figure { name, value, text } => row(ui, name, value, text),
+            Line::Figure { name, value, verdict, text } => row(ui, name, value, *verdict, text),
             Line::Note(note) => controls::hint(ui, note),
         }
     }
 }
 
-fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
-    let Figures {
-        limb_direction_error_degrees_mean,
-        limb_direction_error_degrees_max,
-        facing_error_degrees_mean,
-        facing_error_degrees_max,
-        orientation_error_degrees_mean,
-        orientation_error_degrees_max,
-        foot_slide_metres_per_sec,
-        foot_slide_source_metres_per_sec,
-        ground_penetration_metres_max,
-        foot_hover_metres_mean,
-        sole_penetration_metres_max,
-        coverage,
-    } = *figures;
-    let degrees = |name, value: Option<f64>| figure(name, value.map(|value| format!("{value:.2}°")));
-    let speed = |name, value: Option<f64>| figure(name, value.map(|value| format!("{:.1} cm/s", 100.0 * value)));
-    let length = |name, value: Option<f64>| figure(name, value.map(|metres| format!("{:.1} cm", 100.0 * metres)));
+fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> Vec<Line> {
+    let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
+    let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
+    let length = |value: Option<f64>| value.map(|metres| format!("{:.1} cm", 100.0 * metres));
+    let share = |value: Option<f64>| value.map(|share| format!("{:.0} %", 100.0 * share));
     let group = |title, hint| Line::Group { title, hint };
-    let mut lines = vec![
-        group("LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error."),
-        degrees(text::MEAN, limb_direction_error_degrees_mean),
-        degrees("Largest", limb_direction_error_degrees_max),
-        group(
-            "FACING ERROR",
-            "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.",
-        ),
-        degrees(text::MEAN, facing_error_degrees_mean),
-        degrees("Largest", facing_error_degrees_max),
-        group(capitals!(text::ROTATION_ERROR), "Difference from the source's rotations, each from its own rest pose."),
-        degrees(text::MEAN, orientation_error_degrees_mean),
-        degrees("Largest", orientation_error_degrees_max),
-        group("FEET", "Measured while the source's foot is on the ground, next to the source's own slide."),
-        speed("Slide", foot_slide_metres_per_sec),
-        speed("Slide of the source", foot_slide_source_metres_per_sec),
-        length("Mean height of the soles", foot_hover_metres_mean),
-        length("Max. sole penetration", sole_penetration_metres_max),
-        length("Max. joint penetration", ground_penetration_metres_max),
-    ];
+    let angles = |mean: Option<f64>, mean_verdict, max: Option<f64>, max_verdict| {
+        [figure(text::MEAN, degrees(mean), mean_verdict), figure("Largest", degrees(max), max_verdict)]
+    };
+    let mut lines = vec![group("LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error.")];
+    lines.extend(angles(
+        figures.limb_direction_error_degrees_mean,
+        verdicts.limb_direction_error_mean,
+        figures.limb_direction_error_degrees_max,
+        verdicts.limb_direction_error_max,
+    ));
+    lines.push(group(
+        "FACING ERROR",
+        "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.",
+    ));
+    lines.extend(angles(
+        figures.facing_error_degrees_mean,
+        verdicts.facing_error_mean,
+        figures.facing_error_degrees_max,
+        verdicts.facing_error_max,
+    ));
+    let hint = "Difference from the source's rotations, each from its own rest pose.";
+    lines.push(group(capitals!(text::ROTATION_ERROR), hint));
+    lines.extend(angles(
+        figures.orientation_error_degrees_mean,
+        verdicts.orientation_error_mean,
+        figures.orientation_error_degrees_max,
+        verdicts.orientation_error_max,
+    ));
+    let hint = "Measured while the source's foot is on the ground, next to the source's own slide.";
+    lines.extend([
+        group("FEET", hint),
+        figure("Slide", speed(figures.foot_slide_metres_per_sec), verdicts.foot_slide),
+        figure("Slide of the source", speed(figures.foot_slide_source_metres_per_sec), None),
+        figure("Height of the soles", length(figures.foot_hover_metres_mean), verdicts.foot_hover),
+        figure("Max. sole penetration", length(figures.sole_penetration_metres_max), verdicts.sole_penetration),
+        figure("Max. joint penetration", length(figures.ground_penetration_metres_max), verdicts.ground_penetration),
+    ]);
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));
-    lines.push(figure(text::COVERAGE, coverage.map(|share| format!("{:.0} %", 100.0 * share))));
+    lines.push(figure(text::COVERAGE, share(figures.coverage), verdicts.coverage));
     lines
 }
 
-fn figure(name: &'static str, value: Option<String>) -> Line {
+fn figure(name: &'static str, value: Option<String>, verdict: Option<Verdict>) -> Line {
     let value = value.unwrap_or_else(|| "cannot be measured".to_owned());
-    Line::Figure { name, text: text::labelled(name, &value), value }
+    let mut text = text::labelled(name, &value);
+    if let Some(verdict) = verdict {
+        text = format!("{text}, {}", text::verdict(verdict));
+    }
+    Line::Figure { name, value, verdict, text }
 }
 
-fn row(ui: &mut Ui, name: &str, value: &str, text: &str) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::hover());
+fn color(ui: &Ui, verdict: Verdict) -> Color32 {
     let palette = style::palette(ui);
+    match verdict {
+        Verdict::Good => palette.accent,
+        Verdict::Acceptable => palette.text,
+        Verdict::NeedsReview => palette.warning,
+    }
+}
+
+/// A name, its value, and the verdict in a column on the right.
+fn row(ui: &mut Ui, name: &str, value: &str, verdict: Option<Verdict>, text: &str) {
+    const VERDICT_WIDTH: f32 = 78.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
-    ui.put(rect, |ui: &mut Ui| {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(name).color(palette.weak_text));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(value).monospace());
-            });
-        })
-        .response
-    });
+    let palette = style::palette(ui);
+    let right = |x: f32, text: &str, color| {
+        ui.painter().text(pos2(x, rect.center().y), Align2::RIGHT_CENTER, text, style::SMALL, color)
+    };
+    if let Some(verdict) = verdict {
+        right(rect.right(), text::verdict(verdict), color(ui, verdict));
+    }
+    let drawn = right(rect.right() - VERDICT_WIDTH, value, palette.text);
+    controls::elided(ui, rect.with_max_x(drawn.left() - 6.0), name, palette.weak_text);
 }

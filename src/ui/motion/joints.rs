@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
-use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
@@ -273,9 +273,13 @@ pub(super) fn namespace(asset: &Asset) -> &str {
 
 /// Returns whether the heading was pressed.
 fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEADING_HEIGHT), Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), controls::row_height(ui, HEADING_HEIGHT)), Sense::click());
     let role = egui::accesskit::Role::Button;
-    response.widget_info(|| WidgetInfo::selected(role, true, open, &heading.label));
+    response.widget_info(|| WidgetInfo::labeled(role, true, &heading.label));
+    // A row of the table, so that headings don't divide it. No joint has a number as large.
+    accessible::cell(&response, u32::MAX as usize - heading.part as usize);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_expanded(open));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         lit(ui, rect, &response);
@@ -286,10 +290,9 @@ fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
         for end in [side, -side] {
             ui.painter().line_segment([tip - turn * 4.0 + end, tip], Stroke::new(1.4, palette.weak_text));
         }
-        let font = FontId::proportional(12.0);
         let color = if heading.needs_review { palette.warning } else { palette.weak_text };
         let at = rect.right_center() - vec2(8.0, 0.0);
-        let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, &heading.counts, font, color);
+        let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, &heading.counts, style::SMALL, color);
         let left = Rect::from_min_max(pos2(rect.left() + 22.0, rect.top()), pos2(drawn.left() - 6.0, rect.bottom()));
         controls::elided(ui, left, heading.part.title(), palette.text);
     }
@@ -383,7 +386,7 @@ pub(super) fn badge(ui: &Ui, center: egui::Pos2, state: State) {
     };
     let letter = |letter: &str, color| {
         painter.circle_stroke(center, 7.0, Stroke::new(1.2, color));
-        painter.text(center, Align2::CENTER_CENTER, letter, FontId::proportional(12.0), color);
+        painter.text(center, Align2::CENTER_CENTER, letter, style::SMALL, color);
     };
     match state {
         State::Sure => line(&[(-5.0, 0.5), (-1.5, 4.0), (5.0, -4.0)], palette.accent),

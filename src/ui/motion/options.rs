@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use egui::{RichText, Ui};
 
 use super::{Contents, Pairing};
-use crate::editor::{ClipFormat, Export};
+use crate::editor::{ClipFormat, Export, is_derived};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
-use crate::ui::{Output, Saved, Shown, UiAction, change, style, text};
+use crate::ui::{Output, Saved, Shown, UiAction, change, layers, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
@@ -80,6 +80,7 @@ pub(super) fn show(
         }
     }
     change::section(ui, shown, out);
+    layers::section(ui, shown, out);
 }
 
 /// The choices for each part of the root motion.
@@ -130,7 +131,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
-    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.is_derived(clip));
+    let clip = active_clip(pairing.model, shown.state).filter(|&clip| is_derived(pairing.model, shown.state, clip));
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
     if wide(ui, clip.is_some(), text::SAVE_GLB)

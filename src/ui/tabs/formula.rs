@@ -1,6 +1,6 @@
 //! The skinning equation with its numbers: the matrices of the selected joint, and each joint's contribution to one vertex.
 
-use egui::{Align2, FontId, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, Mat4, Vec3};
 
 use crate::anim::JointIndex;
@@ -109,13 +109,13 @@ pub fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &m
     let palette = style::palette(ui);
     painter.circle(at, 4.0, palette.accent, egui::Stroke::new(2.0, palette.panel));
     let text = vertex_title(model, choice);
-    let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), palette.text);
+    let galley = painter.layout_no_wrap(text, style::SMALL, palette.text);
     let half = galley.size().x / 2.0 + 8.0;
     let x = at.x.clamp(pane.left() + half, (pane.right() - half).max(pane.left() + half));
     // Below the vertex if there is room.
     let below = if at.y + 34.0 < pane.bottom() - 12.0 { 22.0 } else { -22.0 };
     let frame = Rect::from_center_size(pos2(x, at.y + below), galley.size() + vec2(16.0, 6.0));
-    painter.rect_filled(frame, 6.0, palette.panel.gamma_multiply(0.92));
+    painter.rect_filled(frame, style::CORNER, palette.panel.gamma_multiply(0.92));
     painter.galley(frame.center() - galley.size() / 2.0, galley, palette.text);
     Some(())
 }
@@ -156,8 +156,7 @@ fn matrix(ui: &mut Ui, name: &str, meaning: &str, matrix: &Affine3A) {
         for (column, &number) in numbers.iter().enumerate() {
             let written = fixed(number, decimals(number));
             let right = rect.left() + rect.width() / 4.0 * (column + 1) as f32;
-            let font = FontId::monospace(12.0);
-            ui.painter().text(pos2(right, y), Align2::RIGHT_CENTER, &written, font, palette.text);
+            ui.painter().text(pos2(right, y), Align2::RIGHT_CENTER, &written, style::SMALL, palette.text);
             text.push(' ');
             text.push_str(&written);
         }
@@ -225,7 +224,7 @@ fn term_row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, term: &FormulaTerm, o
     let color = if is_selected { palette.accent } else { palette.text };
     controls::elided(ui, rect.with_max_x(rect.right() - 76.0), &name, color);
     let weight = format!("w {:.4}", term.weight);
-    ui.painter().text(rect.right_center(), Align2::RIGHT_CENTER, weight, FontId::monospace(12.0), palette.text);
+    ui.painter().text(rect.right_center(), Align2::RIGHT_CENTER, weight, style::SMALL, palette.text);
     if response.clicked() {
         out.commands.push(Command::SelectJoint((!is_selected).then_some(number)));
     }
@@ -242,7 +241,7 @@ fn column_heads(ui: &mut Ui) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     for (column, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
         let at = pos2(column_end(rect, column), rect.center().y);
-        ui.painter().text(at, Align2::RIGHT_CENTER, axis, FontId::proportional(11.0), style::palette(ui).weak_text);
+        ui.painter().text(at, Align2::RIGHT_CENTER, axis, style::SMALL, style::palette(ui).weak_text);
     }
 }
 
@@ -252,13 +251,12 @@ fn numbers(ui: &mut Ui, row: text::FormulaRow, value: Vec3, digits: usize, stron
     let palette = style::palette(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
     let color = if strong { palette.text } else { palette.weak_text };
-    let font = FontId::proportional(if strong { 13.0 } else { 12.0 });
-    ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, name, font, color);
+    ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, name, style::SMALL, color);
     let mut text = row.label();
     for (column, number) in value.to_array().into_iter().enumerate() {
         let written = fixed(number, digits);
         let at = pos2(column_end(rect, column), rect.center().y);
-        ui.painter().text(at, Align2::RIGHT_CENTER, &written, FontId::monospace(12.0), color);
+        ui.painter().text(at, Align2::RIGHT_CENTER, &written, style::SMALL, color);
         text.push(' ');
         text.push_str(&written);
     }

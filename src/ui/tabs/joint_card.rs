@@ -122,7 +122,7 @@ fn transforms(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, 
     let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
     for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
         let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
-        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
+        let (at, font) = (pos2(right, heads.center().y), style::SMALL);
         ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
     }
     transform(ui, &text::local_transform(parent.as_deref()), local);
@@ -137,7 +137,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: 
     let number = asset.skeleton.source_index(joint);
     let Some((_, typed)) = card.renaming.as_mut().filter(|(of, _)| *of == number) else {
         card.renaming = None;
-        let name = RichText::new(title(Some(shown.state), asset, joint)).strong().size(15.0);
+        let name = RichText::new(title(Some(shown.state), asset, joint)).strong();
         ui.add(egui::Label::new(name).truncate().selectable(true));
         return;
     };
@@ -187,9 +187,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
     let rows = [(text::POSITION, value.translation, " m"), ("Rotation", degrees, "°"), (text::SCALE, value.scale, "")];
     for (name, numbers, unit) in rows {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-        let font = egui::FontId::proportional(12.5);
-        ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, font, palette.weak_text);
-        let font = egui::FontId::monospace(12.0);
+        ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, style::SMALL, palette.weak_text);
         let width = (rect.width() - 60.0) / 3.0;
         let texts = match unit {
             "°" => numbers.to_array().map(|number| formula::fixed(number, 1) + "°").into(),
@@ -197,7 +195,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
         };
         for (column, text) in texts.iter().enumerate() {
             let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
-            ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);
+            ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, style::SMALL, palette.text);
         }
         let whole = text::labelled(name, &texts.join(" "));
         response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));

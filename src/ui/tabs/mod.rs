@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
     let findings = shown.library.active().map_or(0, |model| model.findings().len());
-    let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::warning_count(findings));
+    let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::file_warnings(findings));
     if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {
         local.layout.tab = tab;
     }

@@ -3,7 +3,8 @@
 use egui::{Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::lists::Lists;
-use super::report::{fact, grouped};
+use super::report::fact;
+use crate::ui::text::grouped;
 use crate::ui::{Drawn, FrameTimes, HostState, controls, style, text};
 
 /// Frame time at the graph's full height.

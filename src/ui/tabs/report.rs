@@ -12,6 +12,7 @@ use crate::editor::Export;
 use crate::library::{Finding, Model};
 use crate::mesh::{Geometry, Mesh};
 use crate::state::{Command, title};
+use crate::ui::text::grouped;
 use crate::ui::{Layout, Output, Saved, Shown, Tab, UiAction, UiState, controls, style, text};
 
 /// Further parts are not listed.
@@ -95,7 +96,7 @@ fn warnings(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layout: &mut Layout, 
     }
     let color = style::palette(ui).warning;
     for (code, findings) in by_code {
-        let title = RichText::new(text::counted(code, findings.len())).color(color);
+        let title = RichText::new(text::warning_title(code, findings.len())).color(color);
         egui::CollapsingHeader::new(title).id_salt(code).default_open(findings.len() <= 3).show(ui, |ui| {
             for finding in findings {
                 about_node(ui, shown, model, &finding.warning.to_string(), finding.joint, layout, out);
@@ -117,7 +118,7 @@ pub(super) fn about_node(
     controls::hint(ui, finding);
     let Some(joint) = joint else { return };
     let name = title(Some(shown.state), &model.asset, joint);
-    if ui.add(egui::Button::new(text::go_to(&name)).small().truncate()).clicked() {
+    if ui.add(egui::Button::new(text::go_to(&name)).truncate()).clicked() {
         out.commands.push(Command::SelectJoint(Some(model.asset.skeleton.source_index(joint))));
         layout.show_tab(Tab::Scene);
     }
@@ -193,19 +194,6 @@ fn size_text(size: [f32; 3]) -> String {
         _ => format!("{length:.1e}"),
     });
     format!("{x} × {y} × {z} m")
-}
-
-/// Formats a number with thin spaces between thousands.
-pub(super) fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// Formats numbers with the same decimals, as many as suit the largest, so that they stand below each other in columns.

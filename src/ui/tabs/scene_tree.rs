@@ -12,8 +12,7 @@ use crate::state::{Command, ViewerState, joints_with_content, title};
 use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
-const ROW_HEIGHT: f32 = 26.0;
-const MIN_TREE_HEIGHT: f32 = 6.0 * ROW_HEIGHT;
+const MIN_ROWS: f32 = 6.0;
 /// Share of the tab's height. Always the same, so that selecting a joint moves no row.
 const TREE_SHARE: f32 = 0.4;
 
@@ -38,8 +37,12 @@ struct Node {
     kind: Kind,
     /// It or a node below has a mesh or a light, which its eye hides.
     has_content: bool,
-    /// A warning in the Info tab is about it.
-    has_warning: bool,
+    /// Number of warnings in the Info tab about it.
+    warnings: usize,
+}
+
+fn row_height(ui: &Ui) -> f32 {
+    controls::row_height(ui, 26.0)
 }
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -49,7 +52,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    let height = (TREE_SHARE * ui.available_height()).max(MIN_TREE_HEIGHT);
+    let height = (TREE_SHARE * ui.available_height()).max(MIN_ROWS * row_height(ui));
     // Everything scrolls together when there is too little room for the cards.
     controls::scrolled(ui, "scene", |ui| {
         clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);
@@ -143,18 +146,18 @@ impl SceneTree {
             area = area.vertical_scroll_offset(offset);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        area.show_rows(ui, ROW_HEIGHT, rows.len(), |ui, visible| {
+        area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
             for row in rows.get(visible).unwrap_or_default() {
                 let number = asset.skeleton.source_index(row.joint);
-                let Some(&Node { kind, has_content, has_warning }) = self.nodes.get(row.joint.get()) else { continue };
+                let Some(&Node { kind, has_content, warnings }) = self.nodes.get(row.joint.get()) else { continue };
                 let line = Line {
                     name: &title(Some(shown.state), asset, row.joint),
                     kind,
                     is_selected: shown.state.selection.joint == Some(number),
                     is_collapsed: self.collapsed.contains(&number),
                     is_shown: has_content.then(|| !hidden.nodes.contains(&number)),
-                    has_warning,
+                    warnings,
                     is_dimmed: has_content && !shown.frame.is_visible(row.joint),
                 };
                 match tree_row(ui, row, &line) {
@@ -228,8 +231,8 @@ impl SceneTree {
         }
         self.scrolled_to = selected;
         let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)?;
-        let max = rows.len() as f32 * ROW_HEIGHT - ui.available_height();
-        let wanted = (at as f32 - ROWS_ABOVE) * ROW_HEIGHT;
+        let max = rows.len() as f32 * row_height(ui) - ui.available_height();
+        let wanted = (at as f32 - ROWS_ABOVE) * row_height(ui);
         Some(wanted.min(max).max(0.0))
     }
 }
@@ -239,7 +242,7 @@ fn nodes(model: &Model) -> Vec<Node> {
     let rig = model.rig();
     let node = |(joint, has_content)| {
         let kind = if rig.is_real(joint) { Kind::Joint } else { Kind::Empty };
-        Node { kind, has_content, has_warning: false }
+        Node { kind, has_content, warnings: 0 }
     };
     let mut nodes: Vec<Node> = asset.skeleton.joints().zip(joints_with_content(asset, true)).map(node).collect();
     for camera in &asset.cameras {
@@ -252,7 +255,7 @@ fn nodes(model: &Model) -> Vec<Node> {
         nodes[instance.joint.get()].kind = Kind::Mesh;
     }
     for joint in model.findings().iter().filter_map(|finding| finding.joint) {
-        nodes[joint.get()].has_warning = true;
+        nodes[joint.get()].warnings += 1;
     }
     nodes
 }
@@ -274,7 +277,8 @@ struct Line<'a> {
     is_collapsed: bool,
     /// Whether it is hidden by its eye; `None` if there is nothing to hide.
     is_shown: Option<bool>,
-    has_warning: bool,
+    /// Number of warnings about it, shown as a dot.
+    warnings: usize,
     /// Has content that isn't shown, for whatever reason.
     is_dimmed: bool,
 }
@@ -287,7 +291,7 @@ enum Pressed {
 
 fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let &Line { name, kind, is_selected, .. } = line;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), row_height(ui)), Sense::click());
     let role = egui::accesskit::Role::TreeItem;
     response.widget_info(|| WidgetInfo::selected(role, true, is_selected, name));
     let is_expanded = row.has_children.then_some(!line.is_collapsed);
@@ -316,8 +320,10 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     }
     kind_mark(ui, kind, pos2(x + 20.0, rect.center().y), palette);
     let eye_width = if line.is_shown.is_some() { hiding::EYE_WIDTH } else { 6.0 };
-    let dot_width = if line.has_warning { 12.0 } else { 0.0 };
-    if line.has_warning {
+    let warnings = (line.warnings > 0).then(|| text::node_warnings(line.warnings));
+    let dot_width = if warnings.is_some() { 12.0 } else { 0.0 };
+    if let Some(warnings) = &warnings {
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(warnings.clone()));
         let at = rect.right_center() - vec2(eye_width + 4.0, 0.0);
         ui.painter().circle_filled(at, 3.0, palette.warning);
     }
@@ -329,15 +335,21 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     } else {
         palette.text
     };
-    if controls::elided(ui, text, name, color) {
-        response.on_hover_text(name);
+    let is_cut = controls::elided(ui, text, name, color);
+    if is_cut || warnings.is_some() {
+        response.on_hover_ui(|ui| {
+            if is_cut {
+                ui.label(name);
+            }
+            warnings.into_iter().for_each(|warnings| drop(ui.label(warnings)));
+        });
     }
     pressed
 }
 
 /// Expands or collapses a row; returns true when clicked.
 fn triangle(ui: &Ui, row: &Row, line: &Line<'_>, center: egui::Pos2) -> bool {
-    let grab = Rect::from_center_size(center, vec2(18.0, ROW_HEIGHT));
+    let grab = Rect::from_center_size(center, vec2(18.0, row_height(ui)));
     let response = ui.interact(grab, ui.scope_id().with(("collapse", row.joint.0)), Sense::click());
     let label = if line.is_collapsed { text::expand(line.name) } else { text::collapse(line.name) };
     response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));

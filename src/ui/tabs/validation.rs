@@ -1,5 +1,6 @@
 //! What the Khronos validator says about the model's file, in the Info tab.
 
+use egui::text::{LayoutJob, TextFormat};
 use egui::{RichText, Ui};
 
 use super::report::about_node;
@@ -51,15 +52,20 @@ fn findings(
     layout: &mut Layout,
     out: &mut Output,
 ) {
-    let ValidatorGroup { severity, code, count, findings } = group;
+    let ValidatorGroup { severity, code, meaning, count, findings } = group;
     let palette = style::palette(ui);
     let color = [palette.error, palette.warning, palette.weak_text, palette.weak_text][*severity];
-    let title = text::counted(&text::labelled(text::SEVERITIES[*severity], code), *count as usize);
+    let what = if meaning.is_empty() { code } else { meaning };
+    let mut title = LayoutJob::simple(text::finding_title(*severity, what, *count), style::BODY, color, 0.0);
+    if !meaning.is_empty() {
+        // For professionals, and for a search on the web.
+        title.append(&format!("\n{code}"), 0.0, TextFormat::simple(style::SMALL, palette.weak_text));
+    }
     // A header doesn't wrap its text, and a code is one long word.
     let width = ui.available_width() - ui.spacing().indent - ui.spacing().button_padding.x;
     let wrap = Some(egui::TextWrapMode::Wrap);
-    let title = egui::WidgetText::from(RichText::new(title).color(color));
-    egui::CollapsingHeader::new(title.into_galley(ui, wrap, width, egui::TextStyle::Button))
+    let title = egui::WidgetText::from(title).into_galley(ui, wrap, width, egui::TextStyle::Button);
+    egui::CollapsingHeader::new(title)
         .id_salt((severity, code))
         .default_open(*severity < 2 && findings.len() <= 3)
         .show(ui, |ui| {

@@ -32,10 +32,10 @@ impl PictureSettings {
         Saved::Picture { size: self.size, transparent: self.transparent }
     }
 
-    /// A video with these settings.
-    pub fn video(&self) -> VideoSettings {
+    /// A recording with these settings: a video, or images.
+    pub fn recording(&self, as_images: bool) -> VideoSettings {
         let Self { size, transparent, frames_per_sec } = *self;
-        VideoSettings { size, frames_per_sec, transparent }
+        VideoSettings { size, frames_per_sec, transparent, as_images }
     }
 }
 
@@ -96,9 +96,13 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     if let Some(rate) = controls::segmented_about(ui, text::FRAME_RATE, Some(settings.frames_per_sec), &choices) {
         settings.frames_per_sec = rate;
     }
-    let record = wide(ui, shown.is_animated(), text::RECORD);
-    if record.on_hover_text("Renders the played range once, frame by frame, as MP4 or WebM.").clicked() {
-        out.actions.push(UiAction::Record(settings.video()));
+    for (as_images, label, explanation) in [
+        (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
+        (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
+    ] {
+        if wide(ui, shown.is_animated(), label).on_hover_text(explanation).clicked() {
+            out.actions.push(UiAction::Record(settings.recording(as_images)));
+        }
     }
 }
 

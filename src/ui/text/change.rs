@@ -1,6 +1,6 @@
-//! Changes to the current clip.
+//! Changes to the current clip, and layers over it.
 
-use crate::retarget::Seam;
+use crate::retarget::{BodyPart, LayerMode, Seam};
 
 /// Heading.
 pub const CHANGE_CLIP: &str = "Edit clip";
@@ -34,4 +34,59 @@ pub const RESET_CHANGES: &str = "Reset clip";
 /// Returns how far apart the ends of the clip were.
 pub fn seam(seam: Seam) -> String {
     format!("The ends were {seam}.")
+}
+
+// Layers
+/// Heading.
+pub const LAYERS: &str = "Layers";
+/// Button that adds a layer on top.
+pub const ADD_LAYER: &str = "Add layer";
+/// What layers are.
+pub const ABOUT_LAYERS: &str = "Layers play over this clip, the last one on top. Choose body parts, or select a joint, \
+                                to limit a layer to them.";
+/// Chooser of a layer's clip.
+pub const LAYER_CLIP: &str = "Layer's clip";
+/// Button that swaps a layer with the next.
+pub const RAISE_LAYER: &str = "Raise";
+/// Button that removes a layer.
+pub const REMOVE_LAYER: &str = "Remove layer";
+/// Topic of the choice of modes.
+pub const LAYER_MODE: &str = "Layer";
+/// Slider: the weight.
+pub const LAYER_WEIGHT: &str = "Layer weight";
+/// Slider: the speed.
+pub const LAYER_SPEED: &str = "Layer speed";
+/// Slider: where on the timeline the clip begins.
+pub const LAYER_START: &str = "Layer start";
+
+/// Returns the label of a mode.
+pub fn layer_mode(mode: LayerMode) -> &'static str {
+    match mode {
+        LayerMode::Override => "Override",
+        LayerMode::Additive => "Add",
+        LayerMode::AdditiveToRest => "Add to rest",
+    }
+}
+
+/// Returns the label of a part of the body.
+pub fn body_part(part: BodyPart) -> &'static str {
+    match part {
+        BodyPart::Hips => "Hips",
+        BodyPart::Torso => "Torso",
+        BodyPart::Head => "Head",
+        BodyPart::LeftArm => "Left arm",
+        BodyPart::RightArm => "Right arm",
+        BodyPart::LeftLeg => "Left leg",
+        BodyPart::RightLeg => "Right leg",
+    }
+}
+
+/// Returns the label of a joint with everything below it.
+pub fn below_joint(name: &str) -> String {
+    format!("{name} and below")
+}
+
+/// Returns the accessible name of a layer's track under the timeline.
+pub fn layer_track(name: &str) -> String {
+    format!("Layer {name}")
 }

@@ -26,6 +26,19 @@ pub fn counted(what: &str, count: usize) -> String {
     format!("{what} ({count})")
 }
 
+/// Formats a number with thin spaces between thousands.
+pub fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Returns the accessible name of the number field beside the slider `label`.
 pub fn value_of(label: &str) -> String {
     format!("{label} value")

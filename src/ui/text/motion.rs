@@ -1,7 +1,8 @@
 //! The Motion tab.
 
+use super::labelled;
 use crate::editor::ClipFormat;
-use crate::retarget::RestChoice;
+use crate::retarget::{RestChoice, Verdict};
 
 // Parts of the tab
 /// Part of the tab: the joint table.
@@ -247,6 +248,20 @@ pub fn rest_choice(choice: RestChoice) -> &'static str {
 // Fit
 /// Shown instead of the figures while one of the model's own clips is active.
 pub const NOTHING_TO_MEASURE: &str = "Choose a borrowed clip to see how well it fits.";
+/// Returns the verdict on a figure.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Good => "good",
+        Verdict::Acceptable => "acceptable",
+        Verdict::NeedsReview => "needs review",
+    }
+}
+
+/// Returns the verdict on a clip, which is the worst on its figures.
+pub fn overall(worst: Verdict) -> String {
+    labelled("Fit", verdict(worst))
+}
+
 /// Figure: the mean of a group.
 pub const MEAN: &str = "Mean";
 /// Figure: the mapped fraction of the body parts.

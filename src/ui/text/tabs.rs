@@ -1,5 +1,6 @@
 //! The inspector's tabs except for Motion.
 
+use super::{counted, grouped, labelled};
 use crate::editor::ValidatorReport;
 use crate::state::Channel;
 
@@ -289,7 +290,9 @@ pub const SAVE_IMAGE: &str = "Save image (PNG)";
 pub const FRAME_RATE: &str = "Frame rate";
 /// Button that records a video.
 pub const RECORD: &str = "Record one loop";
-/// Title of the progress of a video that is being recorded.
+/// Button that saves the frames of such a video as images.
+pub const RECORD_IMAGES: &str = "Save one loop as images";
+/// Title of the progress of a video, or of images, being recorded.
 pub const RECORDING: &str = "Recording one loop";
 
 /// Returns a frame rate.
@@ -308,8 +311,26 @@ pub const WARNINGS: &str = "WARNINGS";
 /// Shown if there are none.
 pub const NO_WARNINGS: &str = "No problems found";
 
-/// Returns the badge of the Info tab.
-pub fn warning_count(count: usize) -> String {
+/// Returns the title of the warnings with one code, such as `loop-open`: “Loop open”.
+pub fn warning_title(code: &str, count: usize) -> String {
+    let mut words = code.replace('-', " ");
+    if let Some(first) = words.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    if count == 1 { words } else { counted(&words, count) }
+}
+
+/// Returns what the dot on the Info tab means.
+pub fn file_warnings(count: usize) -> String {
+    format!("{} about this file", warnings(count))
+}
+
+/// Returns what the dot on a node's row in the tree means.
+pub fn node_warnings(count: usize) -> String {
+    format!("{} in the Info tab", warnings(count))
+}
+
+fn warnings(count: usize) -> String {
     if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") }
 }
 
@@ -328,21 +349,32 @@ pub const VALIDATE: &str = "Check with the Khronos validator";
 pub const VALIDATING: &str = "Checking…";
 /// The same button afterwards.
 pub const VALIDATE_AGAIN: &str = "Check again";
-/// The kinds of its findings, in front of their codes.
+/// How severe its findings are, in front of what they mean.
 pub const SEVERITIES: [&str; 4] = ["Error", "Warning", "Info", "Hint"];
+
+/// Returns the title of the findings of one kind: `what` is wrong, and how often.
+pub fn finding_title(severity: usize, what: &str, count: u64) -> String {
+    let title = labelled(SEVERITIES[severity], what);
+    if count == 1 { title } else { format!("{title} ({} places)", grouped(count as usize)) }
+}
 
 /// Its summary without findings.
 pub const NO_FINDINGS: &str = "No findings";
 
-/// Returns how many findings of each kind it has.
+/// Returns how many kinds of findings it has, by severity: one mistake of an exporter is often in a thousand places.
 pub fn validator_summary(report: &ValidatorReport) -> String {
-    let counted = |(&count, kind): (&u64, &str)| match count {
-        0 => None,
-        1 => Some(format!("1 {kind}")),
-        count => Some(format!("{count} {kind}s")),
+    let counted = |(severity, name): (usize, &str)| {
+        let places = report.counts[severity] as usize;
+        let kinds = report.groups.iter().filter(|group| group.severity == severity).count();
+        let s = if kinds == 1 { "" } else { "s" };
+        match places {
+            0 => None,
+            _ if places <= kinds => Some(format!("{places} {name}{s}")),
+            _ => Some(format!("{kinds} kind{s} of {name} in {} places", grouped(places))),
+        }
     };
-    let counts = report.counts.iter().zip(["error", "warning", "info", "hint"]);
-    let counts: Vec<String> = counts.filter_map(counted).collect();
+    let counts: Vec<String> =
+        ["error", "warning", "info", "hint"].into_iter().enumerate().filter_map(counted).collect();
     match (counts.is_empty(), report.is_truncated) {
         (true, _) => NO_FINDINGS.to_owned(),
         (false, true) => format!("{}; the validator stopped there", counts.join(", ")),
@@ -433,7 +465,7 @@ pub fn image_facts(mime: &str, [width, height]: [u32; 2], bytes: u64, maps: &[&s
     let maps = if maps.is_empty() { "unused".to_owned() } else { maps.join(", ") };
     match bytes {
         0 => format!("{format}, {width} × {height}, {maps}"),
-        bytes => format!("{format}, {width} × {height}, {}, {maps}", megabytes(bytes)),
+        bytes => format!("{format}, {width} × {height}, {maps}, {} on the GPU", megabytes(bytes)),
     }
 }
 

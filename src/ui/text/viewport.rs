@@ -1,5 +1,7 @@
 //! The viewport, the layout around it, help and messages.
 
+use super::megabytes;
+
 // Viewport and layout
 /// Accessible name of the 3D view.
 pub const VIEWPORT: &str = "Viewport";
@@ -47,12 +49,20 @@ pub const SHOW_REFUSED_ALONE: &str = "Show its skeleton";
 pub const MAP_REFUSED_MANUALLY: &str = "Map joints manually";
 /// Button on a toast that reports an undoable step.
 pub const UNDO: &str = "Undo";
-/// Button that closes a list, or ends a recording.
+/// Button that closes a list, or ends a load or a recording.
 pub const CANCEL: &str = "Cancel";
 
 /// Returns the label of the progress bar while a file loads.
 pub fn opening(name: &str) -> String {
     format!("Opening {name}")
+}
+
+/// Returns how much of a file has been read; a total of 0 is unknown.
+pub fn amount_read(received_bytes: u64, total_bytes: u64) -> String {
+    match total_bytes {
+        0 => megabytes(received_bytes),
+        total => format!("{:.1} of {}", received_bytes as f64 / 1e6, megabytes(total)),
+    }
 }
 
 /// Returns the title of the error for a file that failed to open.

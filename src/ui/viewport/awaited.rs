@@ -25,8 +25,8 @@ pub fn show(ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
         let card = egui::Frame::new()
             .fill(palette.panel)
             .stroke(Stroke::new(1.0, palette.line))
-            .corner_radius(10)
-            .inner_margin(egui::Margin::same(16));
+            .corner_radius(style::WINDOW_CORNER)
+            .inner_margin(egui::Margin::same(style::WINDOW_MARGIN));
         card.show(ui, |ui| {
             ui.set_width((viewport.width() - 88.0).clamp(120.0, 320.0));
             ui.vertical_centered(|ui| {

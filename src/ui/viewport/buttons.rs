@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     // Translucent, legible over any scene.
     let fill = style::palette(ui).panel.gamma_multiply(0.86);
-    let pill = egui::Frame::new().fill(fill).corner_radius(9).inner_margin(egui::Margin::same(2));
+    let pill = egui::Frame::new().fill(fill).corner_radius(style::CORNER + 2).inner_margin(egui::Margin::same(2));
     pill.show(&mut bar, |ui| {
         if is_embedded {
             if ui.button(text::OPEN_PAGE).clicked() {

@@ -59,12 +59,12 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     }
     let palette = style::palette(ui);
     let color = if strong { palette.on_accent } else { palette.text };
-    let galley = painter.layout_no_wrap(text, egui::FontId::proportional(13.0), color);
+    let galley = painter.layout_no_wrap(text, style::SMALL, color);
     let half = galley.size().x / 2.0 + 8.0;
     let x = position.x.clamp(pane.left() + half, (pane.right() - half).max(pane.left() + half));
     let frame = Rect::from_center_size(pos2(x, position.y - 24.0), galley.size() + vec2(16.0, 6.0));
     let fill = if strong { palette.accent } else { palette.panel.gamma_multiply(0.92) };
-    painter.rect_filled(frame, 6.0, fill);
+    painter.rect_filled(frame, style::CORNER, fill);
     painter.galley(frame.center() - galley.size() / 2.0, galley, color);
     painter.circle_stroke(position, 6.0, egui::Stroke::new(2.0, palette.accent));
     Some(())
@@ -82,11 +82,11 @@ fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
             Some(Comparison::Rests(chosen)) => text::rest_choice(compared_rests(chosen)[index]),
             _ => display::title(character.skinning),
         };
-        let galley = painter.layout_no_wrap(text.to_owned(), egui::FontId::proportional(13.0), palette.text);
+        let galley = painter.layout_no_wrap(text.to_owned(), style::SMALL, palette.text);
         let middle = pos2(pane.center().x, pane.bottom() - 18.0);
         painter.rect_filled(
             Rect::from_center_size(middle, galley.size() + vec2(16.0, 6.0)),
-            6.0,
+            style::CORNER,
             palette.panel.gamma_multiply(0.86),
         );
         painter.galley(middle - galley.size() / 2.0, galley, palette.text);

@@ -1,6 +1,6 @@
 //! The legend in the lower right corner of the viewport: the shown channel, or the scale of weights or of influence counts.
 
-use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Rgba, Ui, pos2, vec2};
+use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Rgba, Ui, pos2, vec2};
 
 use crate::render::shaders::{HEAT_COLORS, INFLUENCE_COLORS};
 use crate::state::{Channel, ViewerState};
@@ -27,12 +27,12 @@ pub fn show(ui: &Ui, painter: &Painter, rect: Rect, state: &ViewerState) {
 fn panel(ui: &Ui, painter: &Painter, rect: Rect, size: egui::Vec2) -> Rect {
     let corner = rect.right_bottom() - vec2(12.0, 12.0);
     let frame = Rect::from_min_max(corner - size, corner);
-    painter.rect_filled(frame, 6.0, style::palette(ui).panel.gamma_multiply(0.86));
+    painter.rect_filled(frame, style::CORNER, style::palette(ui).panel.gamma_multiply(0.86));
     frame
 }
 
 fn caption(ui: &Ui, painter: &Painter, rect: Rect, text: &str) {
-    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.0), style::palette(ui).text);
+    let galley = painter.layout_no_wrap(text.to_owned(), style::SMALL, style::palette(ui).text);
     let frame = panel(ui, painter, rect, galley.size() + vec2(20.0, 10.0));
     let color = style::palette(ui).text;
     painter.galley(frame.center() - galley.size() / 2.0, galley, color);
@@ -54,8 +54,7 @@ fn scale(ui: &Ui, painter: &Painter, rect: Rect, colors: &[Color32], ends: [&str
         }
     }
     painter.add(mesh);
-    let font = FontId::proportional(11.0);
-    let text = |at: Pos2, align, text: &str, color| painter.text(at, align, text, font.clone(), color);
+    let text = |at: Pos2, align, text: &str, color| painter.text(at, align, text, style::SMALL, color);
     text(bar.left_center() - vec2(6.0, 0.0), Align2::RIGHT_CENTER, ends[0], palette.text);
     text(bar.right_center() + vec2(6.0, 0.0), Align2::LEFT_CENTER, ends[1], palette.text);
     text(pos2(bar.center().x, frame.bottom() - 9.0), Align2::CENTER_CENTER, below, palette.weak_text);

@@ -3,7 +3,7 @@
 use egui::{Align, Align2, Area, Color32, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2};
 
 use crate::ui::icons::{Icon, icon_button};
-use crate::ui::{Output, Shown, UiAction, style, text};
+use crate::ui::{Output, Shown, UiAction, controls, style, text};
 
 /// What the app tells or asks the user.
 #[derive(Debug, Default)]
@@ -22,13 +22,15 @@ pub struct Messages {
     pub toast: Option<Toast>,
 }
 
-/// A load under way.
-#[derive(Debug, Clone, PartialEq)]
+/// Progress of a load.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Progress {
-    /// Name of the file being read.
+    /// Name of the file being read, as shown to the user.
     pub name: String,
-    /// From 0 to 1, if known.
-    pub fraction: Option<f32>,
+    /// Bytes read so far.
+    pub received_bytes: u64,
+    /// 0 if unknown.
+    pub total_bytes: u64,
 }
 
 /// A short message that goes away by itself.
@@ -69,7 +71,7 @@ impl Messages {
             .fixed_pos(pos2(viewport.left() + 14.0, bottom));
         area.show(ui.ctx(), |ui| {
             ui.set_max_width(width);
-            self.show_progress(ui, width);
+            self.show_progress(ui, width, out);
             self.show_error(ui, out);
             self.show_toast(ui, width, out);
         });
@@ -83,17 +85,25 @@ impl Messages {
         }
     }
 
-    fn show_progress(&self, ui: &mut Ui, width: f32) {
-        let Some(progress) = &self.progress else { return };
+    fn show_progress(&self, ui: &mut Ui, width: f32, out: &mut Output) {
+        let Some(Progress { name, received_bytes, total_bytes }) = &self.progress else { return };
         let palette = style::palette(ui);
         notice(ui, palette.line, |ui| {
             ui.set_width(width.min(360.0) - 32.0);
-            ui.add(egui::Label::new(text::opening(&progress.name)).truncate());
-            let bar = match progress.fraction {
-                Some(fraction) => egui::ProgressBar::new(fraction),
-                None => egui::ProgressBar::new(1.0).animate(true),
+            ui.add(egui::Label::new(text::opening(name)).truncate());
+            let bar = match total_bytes {
+                0 => egui::ProgressBar::new(1.0).animate(true),
+                total => egui::ProgressBar::new((*received_bytes as f64 / *total as f64) as f32),
             };
             ui.add(bar.desired_height(6.0).fill(palette.accent));
+            ui.horizontal(|ui| {
+                if ui.button(text::CANCEL).clicked() {
+                    out.actions.push(UiAction::CancelOpening);
+                }
+                if *received_bytes > 0 {
+                    controls::hint(ui, text::amount_read(*received_bytes, *total_bytes));
+                }
+            });
         });
     }
 
@@ -173,7 +183,7 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) ->
     egui::Frame::new()
         .fill(palette.panel)
         .stroke(Stroke::new(1.0, line))
-        .corner_radius(10)
+        .corner_radius(style::WINDOW_CORNER)
         .shadow(ui.visuals().popup_shadow)
         .inner_margin(egui::Margin::symmetric(16, 12))
         .show(ui, contents)

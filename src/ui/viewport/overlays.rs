@@ -25,7 +25,7 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
 }
 
 pub fn modal(name: &str, context: &Context) -> egui::Modal {
-    let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(18));
+    let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(style::WINDOW_MARGIN));
     egui::Modal::new(Id::unique(name)).frame(frame)
 }
 
@@ -38,8 +38,8 @@ fn drop_target(ui: &Ui) {
     let corners = [inner.left_top(), inner.right_top(), inner.right_bottom(), inner.left_bottom(), inner.left_top()];
     painter.extend(egui::Shape::dashed_line(&corners, Stroke::new(2.0, palette.accent), 10.0, 8.0));
     let center = whole.center();
-    painter.text(center, Align2::CENTER_BOTTOM, "Drop to open", egui::FontId::proportional(28.0), palette.text);
+    painter.text(center, Align2::CENTER_BOTTOM, "Drop to open", style::HEADING, palette.text);
     let below = "A model with its files, motions for it, a folder or a .zip archive";
     let at = center + vec2(0.0, 10.0);
-    painter.text(at, Align2::CENTER_TOP, below, egui::FontId::proportional(15.0), palette.weak_text);
+    painter.text(at, Align2::CENTER_TOP, below, style::BODY, palette.weak_text);
 }

@@ -5,9 +5,6 @@ use egui::{Area, Id, Order, Rect, Stroke, Ui, pos2, vec2};
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
 
-/// Radius of a sheet's upper corners; the viewport goes on behind them.
-pub const CORNER: u8 = 16;
-
 /// The rectangle of a sheet, at the bottom of what the panels leave free. It leaves a strip of the viewport visible.
 pub fn rect(free: Rect) -> Rect {
     let height = (free.height() * 0.62).max(240.0).min(free.height() - 56.0).max(0.0);
@@ -32,6 +29,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         }
         let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
         let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
+        content.spacing_mut().interact_size.y = style::TOUCH;
         content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
         match sheet {
             Sheet::Clips => clips::show(&mut content, shown, local, out),
@@ -50,7 +48,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
 
 fn background(ui: &Ui, rect: Rect) {
     let palette = style::palette(ui);
-    let corners = egui::CornerRadius { nw: CORNER, ne: CORNER, sw: 0, se: 0 };
+    let corners = egui::CornerRadius { nw: style::WINDOW_CORNER, ne: style::WINDOW_CORNER, sw: 0, se: 0 };
     ui.painter().rect_filled(rect, corners, palette.panel);
     let line = Stroke::new(1.0, palette.line);
     ui.painter().rect_stroke(rect, corners, line, egui::StrokeKind::Inside);

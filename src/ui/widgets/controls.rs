@@ -49,9 +49,18 @@ pub fn hint(ui: &mut Ui, text: impl Into<RichText>) {
     ui.add(egui::Label::new(text.into().small().color(weak)).wrap());
 }
 
+/// Height of a row in lists and of tabs.
+pub const ROW_HEIGHT: f32 = 30.0;
+
+/// The height of a row that reacts to the pointer: `height`, or more on sheets, for fingers.
+pub fn row_height(ui: &Ui, height: f32) -> f32 {
+    let least = ui.spacing().interact_size.y;
+    if least < style::TOUCH { height } else { height.max(least) }
+}
+
 /// A row with a label on the left and a switch on the right; returns true when it was flipped.
 pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 28.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), row_height(ui, 28.0)), Sense::click());
     let role = Role::CheckBox;
     response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, label));
     let palette = style::palette(ui);
@@ -116,15 +125,15 @@ fn segments<T: Copy + PartialEq>(
 ) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
-    let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
-    let (role, about) = match row {
+    let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), row_height(ui, ROW_HEIGHT)), Sense::hover());
+    let (role, about, font) = match row {
         Segments::Choice { about } => {
             ui.painter().rect_filled(bar, style::CORNER, palette.surface);
-            (Role::RadioButton, about)
+            (Role::RadioButton, about, style::SMALL)
         }
         Segments::Tabs { .. } => {
             ui.painter().hline(bar.x_range(), bar.bottom() + 3.0, Stroke::new(1.0, palette.line));
-            (Role::Tab, "")
+            (Role::Tab, "", style::BODY)
         }
     };
     let width = bar.width() / choices.len().max(1) as f32;
@@ -136,7 +145,7 @@ fn segments<T: Copy + PartialEq>(
             let name = if about.is_empty() { (*label).to_owned() } else { text::labelled(about, label) };
             WidgetInfo::selected(role, ui.is_enabled(), on, name)
         });
-        segment(ui, cell, &response, on, label);
+        segment(ui, cell, &response, on, label, font.clone());
         if response.clicked() {
             pressed = Some(*value);
         }
@@ -151,13 +160,12 @@ fn segments<T: Copy + PartialEq>(
     pressed
 }
 
-fn segment(ui: &Ui, cell: Rect, response: &Response, on: bool, label: &str) {
+fn segment(ui: &Ui, cell: Rect, response: &Response, on: bool, label: &str, font: egui::FontId) {
     let palette = style::palette(ui);
     let inner = cell.shrink(2.0);
     let corner = style::CORNER - 2;
     ui.painter().rect_filled(inner, corner, style::fill(&palette, response, on));
     style::focus_ring(ui, response, inner, corner, 1.0);
-    let font = egui::FontId::proportional(13.0);
     let color = if on { palette.accent } else { palette.text };
     ui.painter().text(cell.center(), egui::Align2::CENTER_CENTER, label, font, color);
 }
@@ -256,7 +264,7 @@ pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let style::Palette { surface, panel, .. } = style::palette(ui);
     egui::Frame::new()
         .fill(surface)
-        .corner_radius(8)
+        .corner_radius(style::CORNER)
         .inner_margin(egui::Margin::same(10))
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
@@ -269,7 +277,8 @@ pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// A selectable full-width row: a name, and a short text on the right.
 pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), row_height(ui, ROW_HEIGHT)), Sense::click());
     let role = Role::Button;
     response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), chosen, name));
     let mut cut = false;
@@ -279,9 +288,13 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
         style::focus_ring(ui, &response, rect, style::CORNER, 1.0);
         let mut left = rect.shrink2(Vec2::new(10.0, 0.0));
         if !right.is_empty() {
-            let font = egui::FontId::proportional(12.0);
-            let drawn =
-                ui.painter().text(left.right_center(), egui::Align2::RIGHT_CENTER, right, font, palette.weak_text);
+            let drawn = ui.painter().text(
+                left.right_center(),
+                egui::Align2::RIGHT_CENTER,
+                right,
+                style::SMALL,
+                palette.weak_text,
+            );
             left.max.x = drawn.left() - 8.0;
         }
         let color = if chosen { palette.accent } else { palette.text };

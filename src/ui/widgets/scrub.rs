@@ -1,6 +1,6 @@
 //! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
 
-use egui::{Color32, FontId, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
@@ -28,7 +28,6 @@ pub enum Scrubbed {
 const MARK_SPACING: f32 = 6.0;
 /// Minimum distance between times in points.
 const TIME_SPACING: f32 = 64.0;
-const FONT: FontId = FontId::proportional(10.5);
 
 /// Positions of a clip's keys at the resolution of the bar, cached between frames.
 #[derive(Debug, Default)]
@@ -90,7 +89,7 @@ fn times(duration_secs: f64, width: f64) -> Vec<(f32, String)> {
 }
 
 /// Height of the bar: handles, rail, marks and times.
-const HEIGHT: f32 = 50.0;
+const HEIGHT: f32 = 52.0;
 /// Space for the handles at either end of the rail.
 pub const MARGIN: f32 = 9.0;
 
@@ -191,7 +190,7 @@ fn paint_rail(ui: &Ui, bar: &Bar, range: TimeRange, time_secs: f64, marks: &KeyM
     }
     for (position, time) in &marks.times {
         let at = pos2(rail.left() + position * rail.width(), rail.bottom() + 12.0);
-        let galley = painter.layout_no_wrap(time.clone(), FONT, palette.weak_text);
+        let galley = painter.layout_no_wrap(time.clone(), style::SMALL, palette.weak_text);
         // Within the bar at either end.
         let x = (at.x - 0.5 * galley.size().x).clamp(bar.rect.left(), bar.rect.right() - galley.size().x);
         painter.galley(pos2(x, at.y), galley, palette.weak_text);
@@ -211,7 +210,7 @@ fn paint_playhead(ui: &Ui, bar: &Bar, scrub: &Scrub<'_>, seek: &Response, is_hel
         let x = pointer.x.clamp(rail.left(), rail.right());
         painter.vline(x, rail.top() - 3.0..=rail.bottom() + 3.0, Stroke::new(1.0, palette.weak_text));
         let time = text::time_and_frame(bar.secs_at(x), scrub.frames_per_sec);
-        let galley = painter.layout_no_wrap(time, FONT, palette.text);
+        let galley = painter.layout_no_wrap(time, style::SMALL, palette.text);
         let half = 0.5 * galley.size().x + 4.0;
         let x = x.clamp(rail.left() + half, (rail.right() - half).max(rail.left() + half));
         let label = Rect::from_center_size(pos2(x, bar.rect.top() + 8.0), galley.size() + vec2(8.0, 2.0));

@@ -28,37 +28,77 @@ pub struct Palette {
     pub error: Color32,
 }
 
-const DARK: Palette = Palette {
-    panel: Color32::from_rgb(0x18, 0x1a, 0x1f),
-    surface: Color32::from_rgb(0x23, 0x26, 0x2d),
-    hover: Color32::from_rgb(0x2e, 0x32, 0x3b),
-    pressed: Color32::from_rgb(0x3a, 0x3f, 0x4a),
-    line: Color32::from_rgb(0x2c, 0x30, 0x38),
-    text: Color32::from_rgb(0xe4, 0xe7, 0xec),
-    weak_text: Color32::from_rgb(0x9a, 0xa2, 0xaf),
-    accent: Color32::from_rgb(0x7d, 0x9b, 0xff),
-    on_accent: Color32::from_rgb(0x10, 0x14, 0x20),
-    chosen: Color32::from_rgb(0x2b, 0x34, 0x55),
-    warning: Color32::from_rgb(0xf0, 0xb4, 0x5a),
-    error: Color32::from_rgb(0xff, 0x86, 0x7c),
-};
+const LIGHT: Palette = theme(0);
+const DARK: Palette = theme(1);
 
-const LIGHT: Palette = Palette {
-    panel: Color32::from_rgb(0xf7, 0xf8, 0xfa),
-    surface: Color32::from_rgb(0xec, 0xee, 0xf2),
-    hover: Color32::from_rgb(0xe1, 0xe5, 0xec),
-    pressed: Color32::from_rgb(0xd3, 0xd9, 0xe3),
-    line: Color32::from_rgb(0xdf, 0xe3, 0xe9),
-    text: Color32::from_rgb(0x1d, 0x22, 0x2b),
-    weak_text: Color32::from_rgb(0x5b, 0x65, 0x74),
-    accent: Color32::from_rgb(0x3d, 0x5c, 0xe0),
-    on_accent: Color32::WHITE,
-    chosen: Color32::from_rgb(0xd9, 0xe1, 0xfc),
-    warning: Color32::from_rgb(0x9a, 0x5b, 0x00),
-    error: Color32::from_rgb(0xb4, 0x2a, 0x1f),
-};
+/// Radius of buttons, fields, rows and cards.
+pub const CORNER: u8 = length("corner");
+/// Radius of windows, menus and messages.
+pub const WINDOW_CORNER: u8 = length("window-corner");
+/// Between the edge of a window and its contents.
+pub const WINDOW_MARGIN: i8 = length("window-margin") as i8;
+/// Minimum height of what a finger presses.
+pub const TOUCH: f32 = length("touch") as f32;
 
-pub const CORNER: u8 = 7;
+/// The three sizes of text: titles, what controls and lists say, and notes, headings of groups and numbers.
+pub const HEADING: FontId = FontId::proportional(length("heading") as f32);
+pub const BODY: FontId = FontId::proportional(length("body") as f32);
+pub const SMALL: FontId = FontId::proportional(length("small") as f32);
+
+/// What the panels share with the page around the canvas. Read when this is compiled, which fails if a value is missing.
+const THEME: &str = include_str!("../../../web/theme.css");
+
+/// Returns [`THEME`] from a value on.
+const fn value(name: &str) -> &'static str {
+    let (theme, name) = (THEME.as_bytes(), name.as_bytes());
+    let mut start = 2;
+    // Past the end, an index fails.
+    loop {
+        let mut at = 0;
+        while at < name.len() && theme[start + at] == name[at] {
+            at += 1;
+        }
+        if at == name.len() && theme[start - 2] == b'-' && theme[start - 1] == b'-' && theme[start + at] == b':' {
+            return THEME.split_at(start + at + 2).1;
+        }
+        start += 1;
+    }
+}
+
+const fn number(text: &str, digits: usize, radix: u32) -> u32 {
+    match u32::from_str_radix(text.split_at(digits).0, radix) {
+        Ok(number) => number,
+        Err(_) => panic!(),
+    }
+}
+
+const fn length(name: &str) -> u8 {
+    let text = value(name);
+    number(text, if text.as_bytes()[1] == b'p' { 1 } else { 2 }, 10) as u8
+}
+
+/// A colour of one theme: the first or the second in `light-dark(#rrggbb, #rrggbb)`.
+const fn color(name: &str, index: usize) -> Color32 {
+    let [_, red, green, blue] = number(value(name).split_at(12 + 9 * index).1, 6, 16).to_be_bytes();
+    Color32::from_rgb(red, green, blue)
+}
+
+const fn theme(index: usize) -> Palette {
+    Palette {
+        panel: color("panel", index),
+        surface: color("surface", index),
+        hover: color("hover", index),
+        pressed: color("pressed", index),
+        line: color("line", index),
+        text: color("text", index),
+        weak_text: color("weak-text", index),
+        accent: color("accent", index),
+        on_accent: color("on-accent", index),
+        chosen: color("chosen", index),
+        warning: color("warning", index),
+        error: color("error", index),
+    }
+}
 
 /// The palette of the current theme.
 pub fn palette(ui: &egui::Ui) -> Palette {
@@ -74,17 +114,18 @@ pub fn install(context: &egui::Context) {
     }
 }
 
-/// See assets/font/README.md. On the page the browser draws the letters that it lacks, with the system's fonts.
+/// The font of all text, TrueType; see assets/font/README.md. The browser draws the letters that it lacks, with the system's
+/// fonts.
 #[cfg(target_arch = "wasm32")]
-const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway-Latin.ttf");
+pub const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway-Latin.ttf");
+/// The font of all text, TrueType; see assets/font/README.md.
 #[cfg(not(target_arch = "wasm32"))]
-const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+pub const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
 /// One font for all text, with tabular digits for columns of numbers, and egui's icons.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
-    let data: [(&str, &'static [u8]); 2] =
-        [("Ubuntu-Light", UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
+    let data: [(&str, &'static [u8]); 2] = [("Ubuntu-Light", FONT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
     for (name, bytes) in data {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
         for family in [FontFamily::Proportional, FontFamily::Monospace] {
@@ -97,11 +138,11 @@ fn fonts() -> FontDefinitions {
 fn style(theme: Theme, palette: &Palette) -> Style {
     let mut style = theme.default_style();
     style.text_styles = [
-        (TextStyle::Heading, FontId::new(17.0, FontFamily::Proportional)),
-        (TextStyle::Body, FontId::new(14.0, FontFamily::Proportional)),
-        (TextStyle::Button, FontId::new(14.0, FontFamily::Proportional)),
-        (TextStyle::Small, FontId::new(12.0, FontFamily::Proportional)),
-        (TextStyle::Monospace, FontId::new(12.0, FontFamily::Monospace)),
+        (TextStyle::Heading, HEADING),
+        (TextStyle::Body, BODY),
+        (TextStyle::Button, BODY),
+        (TextStyle::Small, SMALL),
+        (TextStyle::Monospace, SMALL),
     ]
     .into();
     style.visuals = visuals(theme, palette);
@@ -110,13 +151,13 @@ fn style(theme: Theme, palette: &Palette) -> Style {
     style.interaction.tooltip_delay = 0.4;
 
     let spacing = &mut style.spacing;
-    spacing.item_spacing = Vec2::new(8.0, 6.0);
-    spacing.button_padding = Vec2::new(10.0, 5.0);
+    spacing.item_spacing = Vec2::new(f32::from(const { length("gap") }), 6.0);
+    spacing.button_padding = Vec2::new(f32::from(const { length("button-margin") }), 5.0);
     spacing.interact_size = Vec2::new(28.0, 28.0);
     spacing.slider_rail_height = 4.0;
     spacing.icon_width = 18.0;
     spacing.icon_width_inner = 10.0;
-    spacing.window_margin = Margin::same(16);
+    spacing.window_margin = Margin::same(WINDOW_MARGIN);
     spacing.menu_margin = Margin::same(8);
     // A thin bar is there all the time: rows that end at an edge do not say that there are more.
     spacing.scroll = egui::style::ScrollStyle { dormant_handle_opacity: 0.5, ..egui::style::ScrollStyle::floating() };
@@ -129,8 +170,8 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     visuals.panel_fill = palette.panel;
     visuals.window_fill = palette.panel;
     visuals.window_stroke = Stroke::new(1.0, palette.line);
-    visuals.window_corner_radius = CornerRadius::same(12);
-    visuals.menu_corner_radius = CornerRadius::same(10);
+    visuals.window_corner_radius = CornerRadius::same(WINDOW_CORNER);
+    visuals.menu_corner_radius = CornerRadius::same(WINDOW_CORNER);
     visuals.window_shadow = Shadow {
         offset: [0, 8],
         blur: 28,

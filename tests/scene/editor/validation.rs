@@ -28,12 +28,14 @@ fn findings_lead_to_nodes() {
     let model = editor.library().active().expect("a model");
     let places = ["/nodes/2/scale", "/skins/0", "/extensionsUsed/0", ""];
     let findings = places.map(|place| json!({ "text": format!("{place}: text"), "place": place }));
-    let group = json!({ "severity": 1, "code": "CODE", "count": 70, "findings": findings });
+    let group = json!({ "severity": 1, "code": "CODE", "meaning": "In words", "count": 70, "findings": findings });
     let report = json!({ "counts": [0, 70, 0, 2], "isTruncated": true, "groups": [group] });
     let read = ValidatorReport::from_json(model, &report.to_string()).expect("JSON");
     assert_eq!((read.counts, read.is_truncated), ([0, 70, 0, 2], true));
-    let [ValidatorGroup { severity: 1, code, count: 70, findings }] = &read.groups[..] else { panic!("{read:?}") };
-    assert_eq!(code, "CODE");
+    let [ValidatorGroup { severity: 1, code, meaning, count: 70, findings }] = &read.groups[..] else {
+        panic!("{read:?}")
+    };
+    assert_eq!((&**code, &**meaning), ("CODE", "In words"));
     let skeleton = &model.asset.skeleton;
     let joints = [skeleton.joint_of_source(2), model.asset.skins[0].joints().first().copied(), None, None];
     for ((finding, joint), (place, expected)) in findings.iter().zip(places.iter().zip(joints)) {

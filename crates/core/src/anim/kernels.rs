@@ -12,18 +12,18 @@ pub(super) const LANES: usize = 4;
 /// Four vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Vec3x4 {
-    x: Vec4,
-    y: Vec4,
-    z: Vec4,
+    pub x: Vec4,
+    pub y: Vec4,
+    pub z: Vec4,
 }
 
 /// Four rotations. Stored ones are unit quaternions, but interpolated ones are shorter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Quatx4 {
-    x: Vec4,
-    y: Vec4,
-    z: Vec4,
-    w: Vec4,
+    pub x: Vec4,
+    pub y: Vec4,
+    pub z: Vec4,
+    pub w: Vec4,
 }
 
 /// Local transforms of four joints.

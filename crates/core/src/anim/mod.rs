@@ -23,6 +23,7 @@
 mod channel;
 mod clip;
 mod kernels;
+mod layer;
 mod playback;
 mod polar;
 mod pose;
@@ -33,6 +34,7 @@ mod transform;
 
 pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
+pub use layer::JointMask;
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint, model_from_single_joint};

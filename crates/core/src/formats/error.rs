@@ -82,6 +82,18 @@ pub enum LoadError {
         /// What this file has there.
         found: String,
     },
+    /// A file exceeds one of the limits on what is read.
+    #[error("{file}: {}expected {expected}, found {found}", prefix(place))]
+    TooLarge {
+        /// Name of the file in the set.
+        file: String,
+        /// Where in the file, as in [`Self::Invalid`].
+        place: String,
+        /// The limit.
+        expected: String,
+        /// What this file has.
+        found: String,
+    },
     /// A file that the model needs is not in the set.
     #[error("{file}: {place} is “{uri}”, which {}; drop it together with the model", where_missing(uri))]
     MissingFile {
@@ -92,7 +104,7 @@ pub enum LoadError {
         /// The missing file's percent-decoded URI, or its bare name if it is a companion.
         uri: String,
     },
-    /// A zip archive is unreadable, or too large to unpack in memory.
+    /// A zip archive is unreadable.
     #[error("{file}: {problem}")]
     Archive {
         /// Name of the archive.
@@ -175,7 +187,7 @@ impl Problem {
         match self {
             Self::Invalid { place, expected, found } => LoadError::Invalid { file, place, expected, found },
             Self::Limit { place, expected, found } => {
-                LoadError::Invalid { file, place, expected, found: found.to_string() }
+                LoadError::TooLarge { file, place, expected, found: found.to_string() }
             }
             Self::MissingFile { place, uri } => LoadError::MissingFile { file, place, uri },
         }

@@ -139,8 +139,13 @@ impl FileSet {
             error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
         })?;
         let entries = archive.len();
+        let too_large = |expected: String, found: String| {
+            let file = archive_name.to_owned();
+            LoadError::TooLarge { file, place: String::new(), expected, found }
+        };
         if entries > MAX_ARCHIVE_FILES {
-            return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_FILES} are read")));
+            let expected = format!("at most {MAX_ARCHIVE_FILES} files in an archive");
+            return Err(too_large(expected, entries.to_string()));
         }
         // The archive is in memory together with what is unpacked from it.
         let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
@@ -150,13 +155,13 @@ impl FileSet {
             if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
                 continue;
             }
-            let too_large = || {
+            let too_many_bytes = || {
                 let max = MAX_READ_BYTES >> 20;
-                error(format!("packed and unpacked, more than {max} MiB in all, the most that is read at once"))
+                too_large(format!("at most {max} MiB in all, packed and unpacked"), "more".to_owned())
             };
             // An oversized header is trusted to save work; one that understates the size is caught while unpacking.
             if entry.size() > bytes_left {
-                return Err(too_large());
+                return Err(too_many_bytes());
             }
             let likely = entry.size().min(entry.compressed_size().saturating_mul(MAX_COMPRESSION));
             let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
@@ -164,7 +169,7 @@ impl FileSet {
                 .take(bytes_left + 1)
                 .read_to_end(&mut content)
                 .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_large)?;
+            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_many_bytes)?;
             self.insert(name, content);
         }
         Ok(())

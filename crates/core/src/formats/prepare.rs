@@ -4,7 +4,7 @@
 use gaitway_part::Answer;
 
 use super::file_set::Conversion;
-use super::gltf::{draco, meshopt};
+use super::gltf::decoded::{self, Decoding};
 use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
 use crate::asset::SharedBytes;
 
@@ -82,10 +82,8 @@ pub struct Preparation {
 enum Step {
     /// A GLB that replaces a file of this format.
     File(&'static str),
-    /// Meshes of a glTF.
-    Meshes(draco::Decoding),
-    /// Buffer views of a glTF.
-    Views(meshopt::Decoding),
+    /// Data of a glTF.
+    Data(Decoding),
 }
 
 impl Preparation {
@@ -101,7 +99,6 @@ impl Preparation {
     pub fn finish(self, files: &mut FileSet, answer: Answer) -> Result<(), LoadError> {
         let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
         let output = answer.map_err(failed)?;
-        let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
         match self.step {
             Step::File(format) => {
                 let conversion =
@@ -109,8 +106,7 @@ impl Preparation {
                 files.convert(&self.file, output.bytes, conversion);
                 Ok(())
             }
-            Step::Meshes(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
-            Step::Views(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+            Step::Data(decoding) => decoding.finish(files, &self.file, &output.bytes),
         }
     }
 }
@@ -128,11 +124,8 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;
         }
-        if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            return preparation(Part::Meshopt, input.into(), Step::Views(decoding));
-        }
-        if let Some((decoding, input)) = draco::start(files, name, bytes)? {
-            return preparation(Part::Draco, input.into(), Step::Meshes(decoding));
+        if let Some((decoding, input)) = decoded::start(files, name, bytes)? {
+            return preparation(decoding.part(), input.into(), Step::Data(decoding));
         }
     }
     Ok(None)

@@ -298,6 +298,11 @@ impl Model {
         self.extent.rest()
     }
 
+    /// The largest dimension of [`Model::rest_bounds`], by which the errors of feet are judged.
+    pub fn size_metres(&self) -> f64 {
+        f64::from(self.rest_bounds().size().max_element())
+    }
+
     /// Conservative bounds of a pose: they enclose every vertex (nearly, for dual quaternions) and are a little loose
     /// where joints bend. `world_from_joint` has one entry per joint. If no mesh is visible, the bounds of the joints.
     pub fn pose_bounds(&self, world_from_joint: &[Affine3A], morph_weights: &[f32], scene: &SceneJoints) -> Bounds {

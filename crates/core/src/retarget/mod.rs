@@ -3,7 +3,7 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
-//! with its source. `change` mirrors, trims, loops and moves any clip. `pose`, `keys` and `math` are shared by all.
+//! with its source. `change` mirrors, trims, loops and moves any clip, and `stack` puts others over it. `pose`, `keys` and `math` are shared by all.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -37,6 +37,7 @@ mod measure;
 mod pose;
 mod recognize;
 mod retargeting;
+mod stack;
 mod transfer;
 
 pub use align::rest::{FoundRest, RestOrigin};
@@ -48,8 +49,9 @@ pub use map::{
     Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
     opposite_joints, propose, propose_recognized,
 };
-pub use measure::{Figures, FootTrack, StagePair};
+pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};
 pub(crate) use recognize::words;
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};
+pub use stack::{BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -1,51 +1,84 @@
-//! Shared by the decoders of compressed glTF: finding a file that needs one, and writing it without the extension.
+//! What the decoders of compressed glTF have in common: finding a file that needs one, and writing it without the extension.
 
 use super::container::{self, Container};
 use super::document::{Document, as_text};
 use super::object::Object;
-use super::{WriteError, write};
+use super::{WriteError, draco, meshopt, write};
 use crate::formats::error::Problem;
 use crate::formats::file_set::Conversion;
-use crate::formats::{FileSet, LoadError};
+use crate::formats::{FileSet, LoadError, Part};
 
-/// Calls `read` for a file that mentions one of the extensions. `None` if it has nothing to decode, or if something
-/// else is wrong with the file, which loading it will report.
-pub fn start<T>(
-    file: &str,
-    bytes: &[u8],
-    extensions: &[&str],
-    read: impl FnOnce(&Container, &Document) -> Result<Option<T>, Problem>,
-) -> Result<Option<T>, LoadError> {
+/// Where a decoder's output belongs.
+#[derive(Debug)]
+pub enum Decoding {
+    Views(meshopt::Decoding),
+    Meshes(draco::Decoding),
+}
+
+/// Returns the first decoding that a file needs, with the decoder's input. `None` if it needs none, or if something else is wrong
+/// with the file, which loading it will report.
+pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
     let Ok(container) = container::open(file, bytes) else { return Ok(None) };
     let json = as_text(container.json);
-    if !extensions.iter().any(|name| json.contains(name)) {
+    if !meshopt::NAMES.iter().chain(&draco::NAMES).any(|name| json.contains(name)) {
         return Ok(None);
     }
     let Ok(document) = Document::read(file, &container) else { return Ok(None) };
-    match read(&container, &document) {
+    match read(files, file, &container, &document) {
         Err(Problem::MissingFile { .. }) => Ok(None),
         read => read.map_err(|problem| problem.in_file(file)),
     }
 }
 
-/// Replaces a file with one that has different JSON and no longer uses the extensions.
-pub fn replace(
-    files: &mut FileSet,
+fn read(
+    files: &FileSet,
     file: &str,
-    binary: Option<&[u8]>,
-    mut json: Object,
-    extensions: &[&str],
-) -> Result<(), LoadError> {
-    json.remove_strings("extensionsRequired", extensions);
-    let extensions = json.remove_strings("extensionsUsed", extensions);
-    let json = serde_json::to_vec(&json).unwrap_or_default();
-    let too_large = |problem: WriteError| LoadError::Conversion { file: file.to_owned(), problem: problem.to_string() };
-    let plain = match binary {
-        Some(binary) => write::glb(json, binary.to_vec()).map_err(too_large)?,
-        None => json,
-    };
-    files.convert(file, plain, Conversion { extensions, ..Conversion::default() });
-    Ok(())
+    container: &Container,
+    document: &Document,
+) -> Result<Option<(Decoding, Vec<u8>)>, Problem> {
+    if let Some((views, input)) = meshopt::read(files, file, container, document)? {
+        return Ok(Some((Decoding::Views(views), input)));
+    }
+    let meshes = draco::read(files, file, container, document)?;
+    Ok(meshes.map(|(meshes, input)| (Decoding::Meshes(meshes), input)))
+}
+
+impl Decoding {
+    /// The decoder.
+    pub fn part(&self) -> Part {
+        match self {
+            Self::Views(_) => Part::Meshopt,
+            Self::Meshes(_) => Part::Draco,
+        }
+    }
+
+    /// Replaces the file with one that has the decoded data and no longer uses the extension.
+    pub fn finish(self, files: &mut FileSet, file: &str, decoded: &[u8]) -> Result<(), LoadError> {
+        let Some(bytes) = files.get(file).cloned() else { return Ok(()) };
+        let container = container::open(file, &bytes)?;
+        let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
+        let extensions = match self {
+            Self::Views(views) => {
+                views.finish(files, file, &container, &mut json, decoded)?;
+                &meshopt::NAMES[..]
+            }
+            Self::Meshes(meshes) => {
+                meshes.finish(files, file, &mut json, decoded)?;
+                &draco::NAMES
+            }
+        };
+        json.remove_strings("extensionsRequired", extensions);
+        let extensions = json.remove_strings("extensionsUsed", extensions);
+        let json = serde_json::to_vec(&json).unwrap_or_default();
+        let too_large =
+            |problem: WriteError| LoadError::Conversion { file: file.to_owned(), problem: problem.to_string() };
+        let plain = match container.binary {
+            Some(binary) => write::glb(json, binary.to_vec()).map_err(too_large)?,
+            None => json,
+        };
+        files.convert(file, plain, Conversion { extensions, ..Conversion::default() });
+        Ok(())
+    }
 }
 
 /// Removes the extensions from an object.

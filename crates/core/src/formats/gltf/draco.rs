@@ -1,18 +1,16 @@
 //! `KHR_draco_mesh_compression`: decodes compressed meshes before the file is loaded. The decoded data becomes a buffer of its
 //! own, a file of the set, and the accessors, which have no data without the extension, are pointed at it.
 
-use std::collections::BTreeMap;
-
 use gaitway_draco::{Attribute, Decoded, Mesh};
 use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::accessor::Accessors;
-use super::container::{self, Container};
-use super::decoded::{self, without_extensions};
-use super::document::{Document, as_text};
+use super::container::Container;
+use super::decoded::without_extensions;
+use super::document::Document;
 use super::object::{Array, Object, raw};
 use super::resolve_buffers;
 use crate::asset::Warnings;
@@ -22,6 +20,7 @@ use crate::formats::limits::Limit;
 use crate::formats::{FileSet, LoadError};
 
 pub const NAME: &str = "KHR_draco_mesh_compression";
+pub const NAMES: [&str; 1] = [NAME];
 
 /// glTF's codes of the index types.
 const U16: usize = 5123;
@@ -61,11 +60,7 @@ pub fn is_needed(root: &Root, primitive: &Primitive) -> bool {
 }
 
 /// Returns the decoder's input for a file with compressed meshes.
-pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
-    decoded::start(file, bytes, &[NAME], |container, document| read(files, file, container, document))
-}
-
-fn read(
+pub fn read(
     files: &FileSet,
     file: &str,
     container: &Container,
@@ -78,7 +73,8 @@ fn read(
     let buffers = resolve_buffers(files, file, container, root, &mut Warnings::default())?;
     let accessors = Accessors::new(document, buffers);
     let (mut decoding, mut meshes) = (Decoding::default(), Vec::new());
-    let mut of_view: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    // The meshes of each view, of which there is nearly always one.
+    let mut of_view: Vec<Vec<usize>> = vec![Vec::new(); root.buffer_views.len()];
     for (mesh, of_mesh) in root.meshes.iter().enumerate() {
         for (at, primitive) in of_mesh.primitives.iter().enumerate() {
             let Some(value) = extension(primitive) else { continue };
@@ -87,7 +83,7 @@ fn read(
             let (source, _) = accessors.view(view, &place)?;
             let max_count = max_count(&accessors, primitive, &place)?;
             let own = (view, attributes);
-            let same_view = of_view.entry(view).or_default();
+            let same_view = &mut of_view[view];
             let known = same_view.iter().copied().find(|&known| decoding.meshes[known] == own);
             let decoded = known.unwrap_or_else(|| {
                 meshes.push(Mesh { source, max_count, attributes: own.1.clone() });
@@ -134,10 +130,8 @@ fn compressed(
 }
 
 impl Decoding {
-    /// Replaces the file with one without compression.
-    pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], decoded: &[u8]) -> Result<(), LoadError> {
-        let container = container::open(file, bytes)?;
-        let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
+    /// Adds the decoded data to the set and to the file's `json`.
+    pub fn finish(self, files: &mut FileSet, file: &str, json: &mut Object, decoded: &[u8]) -> Result<(), LoadError> {
         let unknown = || {
             let problem = "the Draco decoder returned invalid data".to_owned();
             LoadError::Conversion { file: file.to_owned(), problem }
@@ -145,20 +139,24 @@ impl Decoding {
         let attributes = self.meshes.iter().map(|(_, attributes)| attributes.as_slice());
         let (facts, data) = Decoded::read_all(decoded, attributes).ok_or_else(unknown)?;
 
-        let mut added = Added::new(&json);
+        let mut added = Added::new(json);
         let first_views: Vec<usize> =
             facts.iter().zip(&self.meshes).map(|(facts, (_, attributes))| added.mesh(facts, attributes)).collect();
-        self.point(&mut json, &facts, &first_views);
+        self.point(json, &facts, &first_views);
         json.extend("bufferViews", added.views);
         let (name, uri) = beside(file, "draco");
-        json.extend("buffers", vec![raw(&json!({ "uri": uri, "byteLength": data.len() }))]);
+        let mut buffer = Object::default();
+        buffer.set("uri", &uri);
+        buffer.set("byteLength", &data.len());
+        json.extend("buffers", vec![raw(&buffer)]);
         files.insert(name, data);
-        decoded::replace(files, file, container.binary, json, &[NAME])
+        Ok(())
     }
 
     /// Points the accessors of the primitives at the decoded data: for each mesh one view of the indices, then one per attribute.
     fn point(&self, json: &mut Object, facts: &[Decoded], first_views: &[usize]) {
-        let mut accessors = Rewritten { list: json.read("accessors").unwrap_or_default(), views: BTreeMap::new() };
+        let list: Vec<Object> = json.read("accessors").unwrap_or_default();
+        let mut accessors = Rewritten { views: vec![None; list.len()], list };
         let mut meshes: Vec<Object> = json.read("meshes").unwrap_or_default();
         for targets in self.primitives.chunk_by(|one, other| one.mesh == other.mesh) {
             let Some(mesh) = meshes.get_mut(targets[0].mesh) else { continue };
@@ -194,11 +192,13 @@ impl Added {
         let (first, start) = (self.first + self.views.len(), self.end);
         for (at, range) in facts.ranges(attributes).into_iter().enumerate() {
             self.end = start + range.end;
-            let mut view =
-                json!({ "buffer": self.buffer, "byteOffset": start + range.start, "byteLength": range.len() });
+            let mut view = Object::default();
+            view.set("buffer", &self.buffer);
+            view.set("byteOffset", &(start + range.start));
+            view.set("byteLength", &range.len());
             // The indices, which come first, have none.
             if let Some(attribute) = at.checked_sub(1).and_then(|at| attributes.get(at)) {
-                view["byteStride"] = json!(attribute.stride());
+                view.set("byteStride", &attribute.stride());
             }
             self.views.push(raw(&view));
         }
@@ -209,8 +209,8 @@ impl Added {
 /// The accessors of a file.
 struct Rewritten {
     list: Vec<Object>,
-    /// Buffer views of the accessors that were pointed at one.
-    views: BTreeMap<usize, usize>,
+    /// The decoded buffer view that each was pointed at.
+    views: Vec<Option<usize>>,
 }
 
 impl Rewritten {
@@ -238,18 +238,18 @@ impl Rewritten {
         primitive.set("attributes", &attributes);
         // A strip is decoded into a list, which is the default.
         primitive.remove("mode");
-        without_extensions(primitive, &[NAME]);
+        without_extensions(primitive, &NAMES);
     }
 
     /// Points an accessor, or a new one, at a view. An accessor that already has another view is copied. Returns the
     /// index.
     fn at(&mut self, index: Option<usize>, view: usize, count: usize) -> usize {
         let existing = index.filter(|&index| index < self.list.len());
-        let own = existing.filter(|&index| *self.views.entry(index).or_insert(view) == view);
+        let own = existing.filter(|&index| *self.views[index].get_or_insert(view) == view);
         let index = own.unwrap_or_else(|| {
             let copy = existing.map(|index| self.list[index].clone()).unwrap_or_default();
             self.list.push(copy);
-            self.views.insert(self.list.len() - 1, view);
+            self.views.push(Some(view));
             self.list.len() - 1
         });
         let accessor = &mut self.list[index];

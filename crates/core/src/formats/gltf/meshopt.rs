@@ -8,9 +8,9 @@ use gltf::json::Buffer;
 use serde_json::{Map, Value};
 
 use super::accessor::Bytes;
-use super::container::{self, Container};
-use super::decoded::{self, without_extensions};
-use super::document::{Document, as_text, size};
+use super::container::Container;
+use super::decoded::without_extensions;
+use super::document::{Document, size};
 use super::object::Object;
 use super::resolve_buffer;
 use crate::asset::Warnings;
@@ -19,7 +19,7 @@ use crate::formats::file_set::beside;
 use crate::formats::limits::Budget;
 use crate::formats::{FileSet, LoadError};
 
-const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+pub const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Where decoded views belong, in the order of the input.
 #[derive(Debug, Default)]
@@ -33,19 +33,12 @@ struct Place {
 }
 
 /// Returns the decoder's input for a file with compressed views.
-pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
-    decoded::start(file, bytes, &NAMES, |container, document| {
-        let (decoding, input) = read_views(files, file, container, document)?;
-        Ok((!decoding.0.is_empty()).then_some((decoding, input)))
-    })
-}
-
-fn read_views(
+pub fn read(
     files: &FileSet,
     file: &str,
     container: &Container,
     document: &Document,
-) -> Result<(Decoding, Vec<u8>), Problem> {
+) -> Result<Option<(Decoding, Vec<u8>)>, Problem> {
     let (mut decoding, mut input) = (Decoding::default(), Vec::new());
     let root = &document.root;
     // The buffer read last; nearly every file has all compressed views in one.
@@ -65,7 +58,7 @@ fn read_views(
         view.write(&mut input);
         decoding.add(document, index, usize::from(view.stride) * view.count as usize)?;
     }
-    Ok((decoding, input))
+    Ok((!decoding.0.is_empty()).then_some((decoding, input)))
 }
 
 /// Returns the extension's name and value among an object's extensions.
@@ -134,11 +127,16 @@ impl Decoding {
         Ok(())
     }
 
-    /// Replaces the file with one without compression. `decoded` has the views one after the other.
-    pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], mut decoded: &[u8]) -> Result<(), LoadError> {
-        let container = container::open(file, bytes)?;
-        let root = Document::read(file, &container)?.root;
-        let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
+    /// Adds the decoded data to the set and to the file's `json`. `decoded` has the views one after the other.
+    pub fn finish(
+        self,
+        files: &mut FileSet,
+        file: &str,
+        container: &Container,
+        json: &mut Object,
+        mut decoded: &[u8],
+    ) -> Result<(), LoadError> {
+        let root = Document::read(file, container)?.root;
         let mut buffers: Vec<Object> = json.read("buffers").unwrap_or_default();
         let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
         let mut contents: Vec<Vec<u8>> = vec![Vec::new(); root.buffers.len()];
@@ -146,7 +144,7 @@ impl Decoding {
             let data = &mut contents[buffer];
             if data.is_empty() {
                 // Views without compression may share the buffer.
-                let own = resolve_buffer(files, file, &container, &root, buffer, &mut Warnings::default());
+                let own = resolve_buffer(files, file, container, &root, buffer, &mut Warnings::default());
                 data.extend(own.ok().flatten().as_ref().map_or(&[][..], Bytes::as_slice));
                 data.resize(size(root.buffers[buffer].byte_length), 0);
             }
@@ -167,6 +165,6 @@ impl Decoding {
         }
         json.set("bufferViews", &views);
         json.set("buffers", &buffers);
-        decoded::replace(files, file, container.binary, json, &NAMES)
+        Ok(())
     }
 }

@@ -18,8 +18,12 @@ pub type Array = Vec<Box<RawValue>>;
 impl Object {
     /// Parses a member. `None` if it is missing or of another type.
     pub fn read<'a, T: Deserialize<'a>>(&'a self, key: &str) -> Option<T> {
-        let (_, value) = self.0.iter().rfind(|(other, _)| other == key)?;
-        serde_json::from_str(value.get()).ok()
+        serde_json::from_str(self.text(key)?).ok()
+    }
+
+    // What doesn't depend on a type is a function of its own: the others are compiled for many.
+    fn text(&self, key: &str) -> Option<&str> {
+        self.0.iter().rfind(|(other, _)| other == key).map(|(_, value)| value.get())
     }
 
     /// Parses all members of one type, skipping the others.
@@ -43,7 +47,10 @@ impl Object {
 
     /// Replaces a member in place, or appends it.
     pub fn set(&mut self, key: &str, value: &impl Serialize) {
-        let Ok(value) = to_raw_value(value) else { return };
+        self.set_raw(key, raw(value));
+    }
+
+    fn set_raw(&mut self, key: &str, value: Box<RawValue>) {
         match self.0.iter_mut().rfind(|(other, _)| other == key) {
             Some((_, old)) => *old = value,
             None => self.0.push((key.to_owned(), value)),

@@ -5,7 +5,7 @@ mod mirror;
 mod path;
 mod seam;
 mod time;
-mod track;
+pub(super) mod track;
 
 use serde::{Deserialize, Serialize};
 

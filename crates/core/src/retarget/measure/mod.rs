@@ -3,7 +3,9 @@
 mod figures;
 mod foot_track;
 mod stage;
+mod verdict;
 
 pub use figures::{Figures, MeasuredClip, measure};
 pub use foot_track::FootTrack;
 pub use stage::{StagePair, model_from_source, stage_pairs};
+pub use verdict::{Verdict, Verdicts};

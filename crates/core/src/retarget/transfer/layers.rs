@@ -77,15 +77,20 @@ pub struct Baking {
     pub seamless: bool,
 }
 
+/// Maximum time by which a layer that isn't stretched may miss the end.
+const MAX_GAP_SECS: f64 = 1e-3;
+
 /// Chooses the smallest number of loops in which every layer comes close to a whole number of its own; one if there is none.
-pub fn baking(clip: &Clip, layers: &[LayerClip], asked_loops: Option<usize>) -> Baking {
+/// `periods_secs` are those of layers over the clip, which aren't stretched.
+pub fn baking(clip: &Clip, layers: &[LayerClip], periods_secs: &[f64], asked_loops: Option<usize>) -> Baking {
     let moving = || layers.iter().filter(|layer| !layer.frozen && layer.duration_secs > 0.0);
     let fits = |loops: usize| {
         let secs = loops as f64 * f64::from(clip.duration_secs());
-        moving().all(|layer| {
+        let below = moving().all(|layer| {
             let rounds = secs / f64::from(layer.duration_secs);
             rounds.round() >= 1.0 && (rounds / rounds.round() - 1.0).abs() <= MAX_STRETCH
-        })
+        });
+        below && periods_secs.iter().all(|&period| (secs - (secs / period).round() * period).abs() <= MAX_GAP_SECS)
     };
     match asked_loops {
         Some(loops) => Baking { loops: loops.clamp(1, 1000), seamless: fits(loops.clamp(1, 1000)) },

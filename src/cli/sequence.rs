@@ -1,0 +1,193 @@
+//! Where `gaitway render --frames` puts its pictures: a folder of PNGs, or a video that ffmpeg encodes. An encoder of our own
+//! would be larger than the rest of the program, and ffmpeg has every codec.
+
+use std::fs;
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::thread::{self, JoinHandle};
+
+use super::failure::{Failure, Outcome};
+use super::output::{check_output, write_output};
+use crate::files::{Disk, describe, encode_png};
+
+/// File extensions for a video.
+const VIDEO_EXTENSIONS: &[&str] = &["mp4", "webm"];
+
+/// The pictures of a sequence, all of one size.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Format {
+    pub size: [u32; 2],
+    pub frames_per_sec: u32,
+    pub frame_count: u32,
+    /// Whether the background is transparent, which a .webm and PNGs can be.
+    pub is_transparent: bool,
+}
+
+/// Takes one picture after the other.
+pub(super) enum Sequence<'a> {
+    Folder { folder: &'a Path, format: Format, written: u32 },
+    Video(Encoder<'a>),
+}
+
+impl<'a> Sequence<'a> {
+    /// An output with a video's extension becomes a video, every other one a folder, which must be new or empty.
+    pub fn create(out: &'a Path, format: Format, disk: &Disk) -> Outcome<Self> {
+        if out.extension().is_some() && !out.is_dir() {
+            check_output(out, VIDEO_EXTENSIONS, disk)?;
+            return Encoder::start(out, format).map(Self::Video);
+        }
+        let failed = |problem| Failure::new(describe(&problem)).in_file(out.display());
+        match fs::create_dir(out) {
+            Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
+            created => created.map_err(failed)?,
+        }
+        if fs::read_dir(out).map_err(failed)?.next().is_some() {
+            return Err(Failure::expected("a new or an empty folder", "one with files").in_file(out.display()));
+        }
+        Ok(Self::Folder { folder: out, format, written: 0 })
+    }
+
+    /// Adds a picture: RGBA rows from the top, with straight alpha.
+    pub fn add(&mut self, pixels: &[u8], disk: &Disk) -> Outcome {
+        match self {
+            Self::Video(encoder) => encoder.add(pixels),
+            Self::Folder { folder, format, written } => {
+                *written += 1;
+                let digits = format.frame_count.to_string().len();
+                let [width, height] = format.size;
+                let png = encode_png(width, height, pixels).ok_or_else(|| Failure::new(super::render::NOT_READ))?;
+                write_output(&folder.join(format!("frame-{written:0digits$}.png")), &png, &["png"], disk)
+            }
+        }
+    }
+
+    /// Completes the output.
+    pub fn finish(self, disk: &Disk) -> Outcome {
+        match self {
+            Self::Folder { .. } => Ok(()),
+            Self::Video(encoder) => encoder.finish(disk),
+        }
+    }
+}
+
+/// A running ffmpeg. It writes to a temporary file, since an .mp4 is completed at its beginning.
+pub(super) struct Encoder<'a> {
+    out: &'a Path,
+    temporary: TemporaryFile,
+    process: Child,
+    input: ChildStdin,
+    /// What it prints, read all along so that it never waits for a reader.
+    said: JoinHandle<String>,
+}
+
+impl<'a> Encoder<'a> {
+    fn start(out: &'a Path, format: Format) -> Outcome<Self> {
+        let Format { size: [width, height], frames_per_sec, is_transparent, .. } = format;
+        let is_mp4 = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mp4"));
+        if width % 2 != 0 || height % 2 != 0 {
+            // Both store colours at half the resolution.
+            return Err(
+                Failure::expected("an even width and height for a video", format!("{width}x{height}")).at("--size")
+            );
+        }
+        if is_mp4 && is_transparent {
+            let failure = Failure::new("an .mp4 can't be transparent");
+            return Err(failure
+                .with_hint("choose .webm, a folder of PNGs, or another background")
+                .in_file(out.display()));
+        }
+        let extension = if is_mp4 { "mp4" } else { "webm" };
+        let temporary = TemporaryFile::new(&format!("video.{extension}"))?;
+        let size = format!("{width}x{height}");
+        let rate = frames_per_sec.to_string();
+        let codec: &[&str] = match (is_mp4, is_transparent) {
+            (true, _) => &["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
+            (false, true) => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-pix_fmt", "yuva420p"],
+            (false, false) => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-pix_fmt", "yuv420p"],
+        };
+        let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s:v", &size, "-r", &rate, "-i", "-"];
+        // Players take standard definition for BT.601 and everything else for BT.709, unless the file says which it is.
+        let colors = [
+            "-vf",
+            "scale=out_color_matrix=bt709",
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+        ];
+        let started = Command::new("ffmpeg")
+            .args(["-hide_banner", "-loglevel", "error"])
+            .args(input)
+            .args(colors)
+            .args(codec)
+            .arg(&temporary.path)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn();
+        let mut process = started.map_err(|problem| match problem.kind() {
+            ErrorKind::NotFound => Failure::new("ffmpeg, which encodes videos, isn't installed")
+                .with_hint("install it, or give --out a folder for PNGs")
+                .in_file(out.display()),
+            _ => Failure::new(describe(&problem)).in_file("ffmpeg"),
+        })?;
+        let (Some(input), Some(mut errors)) = (process.stdin.take(), process.stderr.take()) else {
+            return Err(Failure::new("ffmpeg has no standard input").in_file(out.display()));
+        };
+        let said = thread::spawn(move || {
+            let mut said = Vec::new();
+            // What was read until an error is what there is to report.
+            let _ = errors.read_to_end(&mut said);
+            String::from_utf8_lossy(&said).trim().replace('\n', ", ")
+        });
+        Ok(Self { out, temporary, process, input, said })
+    }
+
+    fn add(&mut self, pixels: &[u8]) -> Outcome {
+        // If ffmpeg has stopped, `finish` reports why.
+        match self.input.write_all(pixels) {
+            Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
+                Err(Failure::new(describe(&problem)).in_file("ffmpeg"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn finish(mut self, disk: &Disk) -> Outcome {
+        drop(self.input);
+        let status = self.process.wait();
+        let said = self.said.join().unwrap_or_default();
+        match (status, fs::read(&self.temporary.path)) {
+            (Ok(status), Ok(video)) if status.success() && !video.is_empty() => {
+                write_output(self.out, &video, VIDEO_EXTENSIONS, disk)
+            }
+            _ => Err(Failure::new(format!("ffmpeg couldn't encode the video: {said}")).in_file(self.out.display())),
+        }
+    }
+}
+
+/// A path in a folder of its own, which is removed with it.
+struct TemporaryFile {
+    folder: PathBuf,
+    path: PathBuf,
+}
+
+impl TemporaryFile {
+    fn new(name: &str) -> Outcome<Self> {
+        let folder = std::env::temp_dir().join(format!("gaitway-{}", std::process::id()));
+        // Fails if something is there already.
+        fs::create_dir(&folder).map_err(|problem| Failure::new(describe(&problem)).in_file(folder.display()))?;
+        let path = folder.join(name);
+        Ok(Self { folder, path })
+    }
+}
+
+impl Drop for TemporaryFile {
+    fn drop(&mut self) {
+        // Otherwise the system removes it some day.
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}

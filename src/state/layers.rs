@@ -1,0 +1,83 @@
+//! The layers over the active clip: finding their clips and joints, and applying them to a pose.
+
+use super::playhead::clip_called;
+use super::{NameKind, UnknownName, ViewerState};
+use crate::anim::{JointMask, Pose};
+use crate::library::{Model, ModelId};
+use crate::retarget::{ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, StackedLayer};
+
+/// Applies the layers of a view. Keeps what they need between frames.
+#[derive(Debug, Default)]
+pub struct LayerSampler {
+    held: Vec<Held>,
+}
+
+/// What one layer needs.
+#[derive(Debug, Default)]
+struct Held {
+    mask: JointMask,
+    /// What `mask` was made from: the model, its number of joints, and the choice.
+    made_from: Option<(ModelId, usize, LayerMask)>,
+    buffers: LayerBuffers,
+}
+
+impl LayerSampler {
+    /// Changes the pose that the active clip has after `elapsed_secs`. Layers whose clip the model lacks are skipped.
+    /// Allocates only when a layer's mask, the number of layers or the model changes.
+    pub fn apply(&mut self, model: &Model, state: &ViewerState, elapsed_secs: f64, pose: &mut Pose) {
+        let layers = &state.edits.layers;
+        if self.held.len() < layers.len() {
+            self.held.resize_with(layers.len(), Held::default);
+        }
+        for (layer, held) in layers.iter().zip(&mut self.held) {
+            let Some(source) = source_of(model, layer) else { continue };
+            held.refresh(model, &layer.mask);
+            let skeleton = &model.asset.skeleton;
+            layer.apply(skeleton, source, &held.mask, elapsed_secs, &mut held.buffers, pose);
+        }
+    }
+}
+
+impl Held {
+    fn refresh(&mut self, model: &Model, mask: &LayerMask) {
+        let skeleton = &model.asset.skeleton;
+        let is_same = |(id, joints, made_from): &(ModelId, usize, LayerMask)| {
+            (*id, *joints) == (model.id, skeleton.len()) && made_from == mask
+        };
+        if !self.made_from.as_ref().is_some_and(is_same) {
+            self.mask = JointMask::new(skeleton, &mask.included(&model.body()));
+            self.made_from = Some((model.id, skeleton.len(), mask.clone()));
+        }
+    }
+}
+
+/// Returns the index of a layer's clip.
+pub fn clip_of_layer(model: &Model, layer: &ClipLayer) -> Option<usize> {
+    clip_called(model, &layer.clip)
+}
+
+fn source_of<'a>(model: &'a Model, layer: &ClipLayer) -> Option<ClipOverLayers<'a>> {
+    let index = clip_of_layer(model, layer)?;
+    Some(ClipOverLayers { clip: model.clip(index)?, below: model.layers(index) })
+}
+
+/// Whether any layer changes the pose.
+pub fn has_layers(model: &Model, state: &ViewerState) -> bool {
+    state.edits.layers.iter().any(|layer| layer.weight > 0.0 && clip_of_layer(model, layer).is_some())
+}
+
+/// Returns the layers that change the pose, for baking. Those whose clip the model lacks are skipped.
+pub fn stacked_layers<'a>(model: &'a Model, state: &'a ViewerState) -> Vec<StackedLayer<'a>> {
+    let stacked = state.edits.layers.iter().filter(|layer| layer.weight > 0.0).filter_map(|layer| {
+        let (source, included) = (source_of(model, layer)?, layer.mask.included(&model.body()));
+        included.contains(&true).then_some(StackedLayer { layer, source, included })
+    });
+    stacked.collect()
+}
+
+/// Returns the first clip of a layer that the model lacks.
+pub fn unknown_layer(model: &Model, layers: &[ClipLayer]) -> Option<UnknownName> {
+    let unknown = layers.iter().find(|layer| clip_of_layer(model, layer).is_none())?;
+    let (name, names) = (unknown.clip.clone(), model.clip_titles().to_vec());
+    Some(UnknownName { kind: NameKind::Clip, name, names })
+}

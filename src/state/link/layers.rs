@@ -1,0 +1,65 @@
+//! The layers of a view, one `layers` key each, the lowest first: `CLIP`, or `CLIP:` and its settings, such as
+//! `Wave:weight:0.5,additive,mask:left-arm:right-arm`. Names are escaped as joint names are. The command line has the same text.
+
+use super::changes::clip_name;
+use super::values::{escaped_name, finite};
+use crate::retarget::{BodyPart, ClipLayer, LayerMode};
+
+pub(super) const EXPECTED: &str = "a clip and its settings: Wave:weight:0.5,speed:2,start:0.3,additive,mask:left-arm:12; \
+                                   parts are hips, torso, head, left-arm, right-arm, left-leg and right-leg";
+
+pub(super) fn text(layer: &ClipLayer) -> String {
+    let default = ClipLayer::default();
+    let mut words = Vec::new();
+    let numbers = [
+        ("weight", layer.weight, default.weight),
+        ("speed", layer.speed, default.speed),
+        ("start", layer.start_secs, default.start_secs),
+    ];
+    let changed = numbers.into_iter().filter(|(_, value, default)| value != default);
+    words.extend(changed.map(|(word, value, _)| format!("{word}:{value}")));
+    match layer.mode {
+        LayerMode::Override => {}
+        LayerMode::Additive => words.push("additive".to_owned()),
+        LayerMode::AdditiveToRest => words.push("additive:rest".to_owned()),
+    }
+    if !layer.mask.is_all() {
+        let parts = BodyPart::ALL.into_iter().filter(|(part, _)| layer.mask.has(*part));
+        let mask = parts.map(|(_, name)| format!(":{name}"));
+        words.push(
+            mask.chain(layer.mask.joints.iter().map(|joint| format!(":{joint}")))
+                .fold("mask".to_owned(), |a, b| a + &b),
+        );
+    }
+    let name = escaped_name(&layer.clip);
+    if words.is_empty() { name } else { format!("{name}:{}", words.join(",")) }
+}
+
+/// Reads what [`text()`] writes.
+pub(super) fn read(text: &str) -> Option<ClipLayer> {
+    let (name, words) = text.split_once(':').unwrap_or((text, ""));
+    let mut layer = ClipLayer { clip: clip_name(name)?, ..ClipLayer::default() };
+    for word in words.split(',').filter(|_| !words.is_empty()) {
+        let (kind, value) = word.trim().split_once(':').unwrap_or((word.trim(), ""));
+        match (kind, value) {
+            ("weight", number) => layer.weight = finite(number)?,
+            ("speed", number) => layer.speed = finite(number)?,
+            ("start", number) => layer.start_secs = finite(number)?,
+            ("additive", "") => layer.mode = LayerMode::Additive,
+            ("additive", "rest") => layer.mode = LayerMode::AdditiveToRest,
+            ("mask", items) => {
+                for item in items.split(':') {
+                    match BodyPart::ALL.into_iter().find(|(_, name)| *name == item) {
+                        Some((part, _)) if layer.mask.has(part) => {}
+                        Some((part, _)) => layer.mask.toggle(part),
+                        None => {
+                            layer.mask.joints.insert(item.parse().ok()?);
+                        }
+                    }
+                }
+            }
+            _ => return None,
+        }
+    }
+    Some(layer)
+}

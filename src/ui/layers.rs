@@ -1,0 +1,163 @@
+//! Layers over the current clip: a section below the clip's edits, and tracks under the timeline.
+
+use egui::{Rect, Ui, vec2};
+
+use super::icons::{Icon, icon_button_sized};
+use super::widgets::controls::{self, SliderSettings, capitals};
+use super::{Output, Shown, feet, style, text};
+use crate::library::Model;
+use crate::retarget::{BodyPart, ClipLayer, LayerMode};
+use crate::state::{ClipChoice, Command, choice_of_clip, clip_of_layer, title};
+
+const WEIGHT: SliderSettings =
+    SliderSettings { range: (0.0, 1.0), default: 1.0, decimals: 2, suffix: "", logarithmic: false };
+const SPEED: SliderSettings =
+    SliderSettings { range: (0.0, 4.0), default: 1.0, decimals: 2, suffix: " ×", logarithmic: false };
+/// Values beyond come from links.
+const START: SliderSettings =
+    SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 2, suffix: " s", logarithmic: false };
+const BUTTON_SIZE: f32 = 28.0;
+
+/// Shows the section for a model with clips.
+pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let Some(model) = shown.library.active().filter(|model| model.clip_count() > 0) else { return };
+    let before = &shown.state.edits.layers;
+    controls::section(ui, capitals!(text::LAYERS));
+    // Copied only once something changes: an open tab allocates nothing.
+    let mut changed = None;
+    for (index, layer) in before.iter().enumerate() {
+        let mut edited = layer.clone();
+        let done = ui.push_id(("layer", index), |ui| {
+            controls::card(ui, |ui| card(ui, shown, model, &mut edited, index + 1 < before.len()))
+        });
+        ui.add_space(4.0);
+        match done.inner {
+            Some(Moved::Removed) => drop(changed.get_or_insert_with(|| before.clone()).remove(index)),
+            Some(Moved::Raised) => changed.get_or_insert_with(|| before.clone()).swap(index, index + 1),
+            None if edited != *layer => changed.get_or_insert_with(|| before.clone())[index] = edited,
+            None => {}
+        }
+    }
+    if ui.button(text::ADD_LAYER).clicked() {
+        // Another clip than the one that plays, if there is one.
+        let playing = shown.clip_index();
+        let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
+        let layer = ClipLayer { clip: name_of(model, clip), ..ClipLayer::default() };
+        changed.get_or_insert_with(|| before.clone()).push(layer);
+    }
+    controls::hint(ui, text::ABOUT_LAYERS);
+    out.commands.extend(changed.map(Command::SetLayers));
+}
+
+/// What became of a layer's place in the stack.
+enum Moved {
+    Raised,
+    Removed,
+}
+
+fn name_of(model: &Model, clip: usize) -> String {
+    match choice_of_clip(model, clip) {
+        ClipChoice::Named(name) => name,
+        ClipChoice::First | ClipChoice::RestPose => String::new(),
+    }
+}
+
+fn card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer, can_rise: bool) -> Option<Moved> {
+    let mut moved = None;
+    let clip = clip_of_layer(model, layer);
+    let titles = model.clip_titles();
+    ui.horizontal(|ui| {
+        let shown = clip.and_then(|clip| titles.get(clip)).unwrap_or(&layer.clip);
+        let width = ui.available_width() - 92.0;
+        let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);
+        let response = combo.show_ui(ui, |ui| {
+            for (index, title) in titles.iter().enumerate() {
+                if ui.selectable_label(clip == Some(index), title).clicked() {
+                    layer.clip = name_of(model, index);
+                }
+            }
+        });
+        response.response.accessible_name(text::LAYER_CLIP);
+        if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
+            moved = Some(Moved::Raised);
+        }
+        if icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, false, BUTTON_SIZE).clicked() {
+            moved = Some(Moved::Removed);
+        }
+    });
+    let modes = LayerMode::ALL.map(|mode| (mode, text::layer_mode(mode)));
+    layer.mode = controls::segmented_about(ui, text::LAYER_MODE, Some(layer.mode), &modes).unwrap_or(layer.mode);
+    for (label, value, settings) in [
+        (text::LAYER_WEIGHT, &mut layer.weight, WEIGHT),
+        (text::LAYER_SPEED, &mut layer.speed, SPEED),
+        (text::LAYER_START, &mut layer.start_secs, START),
+    ] {
+        *value = controls::slider(ui, label, *value, settings).unwrap_or(*value);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if !model.body().slots.0.is_empty() {
+            for (part, _) in BodyPart::ALL {
+                if ui.selectable_label(layer.mask.has(part), text::body_part(part)).clicked() {
+                    layer.mask.toggle(part);
+                }
+            }
+        }
+        // The selected joint can be added, and those that are in the mask removed.
+        let selected = shown.state.selection.joint;
+        let mut pressed = None;
+        let extra = selected.filter(|joint| !layer.mask.joints.contains(joint));
+        for &joint in layer.mask.joints.iter().chain(&extra) {
+            let Some(index) = model.asset.skeleton.joint_of_source(joint) else { continue };
+            let name = title(Some(shown.state), &model.asset, index);
+            if ui.selectable_label(extra != Some(joint), text::below_joint(&name)).clicked() {
+                pressed = Some(joint);
+            }
+        }
+        if let Some(joint) = pressed
+            && !layer.mask.joints.remove(&joint)
+        {
+            layer.mask.joints.insert(joint);
+        }
+    });
+    moved
+}
+
+/// The layers that the model has clips for, with their titles.
+fn tracks<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a Model, usize)> + use<'a> {
+    let layers = shown.library.active().map(|model| (model, &shown.state.edits.layers));
+    let layers = layers.into_iter().flat_map(|(model, layers)| layers.iter().map(move |layer| (layer, model)));
+    layers.filter_map(|(layer, model)| Some((layer, model, clip_of_layer(model, layer)?)))
+}
+
+/// Returns the width that the names of the layers take at the left of the timeline; 0 if there are none.
+pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
+    feet::widest(ui, &mut tracks(shown).map(|(_, model, clip)| model.clip_titles()[clip].clone()))
+}
+
+/// Shows a track for each layer, the top one first, with a bar for each time that its clip plays.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, gutter: f32) {
+    let Some(duration_secs) = shown.clip().map(|clip| f64::from(clip.duration_secs())).filter(|&secs| secs > 0.0)
+    else {
+        return;
+    };
+    let color = style::palette(ui).accent;
+    let rows: Vec<_> = tracks(shown).collect();
+    for (layer, model, clip) in rows.into_iter().rev() {
+        let name = &model.clip_titles()[clip];
+        feet::row(ui, shown, gutter, name, &text::layer_track(name), |ui, lane| {
+            let period = model.clip(clip).and_then(|clip| layer.period_secs(clip)).unwrap_or(f64::INFINITY);
+            // Beyond that many, bars would be narrower than the gaps between them.
+            let period = period.max(4.0 * duration_secs / f64::from(lane.width().max(1.0)));
+            let painter = ui.painter_at(lane);
+            let x_of = |secs: f64| lane.left() + (secs / duration_secs) as f32 * lane.width();
+            let fill = color.gamma_multiply(0.15 + 0.45 * layer.weight as f32);
+            let mut start = if period.is_finite() { layer.start_secs.rem_euclid(period) - period } else { 0.0 };
+            while start < duration_secs {
+                let end = x_of((start + period).min(duration_secs)) - 1.0;
+                let bar = Rect::from_x_y_ranges(x_of(start)..=end, lane.y_range()).shrink2(vec2(0.0, 3.0));
+                painter.rect_filled(bar, 3.0, fill);
+                start += period;
+            }
+        });
+    }
+}

@@ -1,0 +1,196 @@
+//! Layers over a clip: their time, their masks, and the clip they are baked into.
+
+use gaitway::anim::{Clip, Interpolation, JointMask, Pose, SampleCursor};
+use gaitway::asset::Slot;
+use gaitway::retarget::{
+    Body, BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack,
+};
+use glam::{DQuat, DVec3};
+
+use crate::figure::{Figure, Rig, build};
+
+/// A figure with a clip, and another clip for it.
+fn dancer(interpolation: Interpolation, armature: bool) -> (Figure, Clip) {
+    let mut figure = build(&Rig { axes: 3, armature, doubled: vec![Slot::LeftLowerArm], ..Rig::default() });
+    figure.dance(9, 50.0, interpolation);
+    let other = figure.asset.clips[0].clone();
+    figure.dance(5, 40.0, Interpolation::Linear);
+    (figure, other)
+}
+
+fn included(figure: &Figure, mask: &LayerMask) -> Vec<bool> {
+    mask.included(&Body { asset: &figure.asset, slots: &figure.slots })
+}
+
+/// The pose of the figure's clip with layers of another one.
+fn played(figure: &Figure, other: &Clip, layers: &[ClipLayer], time_secs: f64) -> Pose {
+    let skeleton = &figure.asset.skeleton;
+    let mut pose = skeleton.rest().clone();
+    figure.asset.clips[0].sample(skeleton, time_secs as f32, &mut SampleCursor::default(), &mut pose);
+    for layer in layers {
+        let mask = JointMask::new(skeleton, &included(figure, &layer.mask));
+        let source = ClipOverLayers { clip: other, below: &[] };
+        layer.apply(skeleton, source, &mask, time_secs, &mut LayerBuffers::default(), &mut pose);
+    }
+    pose
+}
+
+fn sampled(figure: &Figure, clip: &Clip, time_secs: f64) -> Pose {
+    let mut pose = figure.asset.skeleton.rest().clone();
+    clip.sample(&figure.asset.skeleton, time_secs as f32, &mut SampleCursor::default(), &mut pose);
+    pose
+}
+
+fn arms() -> LayerMask {
+    LayerMask::of_parts(&[BodyPart::LeftArm, BodyPart::RightArm])
+}
+
+#[test]
+fn a_layer_runs_at_its_own_speed_from_its_start() {
+    let (figure, other) = dancer(Interpolation::Linear, false);
+    assert_eq!(other.duration_secs(), 1.5);
+    let layer = ClipLayer { speed: 2.0, start_secs: 0.25, ..ClipLayer::default() };
+    for (time_secs, expected) in [(0.25, 0.0), (0.5, 0.5), (0.0, 1.0), (1.0, 0.0), (1.25, 0.5)] {
+        let found = played(&figure, &other, std::slice::from_ref(&layer), time_secs);
+        assert_eq!(found, sampled(&figure, &other, expected), "{time_secs}");
+    }
+    let frozen = ClipLayer { speed: 0.0, ..ClipLayer::default() };
+    assert_eq!(played(&figure, &other, &[frozen], 1.1), sampled(&figure, &other, 0.0));
+}
+
+#[test]
+fn the_order_of_layers_matters() {
+    let (figure, other) = dancer(Interpolation::Linear, false);
+    let half = ClipLayer { weight: 0.5, ..ClipLayer::default() };
+    let sum = ClipLayer { mode: LayerMode::Additive, start_secs: 0.4, ..ClipLayer::default() };
+    let up = played(&figure, &other, &[half.clone(), sum.clone()], 0.6);
+    let down = played(&figure, &other, &[sum.clone(), half], 0.6);
+    assert_ne!(up, down);
+    // A full override hides what is below it.
+    let full = ClipLayer::default();
+    let both = played(&figure, &other, &[sum, full], 0.6);
+    assert_eq!(both, sampled(&figure, &other, 0.6));
+}
+
+/// Every joint belongs to one part, and those between slots and beyond them to the nearest above.
+#[test]
+fn parts_of_the_body_cover_it_once() {
+    let (figure, _) = dancer(Interpolation::Linear, true);
+    let skeleton = &figure.asset.skeleton;
+    let mut owners = vec![0; skeleton.len()];
+    for (part, name) in BodyPart::ALL {
+        let included = included(&figure, &LayerMask::of_parts(&[part]));
+        for (&slot, joint) in &figure.slots.0 {
+            assert_eq!(included[joint.get()], BodyPart::of(slot) == part, "{slot:?} and {name}");
+        }
+        for (owner, included) in owners.iter_mut().zip(included) {
+            *owner += usize::from(included);
+        }
+    }
+    assert!(owners.iter().all(|&parts| parts == 1), "{owners:?}");
+    let arm = included(&figure, &LayerMask::of_parts(&[BodyPart::LeftArm]));
+    assert!(arm[skeleton.find("extra_leftLowerArm").expect("is doubled").get()]);
+    let hips = included(&figure, &LayerMask::of_parts(&[BodyPart::Hips]));
+    assert!(hips[skeleton.find("Armature").expect("is on top").get()]);
+}
+
+#[test]
+fn a_joint_brings_its_subtree() {
+    let (figure, _) = dancer(Interpolation::Linear, true);
+    let skeleton = &figure.asset.skeleton;
+    let shoulder = figure.joint(Slot::LeftShoulder);
+    let mut mask = LayerMask::default();
+    assert!(mask.is_all() && included(&figure, &mask).iter().all(|&included| included));
+    mask.joints.insert(skeleton.source_index(shoulder));
+    let by_part = included(&figure, &LayerMask::of_parts(&[BodyPart::LeftArm]));
+    assert_eq!(included(&figure, &mask), by_part);
+    // One that the file lacks doesn't make it the whole body.
+    let mut lacking = LayerMask::default();
+    lacking.joints.insert(4000);
+    assert!(!included(&figure, &lacking).contains(&true));
+}
+
+fn world(figure: &Figure, pose: &Pose) -> Vec<(DQuat, DVec3)> {
+    let mut world: Vec<(DQuat, DVec3, f64)> = Vec::new();
+    for (local, parent) in pose.locals().zip(figure.asset.skeleton.parents()) {
+        let (turn, at, scale) = parent.map_or((DQuat::IDENTITY, DVec3::ZERO, 1.0), |parent| world[parent.get()]);
+        let at = at + turn * (local.translation.as_dvec3() * scale);
+        world.push(((turn * local.rotation.as_dquat()).normalize(), at, scale * f64::from(local.scale.x)));
+    }
+    world.into_iter().map(|(turn, at, _)| (turn, at)).collect()
+}
+
+fn key_count(clip: &Clip) -> usize {
+    clip.channels().iter().map(|channel| clip.timelines()[channel.timeline as usize].len()).sum()
+}
+
+/// Bakes the layers, compares the clip with them at many times, and returns its number of keys.
+fn check_baked(figure: &Figure, other: &Clip, layers: &[ClipLayer]) -> usize {
+    let source = ClipOverLayers { clip: other, below: &[] };
+    let stack: Vec<_> =
+        layers.iter().map(|layer| StackedLayer { layer, source, included: included(figure, &layer.mask) }).collect();
+    let clip = &figure.asset.clips[0];
+    let baked = bake_stack(&figure.asset.skeleton, clip, &stack);
+    assert_eq!(baked.duration_secs(), clip.duration_secs());
+    // The figure is 1.6 m tall and 1.5 m wide at rest.
+    let (mut turn, mut distance) = (0.0_f64, 0.0_f64);
+    for step in 0..2000 {
+        let time = f64::from(clip.duration_secs()) * (f64::from(step) + 0.37) / 2000.0;
+        let expected = world(figure, &played(figure, other, layers, time));
+        let found = world(figure, &sampled(figure, &baked, time));
+        for (expected, found) in expected.iter().zip(&found) {
+            let between = expected.0.conjugate() * found.0;
+            turn = turn.max(2.0 * between.xyz().length().atan2(between.w.abs()).to_degrees());
+            distance = distance.max(expected.1.distance(found.1));
+        }
+    }
+    assert!(turn <= 0.05, "off by {turn}°");
+    assert!(distance <= 1.6e-4, "off by {distance} m");
+    key_count(&baked)
+}
+
+#[test]
+fn a_baked_stack_is_what_is_played() {
+    for kind in [Interpolation::Linear, Interpolation::CubicSpline, Interpolation::Step] {
+        for armature in [false, true] {
+            let (figure, other) = dancer(kind, armature);
+            let whole = ClipLayer { weight: 0.4, ..ClipLayer::default() };
+            let wave = ClipLayer { mask: arms(), speed: 1.3, start_secs: 0.2, ..ClipLayer::default() };
+            let sum = ClipLayer { mode: LayerMode::Additive, weight: 0.7, start_secs: -0.3, ..ClipLayer::default() };
+            let to_rest = ClipLayer { mode: LayerMode::AdditiveToRest, weight: 0.5, ..ClipLayer::default() };
+            check_baked(&figure, &other, std::slice::from_ref(&whole));
+            check_baked(&figure, &other, std::slice::from_ref(&wave));
+            check_baked(&figure, &other, std::slice::from_ref(&sum));
+            check_baked(&figure, &other, std::slice::from_ref(&to_rest));
+            check_baked(&figure, &other, &[whole, sum, wave]);
+        }
+    }
+}
+
+/// Joints outside all masks keep the file's keys, and a full override needs hardly more keys than its clip has.
+#[test]
+fn baking_adds_few_keys() {
+    let (figure, other) = dancer(Interpolation::Linear, false);
+    let clip = &figure.asset.clips[0];
+    let wave = ClipLayer { mask: arms(), ..ClipLayer::default() };
+    let source = ClipOverLayers { clip: &other, below: &[] };
+    let stack = [StackedLayer { layer: &wave, source, included: included(&figure, &wave.mask) }];
+    let baked = bake_stack(&figure.asset.skeleton, clip, &stack);
+    let of = |clip: &Clip, slot| {
+        let joint = figure.joint(slot);
+        let channels = clip.channels().iter().filter(move |channel| channel.joint == joint);
+        channels
+            .map(|channel| (clip.timelines()[channel.timeline as usize].clone(), channel.keys.clone()))
+            .collect::<Vec<_>>()
+    };
+    for slot in [Slot::Hips, Slot::LeftFoot, Slot::Head] {
+        assert_eq!(of(&baked, slot), of(clip, slot), "{slot:?}");
+    }
+    for slot in [Slot::LeftUpperArm, Slot::RightHand] {
+        assert_eq!(of(&baked, slot)[0].0.len(), of(&other, slot)[0].0.len(), "{slot:?}");
+    }
+    // A layer without effect leaves the clip alone.
+    let none = ClipLayer { weight: 0.0, ..wave.clone() };
+    let stack = [StackedLayer { layer: &none, source, included: included(&figure, &none.mask) }];
+    assert_eq!(key_count(&bake_stack(&figure.asset.skeleton, clip, &stack)), key_count(clip));
+}

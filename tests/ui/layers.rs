@@ -1,0 +1,80 @@
+//! The section of layers, and their tracks under the timeline.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::editor::Export;
+use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
+use gaitway::state::Command;
+use gaitway::ui::{Saved, Tab, UiAction, text};
+
+use crate::bench::{Bench, WIDE, motion_bench, press, sample_bench};
+use crate::header::choose;
+
+fn scrolled_to(harness: &mut Harness<'_, Bench>, label: &str) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run();
+}
+
+fn layers(harness: &Harness<'_, Bench>) -> Vec<ClipLayer> {
+    harness.state().state().edits.layers.clone()
+}
+
+#[test]
+fn a_layer_is_added_masked_raised_and_removed() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    scrolled_to(&mut harness, text::ADD_LAYER);
+    // The first clip plays, so the layer gets the second.
+    let idle = ClipLayer { clip: "Idle".to_owned(), ..ClipLayer::default() };
+    assert_eq!(press(&mut harness, text::ADD_LAYER), [Command::SetLayers(vec![idle.clone()])]);
+    assert!(harness.query_by_label(&text::layer_track("Idle")).is_some());
+    scrolled_to(&mut harness, text::body_part(BodyPart::LeftArm));
+    press(&mut harness, text::body_part(BodyPart::LeftArm));
+    let name = text::labelled(text::LAYER_MODE, text::layer_mode(LayerMode::Additive));
+    press(&mut harness, &name);
+    let arm = LayerMask::of_parts(&[BodyPart::LeftArm]);
+    let edited = ClipLayer { mask: arm, mode: LayerMode::Additive, ..idle.clone() };
+    assert_eq!(layers(&harness), [edited.clone()]);
+    scrolled_to(&mut harness, text::ADD_LAYER);
+    press(&mut harness, text::ADD_LAYER);
+    assert_eq!(layers(&harness), [edited.clone(), idle.clone()]);
+    // The top layer can't be raised any further.
+    let raise: Vec<_> = harness.get_all_by_label(text::RAISE_LAYER).collect();
+    assert!(!raise[0].accesskit_node().is_disabled() && raise[1].accesskit_node().is_disabled());
+    raise[0].scroll_to_me();
+    harness.run();
+    harness.get_all_by_label(text::RAISE_LAYER).next().expect("two").click();
+    harness.run();
+    assert_eq!(layers(&harness), [idle.clone(), edited.clone()]);
+    choose(&mut harness, text::EXPORT, text::SAVE_GLB);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+    harness.get_all_by_label(text::REMOVE_LAYER).next().expect("two").click();
+    harness.run();
+    assert_eq!(layers(&harness), [edited]);
+    for _ in 0..6 {
+        press(&mut harness, text::UNDO_STEP);
+    }
+    assert!(layers(&harness).is_empty());
+    assert!(harness.query_by_label(&text::layer_track("Idle")).is_none());
+}
+
+#[test]
+fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    harness.state_mut().editor.apply(Command::SelectJoint(Some(5)));
+    let wave = ClipLayer { clip: "Wave".to_owned(), weight: 0.25, ..ClipLayer::default() };
+    harness.state_mut().editor.apply(Command::SetLayers(vec![wave.clone()]));
+    harness.run();
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    let model = harness.state().library().active().expect("a model");
+    let skeleton = &model.asset.skeleton;
+    let below = text::below_joint(skeleton.name(skeleton.joint_of_source(5).expect("a joint")));
+    scrolled_to(&mut harness, &below);
+    press(&mut harness, &below);
+    let mut limited = wave.clone();
+    limited.mask.joints.insert(5);
+    assert_eq!(layers(&harness), [limited]);
+    press(&mut harness, &below);
+    assert_eq!(layers(&harness), [wave]);
+}
