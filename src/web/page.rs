@@ -41,7 +41,8 @@ pub fn start() {
     std::panic::set_hook(Box::new(move |info| {
         before(info);
         let message = info.payload_as_str().unwrap_or("unknown error");
-        let place = info.location().map(|place| format!(" ({place})")).unwrap_or_default();
+        // The page is compiled without lines and columns; see `xtask/src/page.rs`.
+        let place = info.location().map(|place| format!(" ({})", place.file())).unwrap_or_default();
         shell::stopped(&format!("An error inside Gaitway: {message}{place}"));
     }));
     set_fatal_hook(shell::stopped);

@@ -391,7 +391,7 @@ fn layers_are_posed_and_written() {
     assert!(run(&retarget).status.success());
     let apart = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let moved: Vec<f64> = names.iter().zip(&places(&plain, "0", "0.25")).map(|(a, b)| apart(a, b)).collect();
-    assert!(moved.iter().any(|&distance| distance > 0.1) && moved.iter().any(|&distance| distance == 0.0), "{moved:?}");
+    assert!(moved.iter().any(|&distance| distance > 0.1) && moved.contains(&0.0), "{moved:?}");
     // A clip of a file over another of the same file.
     let turned = path("turned.glb");
     let convert = ["convert", &motion, "--layer", "walk:additive,start:0.25,weight:0.5", "--out", &turned];

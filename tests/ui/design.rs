@@ -105,6 +105,9 @@ fn all_texts_have_one_of_three_sizes() {
             check_sizes(&harness, tab.label());
         }
         for part in [text::OPTIONS, text::FIT, text::FILES] {
+            // The table has scrolled to the selected joint.
+            harness.get_by_label(part).scroll_to_me();
+            harness.run();
             press(&mut harness, part);
             check_sizes(&harness, part);
         }

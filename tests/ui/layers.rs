@@ -31,10 +31,11 @@ fn a_layer_is_added_masked_raised_and_removed() {
     scrolled_to(&mut harness, text::body_part(BodyPart::LeftArm));
     press(&mut harness, text::body_part(BodyPart::LeftArm));
     let name = text::labelled(text::LAYER_MODE, text::layer_mode(LayerMode::Additive));
+    scrolled_to(&mut harness, &name);
     press(&mut harness, &name);
     let arm = LayerMask::of_parts(&[BodyPart::LeftArm]);
     let edited = ClipLayer { mask: arm, mode: LayerMode::Additive, ..idle.clone() };
-    assert_eq!(layers(&harness), [edited.clone()]);
+    assert_eq!(layers(&harness), std::slice::from_ref(&edited));
     scrolled_to(&mut harness, text::ADD_LAYER);
     press(&mut harness, text::ADD_LAYER);
     assert_eq!(layers(&harness), [edited.clone(), idle.clone()]);

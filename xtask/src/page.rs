@@ -18,8 +18,9 @@ const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-/// Compiles the standard library with the program, for minimum size; ARCHITECTURE.md says what that saves.
-const FOR_THE_PAGE: [&str; 7] = [
+/// Compiles the standard library with the program, for minimum size, and keeps only the file of each place that can panic:
+/// there are thousands. ARCHITECTURE.md says what that saves.
+const FOR_THE_PAGE: [&str; 9] = [
     "--locked",
     "--target",
     "wasm32-unknown-unknown",
@@ -27,6 +28,8 @@ const FOR_THE_PAGE: [&str; 7] = [
     "web",
     "-Zbuild-std=std,panic_abort",
     "-Zbuild-std-features=optimize_for_size",
+    "--config",
+    "target.wasm32-unknown-unknown.rustflags=['-Zlocation-detail=file']",
 ];
 
 /// Makes a released Rust accept unstable options. They can change with every version; `rust-toolchain.toml` pins ours.

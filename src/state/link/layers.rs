@@ -3,7 +3,7 @@
 
 use super::changes::clip_name;
 use super::values::{escaped_name, finite};
-use crate::retarget::{BodyPart, ClipLayer, LayerMode};
+use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
 
 pub(super) const EXPECTED: &str = "a clip and its settings: Wave:weight:0.5,speed:2,start:0.3,additive,mask:left-arm:12; \
                                    parts are hips, torso, head, left-arm, right-arm, left-leg and right-leg";
@@ -47,19 +47,21 @@ pub(super) fn read(text: &str) -> Option<ClipLayer> {
             ("start", number) => layer.start_secs = finite(number)?,
             ("additive", "") => layer.mode = LayerMode::Additive,
             ("additive", "rest") => layer.mode = LayerMode::AdditiveToRest,
-            ("mask", items) => {
-                for item in items.split(':') {
-                    match BodyPart::ALL.into_iter().find(|(_, name)| *name == item) {
-                        Some((part, _)) if layer.mask.has(part) => {}
-                        Some((part, _)) => layer.mask.toggle(part),
-                        None => {
-                            layer.mask.joints.insert(item.parse().ok()?);
-                        }
-                    }
-                }
-            }
+            ("mask", items) => items.split(':').try_for_each(|item| limit(&mut layer.mask, item))?,
             _ => return None,
         }
     }
     Some(layer)
+}
+
+/// Adds a part of the body or a joint.
+fn limit(mask: &mut LayerMask, item: &str) -> Option<()> {
+    match BodyPart::ALL.into_iter().find(|(_, name)| *name == item) {
+        Some((part, _)) if mask.has(part) => {}
+        Some((part, _)) => mask.toggle(part),
+        None => {
+            mask.joints.insert(item.parse().ok()?);
+        }
+    }
+    Some(())
 }

@@ -71,7 +71,8 @@ impl Verdicts {
     /// Judges the figures of a model whose largest dimension is this.
     pub fn new(figures: &Figures, size_metres: f64) -> Self {
         let judged = |value: Option<f64>, limits: Limits| value.map(|value| limits.verdict(value));
-        let sizes = |value: Option<f64>| value.map(|metres| metres.abs() / size_metres.max(f64::MIN_POSITIVE));
+        let size_metres = size_metres.max(f64::MIN_POSITIVE);
+        let sizes = |value: Option<f64>| value.map(|metres| metres.abs() / size_metres);
         let slide = figures.foot_slide_metres_per_sec;
         let source_slide = figures.foot_slide_source_metres_per_sec.unwrap_or_default();
         Self {
@@ -81,7 +82,7 @@ impl Verdicts {
             facing_error_max: judged(figures.facing_error_degrees_max, FACING_MAX),
             orientation_error_mean: judged(figures.orientation_error_degrees_mean, ORIENTATION_MEAN),
             orientation_error_max: judged(figures.orientation_error_degrees_max, ORIENTATION_MAX),
-            foot_slide: judged(sizes(slide.map(|slide| (slide - source_slide).max(0.0))), FOOT_SLIDE),
+            foot_slide: judged(slide.map(|slide| (slide - source_slide) / size_metres), FOOT_SLIDE),
             ground_penetration: judged(sizes(figures.ground_penetration_metres_max), GROUND_PENETRATION),
             foot_hover: judged(sizes(figures.foot_hover_metres_mean), FOOT_HOVER),
             sole_penetration: judged(sizes(figures.sole_penetration_metres_max), SOLE_PENETRATION),

@@ -87,12 +87,11 @@ impl Times {
                 self.jump(at(0.0), rounding);
             }
             for (times, is_step) in clip.timelines().iter().zip(&steps) {
-                for &time in times {
-                    if *is_step {
-                        self.jump(at(time.into()), rounding);
-                    } else {
-                        self.push(at(time.into()));
-                    }
+                let secs = times.iter().map(|&time| at(time.into()));
+                if *is_step {
+                    secs.for_each(|secs| self.jump(secs, rounding));
+                } else {
+                    secs.for_each(|secs| self.push(secs));
                 }
             }
         }
