@@ -65,16 +65,21 @@ fn main() -> std::io::Result<()> {
 fn run(model: &Path, clips: &Path, out: &Path) -> std::io::Result<(f64, String)> {
     let start = Instant::now();
     let mut program = Command::new(env!("CARGO_BIN_EXE_gaitway"))
-        .args(["retarget", "--clip-only", "--model".as_ref(), model.as_os_str()])
-        .args(["--motion".as_ref(), clips.as_os_str(), "--out-dir".as_ref(), out.as_os_str()])
+        .args(["retarget", "--clip-only", "--model"])
+        .arg(model)
+        .arg("--motion")
+        .arg(clips)
+        .arg("--out-dir")
+        .arg(out)
         .stdout(Stdio::null())
         .spawn()?;
     let mut memory = String::new();
     while program.try_wait()?.is_none() {
         // The peak so far.
         let status = fs::read_to_string(format!("/proc/{}/status", program.id())).unwrap_or_default();
-        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).map(str::trim);
-        peak.unwrap_or_default().clone_into(&mut memory);
+        if let Some(peak) = status.lines().find_map(|line| line.strip_prefix("VmHWM:")) {
+            peak.trim().clone_into(&mut memory);
+        }
         std::thread::sleep(Duration::from_millis(5));
     }
     Ok((start.elapsed().as_secs_f64(), memory))
@@ -104,7 +109,7 @@ fn bvh(number: usize, frames_per_sec: usize) -> String {
         let phase = TAU * (frame as f64 / frames_per_sec as f64 * (0.8 + 0.0005 * number as f64));
         let _ = write!(text, "{:.4} {:.4} {:.4}", 2.0 * phase.sin(), 95.0 + 2.0 * (2.0 * phase).cos(), phase.cos());
         for (joint, (_, _, _, swing)) in JOINTS.iter().enumerate() {
-            let [z, x, y] = [0.2, 1.0, 0.1].map(|part| part * swing * (phase + 0.3 * joint as f64 + part).sin());
+            let [z, x, y] = [0.2, 1.0, 0.1].map(|part: f64| part * swing * (phase + 0.3 * joint as f64 + part).sin());
             let _ = write!(text, " {z:.4} {x:.4} {y:.4}");
         }
         text.push('\n');

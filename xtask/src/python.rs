@@ -45,7 +45,7 @@ pub fn check() -> anyhow::Result<()> {
 pub fn test(cli: &str) -> anyhow::Result<()> {
     let environment = path(&environment())?;
     let build = ["develop", "--locked", "--quiet", "--manifest-path", "python/Cargo.toml"];
-    run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", &environment)])?;
+    run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", environment.as_str())])?;
     run_with(&program("python")?, &["-m", "pytest", "--quiet", "python"], &[("GAITWAY_CLI", cli)])
 }
 
@@ -70,9 +70,10 @@ fn is_installed(requirements: &str) -> bool {
 
 fn install(requirements: &str) -> anyhow::Result<()> {
     let wanted = repository().join("python").join(requirements);
+    let wanted = path(&wanted)?;
     let pip =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:", "--requirement"];
-    run(&program("python")?, &[&pip[..], &[&path(&wanted)?]].concat())?;
+    run(&program("python")?, &[&pip[..], &[wanted.as_str()]].concat())?;
     fs::copy(&wanted, environment().join(requirements)).with_context(|| requirements.to_owned())?;
     Ok(())
 }

@@ -36,7 +36,7 @@ fn cargo_checks() -> anyhow::Result<()> {
         process::run("cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())?;
     }
     let packages = ["--package", "gaitway", "--package", "gaitway-core", "--package", "gaitway-python"];
-    let doc = [&["doc", "--no-deps"], &packages[..]].concat();
+    let doc = [&["doc", "--no-deps"][..], &packages].concat();
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
