@@ -166,6 +166,7 @@ export interface State {
   show: string;
   channel: string;
   hidden: string;
+  layers: string[];
   camera: string;
   pose: string;
   names: string;
