@@ -1,5 +1,5 @@
-//! Recording one loop of the clip as a video or as images. The host asks for one frame after the other and encodes it, so the video is the
-//! same however long a frame takes. What is on screen stays as it is.
+//! Recording one loop of the clip as a video or as images. The host asks for one frame after the other and encodes it, so the
+//! result is the same however long a frame takes. What is on screen stays as it is.
 
 use super::save::saved;
 use super::{App, Video};
@@ -72,5 +72,7 @@ impl App {
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
             Err(error) => self.add_error(&format!("Couldn't record the video: {error}")),
         }
+        // The page announces it to screen readers.
+        self.has_new_notice = true;
     }
 }
