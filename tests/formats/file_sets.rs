@@ -167,11 +167,35 @@ fn broken_archives_report_the_problem() {
     assert!(empty.contains("expected a model") && empty.contains("readme.txt"), "{empty}");
 }
 
+/// Returns where the directory of an archive of one file begins.
+fn directory(archive: &[u8]) -> usize {
+    archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory")
+}
+
+#[test]
+fn what_cannot_be_unpacked_names_the_file_and_what_was_found() {
+    let whole = zipped(&[("m.glb", Build::triangle().glb())]);
+    let check = |change: &dyn Fn(&mut [u8], usize), expected: &str| {
+        let (mut archive, at) = (whole.clone(), directory(&whole));
+        change(&mut archive, at);
+        let problem = unpacked("a.zip", archive).unwrap_err().to_string();
+        assert!(problem.contains("“m.glb” cannot be unpacked") && problem.contains(expected), "{expected}: {problem}");
+    };
+    check(&|archive, at| archive[at + 8] |= 1, "found encrypted data");
+    check(&|archive, at| archive[at + 10] = 14, "found method 14");
+    check(&|archive, at| archive[at + 16] ^= 1, "with checksum");
+    // Another size in the directory, and a place that has nothing.
+    check(&|archive, at| archive[at + 24] ^= 1, "found others");
+    check(&|archive, at| archive[at + 42] = 1, "its data is missing");
+    // A block of the type that Deflate doesn't have.
+    check(&|archive, _| archive[30 + "m.glb".len()] |= 0b110, "its data is damaged");
+}
+
 /// The header claims a huge file, so it is refused before anything is unpacked.
 #[test]
 fn an_archive_that_is_too_large_is_rejected() {
     let mut archive = zipped(&[("m.glb", Build::triangle().glb())]);
-    let central = archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory");
+    let central = directory(&archive);
     archive[central + 24..central + 28].copy_from_slice(&0xF000_0000_u32.to_le_bytes());
     let problem = unpacked("bomb.zip", archive).unwrap_err().to_string();
     assert!(problem.contains("bomb.zip") && problem.contains("expected at most 2048 MiB in all"), "{problem}");

@@ -1,6 +1,10 @@
 //! A set of named files in memory: dropped, picked, unpacked from an archive, read from disk or fetched.
 
-use std::io::{Cursor, Read};
+use std::io::Read;
+
+use flate2::Crc;
+use flate2::bufread::DeflateDecoder;
+use gaitway_unzip::{Member, Method, members};
 
 use super::LoadError;
 use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
@@ -135,45 +139,59 @@ impl FileSet {
 
     fn unpack(&mut self, archive_name: &str, bytes: &[u8]) -> Result<(), LoadError> {
         let error = |problem: String| LoadError::Archive { file: archive_name.to_owned(), problem };
-        let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
+        let members = members(bytes, MAX_ARCHIVE_FILES).ok_or_else(|| {
             error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
         })?;
-        let entries = archive.len();
         let too_large = |expected: String, found: String| {
             let file = archive_name.to_owned();
             LoadError::TooLarge { file, place: String::new(), expected, found }
         };
-        if entries > MAX_ARCHIVE_FILES {
+        if members.len() > MAX_ARCHIVE_FILES {
             let expected = format!("at most {MAX_ARCHIVE_FILES} files in an archive");
-            return Err(too_large(expected, entries.to_string()));
+            return Err(too_large(expected, "more".to_owned()));
         }
         // The archive is in memory together with what is unpacked from it.
         let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
-        for index in 0..entries {
-            let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
-            let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
-            if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
+        for member in members {
+            let name = &*member.name;
+            if name.ends_with('/') || name.starts_with("__MACOSX/") || bare_name(name).starts_with("._") {
                 continue;
             }
             let too_many_bytes = || {
                 let max = MAX_READ_BYTES >> 20;
                 too_large(format!("at most {max} MiB in all, packed and unpacked"), "more".to_owned())
             };
-            // An oversized header is trusted to save work; one that understates the size is caught while unpacking.
-            if entry.size() > bytes_left {
-                return Err(too_many_bytes());
-            }
-            let likely = entry.size().min(entry.compressed_size().saturating_mul(MAX_COMPRESSION));
-            let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
-            entry
-                .take(bytes_left + 1)
-                .read_to_end(&mut content)
-                .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_many_bytes)?;
+            bytes_left = bytes_left.checked_sub(member.bytes).ok_or_else(too_many_bytes)?;
+            let content =
+                unpacked(bytes, &member).map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
             self.insert(name, content);
         }
         Ok(())
     }
+}
+
+fn unpacked(archive: &[u8], member: &Member) -> Result<Vec<u8>, String> {
+    let packed = member.packed(archive).ok_or("its data is missing")?;
+    let unreadable = |found: &str| Err(format!("expected stored or deflated data, found {found}"));
+    let content = match member.method {
+        Method::Stored => packed.to_vec(),
+        Method::Deflated => {
+            let likely = member.bytes.min((packed.len() as u64).saturating_mul(MAX_COMPRESSION));
+            let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
+            // Enough to notice a size that is understated.
+            let read = DeflateDecoder::new(packed).take(member.bytes + 1).read_to_end(&mut content);
+            read.map_err(|_| "its data is damaged")?;
+            content
+        }
+        Method::Encrypted => return unreadable("encrypted data"),
+        Method::Other(method) => return unreadable(&format!("method {method}")),
+    };
+    let mut crc = Crc::new();
+    crc.update(&content);
+    if !member.is_sound(content.len(), crc.sum()) {
+        return Err(format!("expected {} bytes with checksum {:08x}, found others", member.bytes, member.crc));
+    }
+    Ok(content)
 }
 
 /// Returns whether a zip archive holds NumPy arrays, so that it stays one file. Its first member's name decides.
