@@ -104,7 +104,8 @@ pub trait Host {
     /// Returns the full link to share, given the part after `#`.
     fn link(&self, fragment: &str) -> String;
 
-    /// Called when the state has changed other than by time passing, with [`Editor::shared_state`](crate::editor::Editor).
+    /// Called when the state has changed other than by time passing, or when there is a new message for the user, with
+    /// [`Editor::shared_state`](crate::editor::Editor).
     fn state_changed(&self, state: &ViewerState);
 
     /// Whether the user prefers reduced motion: views start paused and don't turn.

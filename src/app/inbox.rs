@@ -37,7 +37,7 @@ pub enum Message {
     Save(ExportedFile),
     /// A file was saved under this name, with a remark for the user, or couldn't be.
     Saved(Result<(String, Option<String>), String>),
-    /// The recording has ended: the name of the saved video, `None` if it was cancelled, or why there is none.
+    /// The recording has ended: the name of the saved file, `None` if it was cancelled, or why there is none.
     Recorded(Result<Option<String>, String>),
     /// The Khronos validator's report on a model as JSON, or why there is none.
     Validated(ModelId, Result<String, String>),

@@ -5,7 +5,7 @@ use crate::editor::Event;
 use crate::ui::Toast;
 
 impl App {
-    /// Shows an error, replacing earlier ones.
+    /// Shows an error, replacing earlier ones. The page's shell knows of it and announces it itself.
     pub(super) fn replace_error(&mut self, error: String) {
         self.panels.messages.clear_error();
         self.panels.messages.error = Some(error);
@@ -18,6 +18,7 @@ impl App {
             error.push('\n');
         }
         error.push_str(problem);
+        self.has_new_message = true;
     }
 
     pub(super) fn toast(&mut self, text: String) {
@@ -31,7 +32,7 @@ impl App {
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
         self.toast_steps = self.editor.undo_steps();
-        self.has_new_notice = true;
+        self.has_new_message = true;
     }
 
     /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes.

@@ -72,7 +72,5 @@ impl App {
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
             Err(error) => self.add_error(&format!("Couldn't record the video: {error}")),
         }
-        // The page announces it to screen readers.
-        self.has_new_notice = true;
     }
 }

@@ -35,8 +35,8 @@ pub struct App {
     pub(super) recording: Option<Recording>,
     /// Undo steps when the toast appeared.
     pub(super) toast_steps: usize,
-    /// A notice was shown since the host last heard of a change.
-    pub(super) has_new_notice: bool,
+    /// A notice or an error was added since the host last heard of a change.
+    pub(super) has_new_message: bool,
     /// Motions loaded in the last frame.
     last_motions: Vec<ModelId>,
     timing: Timing,
@@ -81,7 +81,7 @@ impl App {
             screenshots: Vec::new(),
             recording: None,
             toast_steps: 0,
-            has_new_notice: false,
+            has_new_message: false,
             last_motions: Vec::new(),
             timing: Timing::default(),
             backend: device::backend_name(&info),
@@ -434,8 +434,8 @@ impl eframe::App for App {
             // The panels were laid out before the commands were applied.
             context.request_repaint();
         }
-        // The page announces new notices to screen readers.
-        if self.editor.take_changed() | std::mem::take(&mut self.has_new_notice) {
+        // The page announces new messages to screen readers.
+        if self.editor.take_changed() | std::mem::take(&mut self.has_new_message) {
             self.host.state_changed(&self.editor.shared_state());
         }
     }

@@ -18,7 +18,7 @@ impl App {
             wasm_bindgen_futures::spawn_local(async move {
                 inbox.send(match image.await {
                     Ok(file) => Message::Save(file),
-                    Err(error) => Message::Failed(error),
+                    Err(error) => Message::Saved(Err(error)),
                 });
             });
             return;

@@ -49,6 +49,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
             let failure = Failure::expected("a .bvh or .vrma to change a clip of a .bvh with a unit", "a .glb");
             return Err(failure.at("--unit"));
         }
+        print_warnings(&name, &asset.warnings);
         let clip = changed_clip(&name, &asset, arguments)?.renamed();
         let bytes = write_model(&set, &name, &asset.skeleton, &[&clip])?;
         return Ok((bytes, model_extensions(&asset)));
@@ -57,15 +58,13 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         let failure = Failure::expected("a .bvh or .vrma for one clip", format!("clip {clip} of a .glb"));
         return Err(failure.with_hint("a .glb has all clips").at("--clip"));
     }
-    let (name, asset) = (&name, &asset);
-    let bytes = match arguments.unit {
-        Some(_) => convert_named(&set, name, &options)?,
-        None => {
-            print_warnings(name, &asset.warnings);
-            write_model(&set, name, &asset.skeleton, &[])?
-        }
+    let bytes = if arguments.unit.is_some() {
+        convert_named(&set, &name, &options)?
+    } else {
+        print_warnings(&name, &asset.warnings);
+        write_model(&set, &name, &asset.skeleton, &[])?
     };
-    Ok((bytes, model_extensions(asset)))
+    Ok((bytes, model_extensions(&asset)))
 }
 
 /// Whether the arguments ask for another clip than the file's.

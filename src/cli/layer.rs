@@ -3,13 +3,14 @@
 use clap::Args;
 
 use super::failure::{Failure, Outcome};
-use crate::anim::{Clip, ClipQuery, find_clip};
+use super::retarget::clip_named;
+use crate::anim::Clip;
 use crate::asset::Asset;
 use crate::library::Model;
 use crate::retarget::{
     Baking, Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking,
 };
-use crate::state::{NameKind, UnknownName, read_layer, unknown_layer};
+use crate::state::{read_layer, unknown_layer};
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]
@@ -67,11 +68,7 @@ impl LayerOptions {
         let slots = recognized().humanoid();
         let mut stack = Vec::new();
         for layer in &self.layers {
-            let Some(index) = find_clip(asset.clips.iter(), ClipQuery::NameOrIndex(&layer.clip)) else {
-                let names = asset.clips.iter().map(|clip| clip.name().to_owned()).collect();
-                let unknown = UnknownName { kind: NameKind::Clip, name: layer.clip.clone(), names };
-                return Err(Failure::from(unknown).at("--layer"));
-            };
+            let index = clip_named(asset, &layer.clip).map_err(|unknown| Failure::from(unknown).at("--layer"))?;
             let included = layer.mask.included(&Body { asset, slots: &slots });
             if !included.contains(&true) {
                 let message =

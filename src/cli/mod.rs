@@ -39,7 +39,7 @@ use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use change::ChangeOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;
-use motion::MotionArguments;
+use motion::{MotionArguments, Overrides};
 use output::{is_standard_output, print_error, print_json, warn};
 
 /// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
@@ -102,6 +102,13 @@ struct Moment {
     /// The skinning method.
     #[arg(long, value_enum)]
     skinning: Option<Skinning>,
+}
+
+impl Moment {
+    /// Returns what these options override in a link.
+    fn overrides(&self) -> Overrides {
+        Overrides { clip: self.clip.is_some(), layers: !self.layers.layers.is_empty(), variant: false }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

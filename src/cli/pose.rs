@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::failure::Outcome;
-use super::motion::{Overrides, apply_link, open_editor};
+use super::motion::{apply_link, open_editor};
 use super::output::print_bytes;
 use super::{PoseArguments, apply_moment, open};
 use crate::files::Disk;
@@ -12,10 +12,7 @@ use crate::frame::{NodePose, PoseDocument};
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     if let Some(link) = &arguments.view {
-        let moment = &arguments.moment;
-        let layers = !moment.layers.layers.is_empty();
-        let overrides = Overrides { clip: moment.clip.is_some(), layers, ..Overrides::default() };
-        apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
+        apply_link(&mut editor, link, &arguments.motion, arguments.moment.overrides(), disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     let document = PoseDocument::new(editor.library(), editor.state());

@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
 fn render_picture(arguments: &RenderArguments, editor: &Editor, disk: &Disk) -> Outcome {
     check_output(&arguments.out, EXTENSIONS, disk)?;
     let [width, height] = arguments.size;
-    let pixels = Studio::new(editor, arguments.size)?.draw(editor.library(), editor.state());
+    let pixels = Studio::new(editor, arguments.size)?.draw(editor.library(), editor.state())?;
     let png = encode_png(width, height, &pixels).ok_or_else(|| Failure::new(NOT_READ))?;
     write_output(&arguments.out, &png, EXTENSIONS, disk)
 }
@@ -53,7 +53,7 @@ fn render_frames(arguments: &RenderArguments, frames_per_sec: u32, editor: &Edit
     let mut sequence = Sequence::create(&arguments.out, format, disk)?;
     let mut studio = Studio::new(editor, size)?;
     for index in 0..frames.count() {
-        sequence.add(&studio.draw(library, &frames.state(library, index)), disk)?;
+        sequence.add(&studio.draw(library, &frames.state(library, index))?, disk)?;
     }
     sequence.finish(disk)?;
     print_error(&format!("{} frames written", frames.count()));
@@ -91,11 +91,12 @@ impl Studio {
         Ok(Self { device, queue, renderer, frame: Frame::default(), size })
     }
 
-    /// Returns RGBA rows from the top, with straight alpha; none if the device was lost.
-    fn draw(&mut self, library: &Library, state: &ViewerState) -> Vec<u8> {
+    /// Returns RGBA rows from the top, with straight alpha. Fails if the device was lost.
+    fn draw(&mut self, library: &Library, state: &ViewerState) -> Outcome<Vec<u8>> {
         evaluate(library, state, aspect(self.size), &mut self.frame);
         self.renderer.draw(&self.device, &self.queue, &self.frame, self.size);
-        pollster::block_on(read_pixels(&self.device, &self.queue, self.renderer.output()))
+        let pixels = pollster::block_on(read_pixels(&self.device, &self.queue, self.renderer.output()));
+        if pixels.is_empty() { Err(Failure::new(NOT_READ)) } else { Ok(pixels) }
     }
 }
 
@@ -134,9 +135,7 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
     let aspect = aspect(arguments.size);
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        let moment = &arguments.moment;
-        let layers = !moment.layers.layers.is_empty();
-        let overrides = Overrides { clip: moment.clip.is_some(), layers, variant: arguments.variant.is_some() };
+        let overrides = Overrides { variant: arguments.variant.is_some(), ..arguments.moment.overrides() };
         apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     if let Some(name) = &arguments.variant {

@@ -100,7 +100,7 @@ fn resolve_map(
     motion: &Motion,
     given: Option<&OpenedMap>,
 ) -> Outcome<ResolvedMap> {
-    let in_map = |problem: MapError| match &given {
+    let in_map = |problem: MapError| match given {
         Some(opened) => Failure::from(problem).in_file(&opened.name),
         None => problem.into(),
     };
@@ -188,15 +188,18 @@ fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
 
 /// Finds a clip by name or index; the first if none was requested.
 pub(super) fn choose_clip(source: &str, asset: &Asset, requested: Option<&str>) -> Outcome<usize> {
-    let clips = &asset.clips;
-    if clips.is_empty() {
+    if asset.clips.is_empty() {
         return Err(Failure::expected("a clip", "none").in_file(source));
     }
     let Some(requested) = requested else { return Ok(0) };
-    find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
-        let names = clips.iter().map(|clip| clip.name().to_owned()).collect();
-        let unknown = UnknownName { kind: NameKind::Clip, name: requested.to_owned(), names };
-        Failure::from(unknown).in_file(source)
+    clip_named(asset, requested).map_err(|unknown| Failure::from(unknown).in_file(source))
+}
+
+/// Finds a clip by name or index.
+pub(super) fn clip_named(asset: &Asset, requested: &str) -> Result<usize, UnknownName> {
+    find_clip(asset.clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
+        let names = asset.clips.iter().map(|clip| clip.name().to_owned()).collect();
+        UnknownName { kind: NameKind::Clip, name: requested.to_owned(), names }
     })
 }
 

@@ -9,7 +9,7 @@ use std::thread::{self, JoinHandle};
 
 use super::failure::{Failure, Outcome};
 use super::output::{check_output, write_output};
-use crate::files::{Disk, describe, encode_png};
+use crate::files::{Disk, create_temporary, describe, encode_png};
 
 /// File extensions for a video.
 const VIDEO_EXTENSIONS: &[&str] = &["mp4", "webm"];
@@ -177,9 +177,9 @@ struct TemporaryFile {
 
 impl TemporaryFile {
     fn new(name: &str) -> Outcome<Self> {
-        let folder = std::env::temp_dir().join(format!("gaitway-{}", std::process::id()));
-        // Fails if something is there already.
-        fs::create_dir(&folder).map_err(|problem| Failure::new(describe(&problem)).in_file(folder.display()))?;
+        let parent = std::env::temp_dir();
+        let created = create_temporary(|name| parent.join(name), |folder| fs::DirBuilder::new().create(folder));
+        let (folder, ()) = created.map_err(|problem| Failure::new(describe(&problem)).in_file(parent.display()))?;
         let path = folder.join(name);
         Ok(Self { folder, path })
     }

@@ -29,15 +29,14 @@ impl Editor {
         }
     }
 
-    /// Holds the feet on the ground if a borrowed clip slides or hovers more than is acceptable and no map says what feet do. Returns whether it
-    /// did, which is a step of its own.
+    /// Holds the feet on the ground if a borrowed clip slides or hovers more than is acceptable and no map says what feet do.
+    /// Returns whether it did, which is a step of its own.
     pub(super) fn suit_feet(&mut self, clip: usize) -> bool {
         let Some(model) = self.library.active() else { return false };
-        let size_metres = model.size_metres();
         let Some(figures) = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none()) else {
             return false;
         };
-        let verdicts = Verdicts::new(figures, size_metres);
+        let verdicts = Verdicts::new(figures, model.size_metres());
         let is_visible = [verdicts.foot_slide, verdicts.foot_hover].contains(&Some(Verdict::NeedsReview));
         if is_visible {
             self.end_gesture();

@@ -131,7 +131,7 @@ pub enum ErrorCode {
     Malformed,
     /// A limit on what is read is exceeded.
     TooLarge,
-    /// Something else took the place of what was asked for.
+    /// The user cancelled it, or something else was opened in the meantime.
     Cancelled,
     /// The program or its graphics device has stopped.
     LostDevice,

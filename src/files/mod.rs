@@ -32,7 +32,7 @@ pub use images::{set_largest_image, set_texture_formats};
 pub use png::encode_png;
 pub use read::Item;
 #[cfg(not(target_arch = "wasm32"))]
-pub use save::{SaveError, is_stream, refuse_input, save_file};
+pub use save::{SaveError, create_temporary, is_stream, refuse_input, save_file};
 pub use sort::{Role, SortError, Sorted, read_map, sort};
 pub use source::Progress;
 pub use view::Held;

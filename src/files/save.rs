@@ -35,7 +35,7 @@ pub enum SaveError {
 
 /// Maximum length of a chain of symbolic links, as on Linux.
 const MAX_LINKS: usize = 40;
-/// Maximum number of temporary files that earlier runs may have left in a folder.
+/// Maximum number of temporary files that interrupted runs may have left in a folder.
 const MAX_LEFTOVERS: usize = 100;
 
 /// Creates or replaces a file. A symbolic link stays, and the file it leads to is replaced. Devices, pipes and open descriptors
@@ -100,7 +100,10 @@ fn followed(path: &Path) -> PathBuf {
 }
 
 fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
-    let (temporary, file) = create_beside(path)?;
+    let (temporary, file) = create_temporary(
+        |name| path.with_file_name(format!(".{name}.tmp")),
+        |temporary| OpenOptions::new().write(true).create_new(true).open(temporary),
+    )?;
     let replaced = fill(file, bytes, permissions).and_then(|()| rename(&temporary, path));
     if replaced.is_err() {
         // The error that matters is the first one.
@@ -109,12 +112,20 @@ fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::R
     replaced
 }
 
-fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+/// Creates a temporary file or folder. `place` returns where one with this name goes, and `create` must fail if something is there:
+/// an interrupted run may have left it behind.
+///
+/// # Errors
+/// If `create` fails for another reason, or for every name.
+pub fn create_temporary<T>(
+    place: impl Fn(&str) -> PathBuf,
+    create: impl Fn(&Path) -> io::Result<T>,
+) -> io::Result<(PathBuf, T)> {
     let mut attempt = 0;
     loop {
-        let temporary = path.with_file_name(format!(".gaitway-{}-{attempt}.tmp", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
-            Ok(file) => return Ok((temporary, file)),
+        let temporary = place(&format!("gaitway-{}-{attempt}", std::process::id()));
+        match create(&temporary) {
+            Ok(created) => return Ok((temporary, created)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < MAX_LEFTOVERS => attempt += 1,
             Err(error) => return Err(error),
         }

@@ -65,8 +65,8 @@ const MAPS: [&str; TextureSlot::ALL.len()] = [
 ];
 
 /// A permutation of the mesh shader: a bit for each map, in the order of [`TextureSlot`], then one for each lobe, MToon
-/// and channels. Everything else is cut from the shader's text, since WebGL2 has few texture units and most materials have no
-/// lobes.
+/// and channels. Everything else is cut from the shader's text, since WebGL2 has few texture units and most materials
+/// have no lobes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SurfacePermutation(pub u64);
 

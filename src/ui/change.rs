@@ -42,15 +42,15 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             controls::hint(ui, text::seam(seam));
         }
     }
-    let slide = |ui: &mut Ui, label: &str, value: &mut f64, settings| {
-        if let Some(new) = controls::slider(ui, label, *value, settings) {
-            *value = new;
-        }
-    };
-    slide(ui, text::BAKED_SPEED, &mut changes.speed, SPEED);
-    slide(ui, text::TURN_PATH, &mut changes.turn_degrees, TURN);
-    slide(ui, text::MOVE_X, &mut changes.offset[0], OFFSET);
-    slide(ui, text::MOVE_Z, &mut changes.offset[1], OFFSET);
+    let [x, z] = &mut changes.offset;
+    for (label, value, settings) in [
+        (text::BAKED_SPEED, &mut changes.speed, SPEED),
+        (text::TURN_PATH, &mut changes.turn_degrees, TURN),
+        (text::MOVE_X, x, OFFSET),
+        (text::MOVE_Z, z, OFFSET),
+    ] {
+        *value = controls::slider(ui, label, *value, settings).unwrap_or(*value);
+    }
     if !changes.is_none() && ui.button(text::RESET_CHANGES).clicked() {
         changes = ClipChanges::default();
     }

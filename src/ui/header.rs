@@ -148,8 +148,8 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     ];
     let files = model_with_clip.into_iter().chain(clips).chain(others.into_iter().flatten());
     let files = files.map(|(label, file)| (label, UiAction::Save(Saved::File(file))));
-    let recordings = [(text::RECORD, false), (text::RECORD_IMAGES, true)].into_iter().filter(|_| shown.is_animated());
-    let recordings = recordings.map(|(label, as_images)| (label, UiAction::Record(pictures.recording(as_images))));
+    let recordings = pictures.recordings().into_iter().filter(|_| shown.is_animated());
+    let recordings = recordings.map(|(label, _, action)| (label, action));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
     for (label, action) in [image].into_iter().chain(recordings).chain(files) {
         if ui.button(label).clicked() {

@@ -22,34 +22,34 @@ const BUTTON_SIZE: f32 = 28.0;
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active().filter(|model| model.clip_count() > 0) else { return };
     let before = &shown.state.edits.layers;
+    let mut layers = before.clone();
+    let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
-    // Copied only once something changes: an open tab allocates nothing.
-    let mut changed = None;
-    for (index, layer) in before.iter().enumerate() {
-        let mut edited = layer.clone();
+    for (index, layer) in layers.iter_mut().enumerate() {
         let done = ui.push_id(("layer", index), |ui| {
-            controls::card(ui, |ui| card(ui, shown, model, &mut edited, index + 1 < before.len()))
+            controls::card(ui, |ui| card(ui, shown, model, layer, index + 1 < before.len()))
         });
         ui.add_space(4.0);
-        match done.inner {
-            Some(Moved::Removed) => drop(changed.get_or_insert_with(|| before.clone()).remove(index)),
-            Some(Moved::Raised) => changed.get_or_insert_with(|| before.clone()).swap(index, index + 1),
-            None if edited != *layer => changed.get_or_insert_with(|| before.clone())[index] = edited,
-            None => {}
-        }
+        moved = done.inner.map(|how| (index, how)).or(moved);
+    }
+    match moved {
+        Some((index, Moved::Raised)) => layers.swap(index, index + 1),
+        Some((index, Moved::Removed)) => drop(layers.remove(index)),
+        None => {}
     }
     if ui.button(text::ADD_LAYER).clicked() {
         // Another clip than the one that plays, if there is one.
         let playing = shown.clip_index();
         let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
-        let layer = ClipLayer { clip: name_of(model, clip), ..ClipLayer::default() };
-        changed.get_or_insert_with(|| before.clone()).push(layer);
+        layers.push(ClipLayer { clip: name_of(model, clip), ..ClipLayer::default() });
     }
     controls::hint(ui, text::ABOUT_LAYERS);
-    out.commands.extend(changed.map(Command::SetLayers));
+    if layers != *before {
+        out.commands.push(Command::SetLayers(layers));
+    }
 }
 
-/// What became of a layer's place in the stack.
+/// How the user moves a layer in the stack.
 enum Moved {
     Raised,
     Removed,

@@ -345,7 +345,7 @@ fn promise<T: 'static>(into: impl FnOnce(T) -> JsValue + 'static) -> (Promise, R
 }
 
 async fn settled(promise: Promise) -> Result<JsValue, String> {
-    let settled = wasm_bindgen_futures::JsFuture::from(promise).await;
+    let settled = JsFuture::from(promise).await;
     settled.map_err(|message| message.as_string().unwrap_or_default())
 }
 

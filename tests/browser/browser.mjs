@@ -114,6 +114,19 @@ async function openPage(browser, address, { renderer, link = "model=sample:walke
   return page;
 }
 
+// What a page may be, simulated by scripts that run in it.
+
+/** Without HTTPS, nothing is compared with the hash in its name. */
+export function withoutHashes() {
+  Object.defineProperty(crypto, "subtle", { value: undefined });
+}
+
+/** Shortens a part's time limit from a minute to half a second. */
+export function withShortMinute() {
+  const { setTimeout } = window;
+  /** @type {any} */ (window).setTimeout = (/** @type {() => void} */ run, /** @type {number} */ millis) => setTimeout(run, millis === 60_000 ? 500 : millis);
+}
+
 /** Playwright's error when it evaluates script in a page that is navigating. */
 const NAVIGATING = /Execution context was destroyed/;
 
@@ -214,12 +227,33 @@ export function drop(page, files, across = 0.5) {
 export const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
 
 /**
- * Returns what the panels offer under this role and name.
+ * Returns the panels' controls with this role and name, in reading order. Unless `exact`, a text may be a part of the name.
+ * @param {Page} page
+ * @param {Parameters<Page["getByRole"]>[0]} role
+ * @param {string | RegExp} name
+ * @param {boolean} [exact]
+ */
+export const controls = (page, role, name, exact = false) => page.locator("#mirror").getByRole(role, { name, exact });
+
+/**
+ * Returns the first of them.
  * @param {Page} page
  * @param {Parameters<Page["getByRole"]>[0]} role
  * @param {string | RegExp} name
  */
-export const control = (page, role, name) => page.locator("#mirror").getByRole(role, { name }).first();
+export const control = (page, role, name) => controls(page, role, name).first();
+
+/**
+ * Presses a button of the panels and returns the file that it saves.
+ * @param {Page} page
+ * @param {string} name The button's.
+ */
+export async function savedBy(page, name) {
+  const download = page.waitForEvent("download");
+  await control(page, "button", name).press("Enter");
+  const file = await download;
+  return { name: file.suggestedFilename(), bytes: fs.readFileSync(await file.path()) };
+}
 
 /**
  * Opens the share dialog by keyboard.

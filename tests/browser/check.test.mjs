@@ -1,6 +1,7 @@
 // Checking an export: channels, hidden nodes and materials, lints and lists, on both back ends.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
+import { UPPER, triangle } from "../three/triangle.mjs";
 import { BACK_ENDS, apply, colorsOf, eventually, meanDifference, open, picture, startSite, state, stats, untilStill } from "./browser.mjs";
 
 const CHANNELS = ["base-color", "normal", "tangent", "roughness", "metallic", "occlusion", "emissive", "uv", "vertex-color", "influences", "wireframe"];
@@ -98,25 +99,7 @@ for (const renderer of BACK_ENDS)
 
 /** A skinned triangle whose upper joint scales unevenly. */
 function uneven() {
-  const numbers = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0]);
-  const bytes = Buffer.concat([Buffer.from(numbers.buffer), Buffer.from([0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0])]);
-  return {
-    asset: { version: "2.0" },
-    scene: 0,
-    scenes: [{ nodes: [0, 2] }],
-    nodes: [{ name: "Upper", scale: [1, 2, 1], children: [1] }, { name: "Lower" }, { mesh: 0, skin: 0 }],
-    skins: [{ joints: [0, 1] }],
-    meshes: [{ primitives: [{ attributes: { POSITION: 0, WEIGHTS_0: 1, JOINTS_0: 2 } }] }],
-    accessors: [
-      { bufferView: 0, componentType: 5126, count: 3, type: "VEC3", min: [0, 0, 0], max: [1, 1, 0] },
-      { bufferView: 1, componentType: 5126, count: 3, type: "VEC4" },
-      { bufferView: 2, componentType: 5121, count: 3, type: "VEC4" },
-    ],
-    bufferViews: [
-      { buffer: 0, byteLength: 36 },
-      { buffer: 0, byteOffset: 36, byteLength: 48 },
-      { buffer: 0, byteOffset: 84, byteLength: 12 },
-    ],
-    buffers: [{ byteLength: 96, uri: `data:application/octet-stream;base64,${bytes.toString("base64")}` }],
-  };
+  const { document } = triangle();
+  Object.assign(document.nodes[UPPER], { scale: [1, 2, 1] });
+  return document;
 }

@@ -1,9 +1,8 @@
 // Borrowing motion on each back end by drop, script and link; loading and saving joint maps; motions that don't fit.
 import assert from "node:assert/strict";
-import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, control, drop, furthest, meanDifference, open, picture, pose, savedBy, startSite, state, until, whenBorrowed, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -225,13 +224,13 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
-        const file = await savedBy(page, 386);
-        assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
-        const base64 = fs.readFileSync(await file.path()).toString("base64");
+        await showFiles(page);
+        const { name, bytes } = await savedBy(page, "Save GLB");
+        assert.equal(name, "Xbot-cosc422_Dance.glb");
         const document = await page.evaluate(async (base64) => {
           const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
           return await window.gaitway.open({ "again.glb": bytes.buffer });
-        }, base64);
+        }, bytes.toString("base64"));
         assert.equal(document.clips.length, XBOT_CLIPS + 1);
         await apply(page, { clip: String(XBOT_CLIPS), t: 1.5, play: 0 });
         assert.ok(furthest(await pose(page), shown) < 1e-6);
@@ -240,9 +239,10 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       onPage("the active map is saved as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });
-        const file = await savedBy(page, 242);
-        assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
-        const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
+        await showFiles(page);
+        const { name, bytes } = await savedBy(page, "Save map");
+        assert.equal(name, "Xbot-cosc422_Dance.json");
+        const saved = JSON.parse(bytes.toString());
         assert.equal(saved.gaitway_map, 1);
         assert.deepEqual(saved.joints["mixamorig:Hips"], { source: "Hips" });
       });
@@ -250,19 +250,11 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
 });
 
 /**
- * Opens Files in the Motion tab, presses the button at this height and returns the saved file. The canvas has no DOM
- * elements to query.
+ * Opens Files in the Motion tab.
  * @param {TestPage} page
- * @param {number} y
  */
-async function savedBy(page, y) {
+async function showFiles(page) {
   await page.setViewportSize({ width: 1280, height: 800 });
-  await untilStill(page);
-  const download = page.waitForEvent("download");
-  for (const [x, at] of [[1237, 69], [1232, 135]]) {
-    await page.mouse.click(x, at);
-    await untilStill(page);
-  }
-  await page.mouse.click(1125, y);
-  return await download;
+  await control(page, "tab", "Motion").press("Enter");
+  await control(page, "radio", "Files").press("Enter");
 }

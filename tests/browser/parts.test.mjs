@@ -7,7 +7,7 @@ import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { walkingPerson } from "../three/npz.mjs";
 import { dataUri, png, withPngTextures, withTextures } from "../three/ktx2.mjs";
 import { withoutMeshopt } from "../three/meshopt.mjs";
-import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
+import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed, withShortMinute, withoutHashes } from "./browser.mjs";
 
 /**
  * Models in several encodings, with a view of them and the part that each encoding needs.
@@ -197,11 +197,6 @@ function redAndBlue({ width, height, rgba }) {
   return [red, blue].map((count) => count / (width * height));
 }
 
-/** Simulates a page without HTTPS, where parts aren't checked against the hash in their name. */
-function withoutHashes() {
-  Object.defineProperty(crypto, "subtle", { value: undefined });
-}
-
 /** Simulates a page that was built without clang: its list of parts lacks the FBX reader. */
 function withoutFbx() {
   const { querySelector } = Document.prototype;
@@ -210,12 +205,6 @@ function withoutFbx() {
     if (selector.includes("gaitway-parts")) found?.setAttribute("content", JSON.stringify({ ...JSON.parse(found.getAttribute("content") ?? ""), fbx: undefined }));
     return found;
   };
-}
-
-/** Shortens a part's time limit from a minute to half a second. */
-function withShortMinute() {
-  const { setTimeout } = window;
-  /** @type {any} */ (window).setTimeout = (/** @type {() => void} */ run, /** @type {number} */ millis) => setTimeout(run, millis === 60_000 ? 500 : millis);
 }
 
 for (const renderer of BACK_ENDS)

@@ -1,10 +1,9 @@
 // The viewport: compared skinning methods, the motion's source, joints posed manually, and saved images and videos.
 import assert from "node:assert/strict";
-import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { unzipSync } from "fflate";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, control, eventually, furthest, toggleInspector, pose, startSite, state, stats } from "./browser.mjs";
+import { BACK_ENDS, apply, control, eventually, furthest, toggleInspector, pose, savedBy, startSite, state, stats } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
@@ -122,18 +121,6 @@ for (const renderer of BACK_ENDS)
       const box = control(page, "checkbox", "Transparent background");
       await box.press("Enter");
       await eventually(async () => (await box.getAttribute("aria-checked")) === "true");
-    }
-
-    /**
-     * Returns the file that a button saves.
-     * @param {import("./browser.mjs").TestPage} page
-     * @param {string} name
-     */
-    async function savedBy(page, name) {
-      const download = page.waitForEvent("download");
-      await control(page, "button", name).press("Enter");
-      const file = await download;
-      return { name: file.suggestedFilename(), bytes: fs.readFileSync(await file.path()) };
     }
 
     /**

@@ -4,7 +4,7 @@ import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
 import { BODY, LOWER, triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, open, startSite, until, whenModel } from "./browser.mjs";
+import { BACK_ENDS, control, controls, open, startSite, until, whenModel, withShortMinute, withoutHashes } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
@@ -15,14 +15,6 @@ const MISTAKES = triangle({ weight: 0.5, turn: 2 }).text;
 
 /** @param {TestPage} page */
 const downloads = (page) => page.requests.filter((url) => /\/parts\/validator-[0-9a-f]{16}\.js$/.test(url)).length;
-
-/**
- * The mirror's element for a control.
- * @param {TestPage} page
- * @param {"button" | "tab"} role
- * @param {string | RegExp} name
- */
-const control = (page, role, name) => page.locator("#mirror").getByRole(role, { name, exact: true });
 
 /**
  * Waits until the Info tab says this.
@@ -39,20 +31,9 @@ const says = (page, text) => page.locator("#mirror").getByText(text, { exact: tr
  */
 async function press(page, role, name) {
   // A warning of our own may lead to the same node; the validator's come after it.
-  const found = control(page, role, name).last();
+  const found = controls(page, role, name, true).last();
   await found.waitFor({ state: "attached" });
   await found.press("Enter");
-}
-
-/** Without HTTPS, nothing is compared with the hash in its name. */
-function withoutHashes() {
-  Object.defineProperty(crypto, "subtle", { value: undefined });
-}
-
-/** Shortens a part's time limit from a minute to half a second. */
-function withShortMinute() {
-  const { setTimeout } = window;
-  /** @type {any} */ (window).setTimeout = (/** @type {() => void} */ run, /** @type {number} */ millis) => setTimeout(run, millis === 60_000 ? 500 : millis);
 }
 
 for (const renderer of BACK_ENDS)

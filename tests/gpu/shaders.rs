@@ -146,7 +146,7 @@ fn mtoon_is_valid_and_translates_to_webgl2() {
     }
 }
 
-/// For plain materials, MToon, and every lobe with its maps.
+/// For plain materials, MToon, and some lobes with maps.
 #[test]
 fn channels_are_valid_and_translate_to_webgl2() {
     use SurfacePermutation as Variant;

@@ -1,6 +1,6 @@
 //! Layers over a clip: their time, their masks, and the clip they are baked into.
 
-use gaitway::anim::{Clip, Interpolation, JointMask, Pose, SampleCursor};
+use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointMask, Pose, SampleCursor};
 use gaitway::asset::Slot;
 use gaitway::retarget::{
     Body, BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack,
@@ -165,6 +165,14 @@ fn a_baked_stack_is_what_is_played() {
             check_baked(&figure, &other, &[whole, sum, wave]);
         }
     }
+}
+
+/// A clip without channels shows the rest pose, and nothing is left to hold the length of the one below.
+#[test]
+fn a_baked_rest_pose_lasts_as_long() {
+    let (figure, _) = dancer(Interpolation::Linear, false);
+    let rest = ClipBuilder::new("Rest", &figure.asset.skeleton).build();
+    assert_eq!(check_baked(&figure, &rest, &[ClipLayer::default()]), 2);
 }
 
 /// Joints outside all masks keep the file's keys, and a full override needs hardly more keys than its clip has.

@@ -1,8 +1,7 @@
 //! Layers over the active clip, as commands set them and as frames, exports and undo have them.
 
 use gaitway::anim::{Pose, SampleCursor};
-use gaitway::editor::{ClipFormat, Editor, Event, Export};
-use gaitway::files::{Role, read_paths};
+use gaitway::editor::{ClipFormat, Event, Export};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
@@ -11,6 +10,7 @@ use serde_json::json;
 
 use crate::allocation::allocations_while_playing;
 use crate::data::walker;
+use crate::editor::editor;
 use crate::history::undo;
 
 const WALK: usize = 0;
@@ -151,17 +151,9 @@ fn manual_poses_are_above_layers() {
     assert_eq!(posed.rotation, shown(&library, &state).local(joint).rotation);
 }
 
-fn editor() -> Editor {
-    let mut editor = Editor::default();
-    let contents = read_paths(&["sample:walker".into()], Role::Any).expect("a sample");
-    editor.open(contents, None, &mut |_| Ok(())).expect("fits");
-    editor.take_events();
-    editor
-}
-
 #[test]
 fn an_unknown_layer_of_a_view_is_told() {
-    let mut editor = editor();
+    let mut editor = editor("sample:walker");
     let mut view = editor.state().clone();
     view.edits.layers = vec![ClipLayer { clip: "Fly".to_owned(), ..ClipLayer::default() }];
     editor.apply(Command::Replace(Box::new(view)));
@@ -173,7 +165,7 @@ fn an_unknown_layer_of_a_view_is_told() {
 /// The exported clip is read again and plays what the page showed.
 #[test]
 fn the_exported_clip_has_the_layers() {
-    let mut editor = editor();
+    let mut editor = editor("sample:walker");
     let one_clip = Export::Model { clip: WALK };
     assert!(editor.export(one_clip).is_err(), "it is in the file as it is");
     editor.apply(Command::SetPlaying(false));

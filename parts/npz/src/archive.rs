@@ -1,6 +1,8 @@
 //! The archive of arrays: sections 4.3.7, 4.3.12, 4.3.16 and 4.5.3 of PKWARE's APPNOTE.TXT. The `zip` crate depends on
 //! JavaScript in wasm, which a module without imports can't call.
 
+use std::borrow::Cow;
+
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
 use crate::array::Array;
@@ -72,7 +74,7 @@ impl<'a> Archive<'a> {
         Ok(None)
     }
 
-    fn unpack(&self, name: &str, member: &Member) -> Result<Vec<u8>, String> {
+    fn unpack(&self, name: &str, member: &Member) -> Result<Cow<'a, [u8]>, String> {
         if member.bytes > MAX_ARRAY_BYTES {
             return Err(format!(
                 "array \"{name}\" is too large: expected at most {MAX_ARRAY_BYTES} bytes, found {}. Cut the motion into \
@@ -89,9 +91,10 @@ impl<'a> Archive<'a> {
         let packed = packed(self.file, member)
             .ok_or_else(|| damaged(name, &format!("{} bytes", member.packed_bytes), "the end of the file"))?;
         let bytes = match member.method {
-            STORED => packed.to_vec(),
+            STORED => Cow::Borrowed(packed),
             _ => decompress_to_vec_with_limit(packed, member.bytes)
-                .map_err(|problem| damaged(name, "deflated data", &format!("{:?}", problem.status)))?,
+                .map_err(|problem| damaged(name, "deflated data", &format!("{:?}", problem.status)))?
+                .into(),
         };
         // A fuzzer can't be expected to get checksums right.
         let has_checksum = cfg!(fuzzing) || crc32fast::hash(&bytes) == member.crc;

@@ -56,8 +56,8 @@ impl Motion {
         }
         let joints: usize = groups.iter().map(|group| group.joints).sum();
         if !JOINT_COUNTS.contains(&joints) {
-            let found = format!("{joints}");
-            return Err(unexpected(&groups[0].name, "22, 24, 52 or 55 joints (SMPL, SMPL+H, SMPL-X)", &found));
+            let expected = "22, 24, 52 or 55 joints (SMPL, SMPL+H, SMPL-X)";
+            return Err(unexpected(&groups[0].name, expected, &joints.to_string()));
         }
         let trans = path(archive, frames)?;
         if trans.is_none() {

@@ -1,9 +1,7 @@
 //! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip. Mirroring comes first
 //! whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
 
-use percent_encoding::percent_decode_str;
-
-use super::values::{escaped_name, finite};
+use super::values::{escaped_name, finite, unescaped_name};
 use super::{Read, Written};
 use crate::anim::TimeRange;
 use crate::retarget::ClipChanges;
@@ -58,9 +56,9 @@ fn reset(state: &mut ViewerState, one: fn(&mut ClipChanges)) {
     state.edits.clips.retain(|_, changes| !changes.is_none());
 }
 
+/// Reads the name or index of a clip.
 pub(super) fn clip_name(text: &str) -> Option<String> {
-    let name = percent_decode_str(text).decode_utf8().ok()?.into_owned();
-    (!name.is_empty()).then_some(name)
+    unescaped_name(text).filter(|name| !name.is_empty())
 }
 
 fn words(changes: &ClipChanges) -> Vec<String> {

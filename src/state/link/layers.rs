@@ -25,11 +25,9 @@ pub(super) fn text(layer: &ClipLayer) -> String {
     }
     if !layer.mask.is_all() {
         let parts = BodyPart::ALL.into_iter().filter(|(part, _)| layer.mask.has(*part));
-        let mask = parts.map(|(_, name)| format!(":{name}"));
-        words.push(
-            mask.chain(layer.mask.joints.iter().map(|joint| format!(":{joint}")))
-                .fold("mask".to_owned(), |a, b| a + &b),
-        );
+        let parts = parts.map(|(_, name)| name.to_owned());
+        let items: Vec<String> = parts.chain(layer.mask.joints.iter().map(ToString::to_string)).collect();
+        words.push(format!("mask:{}", items.join(":")));
     }
     let name = escaped_name(&layer.clip);
     if words.is_empty() { name } else { format!("{name}:{}", words.join(",")) }
@@ -47,7 +45,7 @@ pub(super) fn read(text: &str) -> Option<ClipLayer> {
             ("start", number) => layer.start_secs = finite(number)?,
             ("additive", "") => layer.mode = LayerMode::Additive,
             ("additive", "rest") => layer.mode = LayerMode::AdditiveToRest,
-            ("mask", items) => items.split(':').try_for_each(|item| limit(&mut layer.mask, item))?,
+            ("mask", items) => items.split(':').try_for_each(|item| add_to_mask(&mut layer.mask, item))?,
             _ => return None,
         }
     }
@@ -55,7 +53,7 @@ pub(super) fn read(text: &str) -> Option<ClipLayer> {
 }
 
 /// Adds a part of the body or a joint.
-fn limit(mask: &mut LayerMask, item: &str) -> Option<()> {
+fn add_to_mask(mask: &mut LayerMask, item: &str) -> Option<()> {
     match BodyPart::ALL.into_iter().find(|(_, name)| *name == item) {
         Some((part, _)) if mask.has(part) => {}
         Some((part, _)) => mask.toggle(part),

@@ -288,7 +288,7 @@ pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
 }
 
 pub(super) fn write_expressions(expressions: &BTreeMap<String, f32>) -> Written {
-    let pair = |(name, weight): (&String, &f32)| format!("{}:{weight}", utf8_percent_encode(name, IN_NAMES));
+    let pair = |(name, weight): (&String, &f32)| format!("{}:{weight}", escaped_name(name));
     Written::Text(joined(expressions.iter().map(pair)))
 }
 
@@ -296,8 +296,7 @@ pub(super) fn write_expressions(expressions: &BTreeMap<String, f32>) -> Written 
 pub(super) fn read_expressions(text: &str) -> Option<BTreeMap<String, f32>> {
     let pair = |pair: &str| {
         let (name, weight) = pair.split_once(':')?;
-        let name = percent_decode_str(name).decode_utf8().ok()?;
-        Some((name.into_owned(), finite(weight)?))
+        Some((unescaped_name(name)?, finite(weight)?))
     };
     each(text, pair)
 }
@@ -346,13 +345,18 @@ pub(super) fn escaped_name(name: &str) -> String {
     utf8_percent_encode(name, IN_NAMES).to_string()
 }
 
+/// Reads what [`escaped_name`] writes.
+pub(super) fn unescaped_name(text: &str) -> Option<String> {
+    Some(percent_decode_str(text).decode_utf8().ok()?.into_owned())
+}
+
 /// Names are escaped a second time because of the separators between them.
 pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
     let named = |part: &str| {
         let (joint, name) = part.split_once(':')?;
-        let name = percent_decode_str(name).decode_utf8().ok()?;
+        let name = unescaped_name(name)?;
         let is_line = !name.trim().is_empty() && !name.contains(char::is_control);
-        is_line.then_some((joint.trim().parse().ok()?, name.into_owned()))
+        is_line.then_some((joint.trim().parse().ok()?, name))
     };
     each(text, named)
 }

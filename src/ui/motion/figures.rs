@@ -1,4 +1,4 @@
-//! The Fit part: how well the clip that plays does what its source does, in numbers and in a word for each.
+//! The Fit part: how well the active clip does what its source does, in numbers with a verdict on each.
 
 use std::rc::Rc;
 
@@ -15,7 +15,7 @@ use crate::ui::{Shown, style, text};
 pub(super) struct Fit {
     contents: Rc<Contents>,
     clip: usize,
-    /// The worst of all verdicts, and it in words.
+    /// The worst of all verdicts, also in words.
     overall: Option<(Verdict, String)>,
     lines: Vec<Line>,
 }

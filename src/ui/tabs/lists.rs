@@ -4,7 +4,7 @@ use crate::anim::{JointIndex, TextureSlot};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
 use crate::mesh::{AlphaMode, Material};
-use crate::state::used_materials;
+use crate::state::{title, used_materials};
 use crate::ui::text;
 
 /// Maximum number of names in a line.
@@ -92,7 +92,7 @@ fn users(asset: &Asset, material: Option<usize>) -> Vec<String> {
     let mut joints: Vec<JointIndex> =
         asset.instances.iter().filter(|instance| uses(instance.mesh)).map(|instance| instance.joint).collect();
     joints.dedup();
-    joints.into_iter().map(|joint| crate::state::title(None, asset, joint).into_owned()).collect()
+    joints.into_iter().map(|joint| title(None, asset, joint).into_owned()).collect()
 }
 
 fn image_text(model: &Model, index: usize) -> ImageText {

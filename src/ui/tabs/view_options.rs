@@ -16,7 +16,7 @@ pub struct PictureSettings {
     /// Width and height in pixels.
     size: [u32; 2],
     transparent: bool,
-    /// Of videos.
+    /// Of recordings.
     frames_per_sec: u32,
 }
 
@@ -32,10 +32,17 @@ impl PictureSettings {
         Saved::Picture { size: self.size, transparent: self.transparent }
     }
 
-    /// A recording with these settings: a video, or images.
-    pub fn recording(&self, as_images: bool) -> VideoSettings {
+    /// The recordings with these settings, a video and images, each with the label of its button and an explanation.
+    pub fn recordings(&self) -> [(&'static str, &'static str, UiAction); 2] {
         let Self { size, transparent, frames_per_sec } = *self;
-        VideoSettings { size, frames_per_sec, transparent, as_images }
+        [
+            (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
+            (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
+        ]
+        .map(|(as_images, label, explanation)| {
+            let settings = VideoSettings { size, frames_per_sec, transparent, as_images };
+            (label, explanation, UiAction::Record(settings))
+        })
     }
 }
 
@@ -96,12 +103,9 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     if let Some(rate) = controls::segmented_about(ui, text::FRAME_RATE, Some(settings.frames_per_sec), &choices) {
         settings.frames_per_sec = rate;
     }
-    for (as_images, label, explanation) in [
-        (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
-        (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
-    ] {
+    for (label, explanation, action) in settings.recordings() {
         if wide(ui, shown.is_animated(), label).on_hover_text(explanation).clicked() {
-            out.actions.push(UiAction::Record(settings.recording(as_images)));
+            out.actions.push(action);
         }
     }
 }

@@ -248,6 +248,7 @@ pub fn rest_choice(choice: RestChoice) -> &'static str {
 // Fit
 /// Shown instead of the figures while one of the model's own clips is active.
 pub const NOTHING_TO_MEASURE: &str = "Choose a borrowed clip to see how well it fits.";
+
 /// Returns the verdict on a figure.
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {

@@ -26,7 +26,7 @@ fn any(_: &Model) -> Result<(), String> {
     Ok(())
 }
 
-fn editor(first: &str) -> Editor {
+pub fn editor(first: &str) -> Editor {
     let mut editor = Editor::default();
     open(&mut editor, first);
     editor

@@ -1,4 +1,4 @@
-//! Rotations and directions in double precision.
+//! Rotations, directions and ranges in double precision.
 
 use glam::{DQuat, DVec3};
 
@@ -9,6 +9,11 @@ pub const HORIZONTAL: DVec3 = DVec3::new(1.0, 0.0, 1.0);
 pub fn unit(rotation: DQuat) -> DQuat {
     let length = rotation.length();
     if length.is_finite() && length > 0.0 { rotation / length } else { DQuat::IDENTITY }
+}
+
+/// Clamps a number to a range; the default if it isn't finite.
+pub fn clamped(value: f64, default: f64, min: f64, max: f64) -> f64 {
+    if value.is_finite() { value.clamp(min, max) } else { default }
 }
 
 /// Interpolates along the shorter arc at constant speed (glTF 2.0, appendix C.3).

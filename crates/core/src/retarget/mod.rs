@@ -3,7 +3,8 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
-//! with its source. `change` mirrors, trims, loops and moves any clip, and `stack` puts others over it. `pose`, `keys` and `math` are shared by all.
+//! with its source. `change` mirrors, trims, loops and moves any clip, and `stack` puts others over it. `pose`, `keys` and
+//! `math` are shared by all.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};

@@ -40,7 +40,7 @@ const MAX_ROTATION_ERROR: f32 = 0.000_5;
 /// Relative to the size of the skeleton.
 const MAX_TRANSLATION_ERROR: f32 = 0.000_2;
 const MAX_SCALE_ERROR: f32 = 0.000_5;
-/// Most keys that one segment may replace; bounds the work on long clips.
+/// Maximum number of keys that one segment spans; bounds the work on long clips.
 const MAX_RUN: usize = 32;
 
 /// Reports clips that could lose most of their keys without a visible difference, all in one warning.

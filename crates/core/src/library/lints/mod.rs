@@ -14,7 +14,7 @@ use crate::anim::{Interpolation, JointIndex};
 use crate::asset::{Asset, Warning, Warnings};
 use crate::retarget::{Contradiction, Recognized};
 
-/// Names that a message lists.
+/// Maximum number of names that a message lists.
 const MAX_NAMES: usize = 3;
 
 /// Checks an asset; `recognized` is what [`recognize`](crate::retarget::recognize) finds in it. A problem is reported once, at

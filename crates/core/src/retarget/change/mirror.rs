@@ -4,13 +4,13 @@
 //! of the model. So the rest pose needn't be quite symmetric, and the joints' own axes don't matter. In the space of a joint,
 //! both are linear maps of the keys, so no keys are added, and mirroring twice restores the clip.
 
-use glam::{Affine3A, DMat3, DQuat, DVec3, Quat, Vec3};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::track::{Target, Tracks};
-use crate::anim::{JointIndex, PropertyTarget, Skeleton, model_from_joint};
+use crate::anim::{JointIndex, PropertyTarget};
 use crate::asset::Asset;
 use crate::retarget::map::opposite_joints;
-use crate::retarget::math::unit;
+use crate::retarget::pose::{WorldPose, node_locals};
 use crate::retarget::recognize::Recognized;
 
 /// Left and right of a skeleton.
@@ -48,47 +48,21 @@ impl Symmetry {
     }
 }
 
-/// A joint in the rest pose.
-struct AtRest {
-    model_from_parent: DMat3,
-    /// In model space, as [`Self::rotation`].
-    parent_rotation: DQuat,
-    rotation: DQuat,
-    /// Relative to the parent.
-    translation: DVec3,
-}
-
-fn at_rest(skeleton: &Skeleton) -> Vec<AtRest> {
-    let mut world = Vec::new();
-    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
-    let rotation = |joint: JointIndex| unit(world[joint.get()].to_scale_rotation_translation().1.as_dquat());
-    let of = |joint: JointIndex| {
-        let parent = skeleton.parent(joint);
-        AtRest {
-            model_from_parent: parent
-                .map_or(DMat3::IDENTITY, |parent| glam::Mat3::from(world[parent.get()].matrix3).as_dmat3()),
-            parent_rotation: parent.map_or(DQuat::IDENTITY, rotation),
-            rotation: rotation(joint),
-            translation: skeleton.rest().local(joint).translation.as_dvec3(),
-        }
-    };
-    skeleton.joints().map(of).collect()
-}
-
 pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
-    let rests = at_rest(&asset.skeleton);
+    let skeleton = &asset.skeleton;
+    let rest = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY);
     let reflection = symmetry.reflection();
     for track in &mut tracks.tracks {
         match &mut track.target {
             Target::Rotation(joint) => {
-                let (from, other) = (&rests[joint.get()], symmetry.opposite[joint.get()]);
-                let to = &rests[other.get()];
-                *joint = other;
-                let (before, after) = (to.parent_rotation.inverse(), to.rotation);
+                let (from, to) = (*joint, symmetry.opposite[joint.get()]);
+                *joint = to;
+                let (from_parent, from_rest) = (rest.parent_rotation(skeleton, from), rest.rotation(from).inverse());
+                let (before, after) = (rest.parent_rotation(skeleton, to).inverse(), rest.rotation(to));
                 track.map(
                     |entry| {
                         let local = Quat::from_slice(entry).as_dquat();
-                        let away = from.parent_rotation * local * from.rotation.inverse();
+                        let away = from_parent * local * from_rest;
                         // The axis is a pseudovector: reflecting also negates it.
                         let axis = -(reflection * DVec3::new(away.x, away.y, away.z));
                         let mirrored = before * DQuat::from_xyzw(axis.x, axis.y, axis.z, away.w) * after;
@@ -98,13 +72,14 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
                 );
             }
             Target::Translation(joint) => {
-                let (from, other) = (&rests[joint.get()], symmetry.opposite[joint.get()]);
-                let to = &rests[other.get()];
-                *joint = other;
-                let inverse = to.model_from_parent.inverse();
+                let (from, to) = (*joint, symmetry.opposite[joint.get()]);
+                *joint = to;
+                let [from_frame, to_frame] = [from, to].map(|joint| rest.parent_frame(skeleton, joint).matrix3);
+                let inverse = to_frame.inverse();
                 let inverse = if inverse.is_finite() { inverse } else { DMat3::IDENTITY };
-                let linear = inverse * reflection * from.model_from_parent;
-                let affine = (to.translation - linear * from.translation).as_vec3();
+                let linear = inverse * reflection * from_frame;
+                let [from_rest, to_rest] = [from, to].map(|joint| rest.locals[joint.get()].translation);
+                let affine = (to_rest - linear * from_rest).as_vec3();
                 track.map(
                     |entry| {
                         (linear * Vec3::from_slice(entry).as_dvec3()).as_vec3().write_to_slice(entry);

@@ -9,6 +9,7 @@ pub(super) mod track;
 
 use serde::{Deserialize, Serialize};
 
+use super::math::clamped;
 use crate::anim::{Clip, TimeRange};
 use crate::asset::Asset;
 pub use mirror::Symmetry;
@@ -72,9 +73,6 @@ impl ClipChanges {
 
     /// Clamps numbers to their ranges, and replaces those that aren't finite with the default.
     pub fn clamped(mut self) -> Self {
-        let clamped = |value: f64, default: f64, min: f64, max: f64| {
-            if value.is_finite() { value.clamp(min, max) } else { default }
-        };
         let symmetric = |value, max: f64| clamped(value, 0.0, -max, max);
         self.speed = clamped(self.speed, Self::NONE.speed, Self::MIN_SPEED, Self::MAX_SPEED);
         self.loop_secs = self.loop_secs.map(|secs| clamped(secs, 0.0, 0.0, Self::MAX_LOOP_SECS));

@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use glam::{Affine3A, DAffine3, DQuat, DVec3, Quat, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 
 use super::track::{Target, Track, Tracks};
-use crate::anim::{Interpolation, JointIndex, SampleCursor, Skeleton, model_from_joint};
+use crate::anim::{Interpolation, JointIndex, Skeleton};
 use crate::retarget::math::unit;
+use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, parent_frame};
 
 /// Returns the joints that carry all others: the animated joints without an animated ancestor.
 pub fn carriers(tracks: &Tracks, skeleton: &Skeleton) -> Vec<JointIndex> {
@@ -16,10 +17,8 @@ pub fn carriers(tracks: &Tracks, skeleton: &Skeleton) -> Vec<JointIndex> {
             is_animated[joint.get()] = true;
         }
     }
-    let has_animated_above = |joint: JointIndex| {
-        std::iter::successors(skeleton.parent(joint), |&parent| skeleton.parent(parent))
-            .any(|parent| is_animated[parent.get()])
-    };
+    let has_animated_above =
+        |joint: JointIndex| ancestry(skeleton, joint).skip(1).any(|ancestor| is_animated[ancestor.get()]);
     skeleton.joints().filter(|&joint| is_animated[joint.get()] && !has_animated_above(joint)).collect()
 }
 
@@ -32,10 +31,8 @@ pub fn traveller(tracks: &Tracks, skeleton: &Skeleton) -> Option<JointIndex> {
 
 /// Returns the rest transform from the space of a joint's parent to model space; the identity if it has no inverse.
 pub fn model_from_parent(skeleton: &Skeleton, joint: JointIndex) -> DAffine3 {
-    let mut world = Vec::new();
-    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
-    let parent = skeleton.parent(joint).map(|parent| glam::Mat4::from(world[parent.get()]));
-    let model_from_parent = parent.map_or(DAffine3::IDENTITY, |world| DAffine3::from_mat4(world.as_dmat4()));
+    let rest = |ancestor: JointIndex| Local::from(&skeleton.rest().local(ancestor));
+    let model_from_parent = parent_frame(skeleton, joint, DQuat::IDENTITY, rest);
     if model_from_parent.inverse().is_finite() { model_from_parent } else { DAffine3::IDENTITY }
 }
 
@@ -76,10 +73,8 @@ pub fn place(tracks: &mut Tracks, skeleton: &Skeleton, offset: [f64; 2], radians
 fn start(tracks: &Tracks, skeleton: &Skeleton) -> Option<DVec3> {
     let joint = traveller(tracks, skeleton)?;
     let clip = tracks.clone().build("", skeleton);
-    let (mut pose, mut world) = (skeleton.rest().clone(), Vec::new());
-    clip.sample(skeleton, 0.0, &mut SampleCursor::default(), &mut pose);
-    model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
-    Some(world[joint.get()].translation.as_dvec3())
+    let locals = clip_locals(skeleton, &clip, 0.0, &mut Scratch::default());
+    Some(WorldPose::new(skeleton, locals, DQuat::IDENTITY).position(joint))
 }
 
 /// Adds a track that holds the rest value, unless there is one for this target.

@@ -51,6 +51,15 @@ fn box_means(times: &[f32], values: &[(DVec3, f64)], secs: f64) -> Vec<(DVec3, f
     (0..times.len()).map(mean).collect()
 }
 
+/// Returns the mean of the values within `secs` of each time.
+pub fn means(times: &[f32], values: &[f64], secs: f64) -> Vec<f64> {
+    let mean = |at: usize| {
+        let values = &values[near(times, at, secs)];
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    (0..times.len()).map(mean).collect()
+}
+
 /// The times within `secs` of one of them.
 pub fn near(times: &[f32], at: usize, secs: f64) -> Range<usize> {
     let from = times.partition_point(|&time| f64::from(times[at] - time) > secs);

@@ -1,6 +1,6 @@
 //! Height of the body above the ground before its feet are planted: in motion capture, bodies often hover or sink.
 
-use super::body::near;
+use super::body::{means, near};
 use super::leg::smooth;
 use super::plan::LegContacts;
 use crate::anim::JointIndex;
@@ -25,9 +25,8 @@ pub fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], gro
         touching.map(|(pose, _)| leg.sole.lowest(pose)).collect::<Vec<f64>>()
     };
     let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
-    let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min);
     let at = if contacts.is_empty() {
-        contacts = poses.iter().filter(|_| !legs.is_empty()).map(lowest).collect();
+        contacts = poses.iter().filter(|_| !legs.is_empty()).map(|pose| lowest(legs, pose)).collect();
         contacts.len() / 20
     } else {
         contacts.len() / 4
@@ -40,19 +39,23 @@ pub fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], gro
     Some(if is_near { hover } else { 0.0 })
 }
 
+/// Returns the height of the lower sole.
+fn lowest(legs: &[LegContacts], pose: &WorldPose) -> f64 {
+    legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min)
+}
+
 /// Returns how far the body floats at each time: the height above which both soles stay for longer than any jump, since the
 /// capture has lost its floor. Smoothed over time.
 pub fn floats(times: &[f32], legs: &[LegContacts], poses: &[WorldPose], ground: f64, height: f64) -> Vec<f64> {
-    let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min) - ground;
-    let heights: Vec<f64> = poses.iter().map(lowest).collect();
-    let near = |at: usize| near(times, at, 0.5 * MAX_JUMP_SECS);
+    let heights: Vec<f64> = poses.iter().map(|pose| lowest(legs, pose) - ground).collect();
+    let secs = 0.5 * MAX_JUMP_SECS;
     let kept = |at: usize| {
-        let kept = heights[near(at)].iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
+        let kept = heights[near(times, at, secs)].iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
         kept * smooth((MAX_FLOAT[1] * height - kept) / ((MAX_FLOAT[1] - MAX_FLOAT[0]) * height))
     };
     let kept: Vec<f64> = (0..times.len()).map(kept).collect();
     // Each range around this time contains it, so its minimum is at most the current height, and so is their mean.
-    (0..times.len()).map(|at| kept[near(at)].iter().sum::<f64>() / near(at).len() as f64).collect()
+    means(times, &kept, secs)
 }
 
 /// Lowers the hips and their descendants, as well as shins and feet that are parented elsewhere. `by` takes the index of a

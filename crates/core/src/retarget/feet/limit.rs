@@ -4,8 +4,9 @@ use glam::DQuat;
 
 use crate::retarget::math::{angle_between, slerp};
 
-/// Clamps rotations to `max_radians` and their speed to `radians_per_sec`, beginning before a fast change and ending after it. Rotations that are small and slow enough stay as they are. `max_radians` is far enough from a half turn
-/// for the mean of two of them to be well defined; at 60°, a mean is up to 1.16 times as fast as they are.
+/// Clamps rotations to `max_radians` and their speed to `radians_per_sec`, beginning before a fast change and ending after it.
+/// Rotations that are small and slow enough stay as they are. `max_radians` is far enough from a half turn for the mean of two
+/// of them to be well defined; at 60°, a mean is up to 1.16 times as fast as they are.
 pub fn limit_turns(times: &[f32], turns: &mut [DQuat], max_radians: f64, radians_per_sec: f64) {
     for turn in &mut *turns {
         *turn = towards(DQuat::IDENTITY, *turn, max_radians);

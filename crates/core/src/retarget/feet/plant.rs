@@ -1,6 +1,7 @@
-//! Planted feet: while the source's foot is in contact, the target's stays in one place on the ground. The whole body is
-//! lowered (or raised) to where its feet are lowest in contact; from there the legs reach, and the hips come down further
-//! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, is planted only partly.
+//! Planted feet: while the source's foot is in contact, the target's stays in one place on the ground. First the whole body is
+//! put on the ground (`height`), and feet are moved apart (`width`) and turned level (`level`). From there the legs reach, and
+//! the hips come down further when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to
+//! turn too fast, is planted only partly.
 
 use std::fmt;
 use std::ops::Range;
@@ -8,7 +9,7 @@ use std::ops::Range;
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use super::body::{body_shifts, near};
+use super::body::{body_shifts, means, near};
 use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
 use super::height::{floats, hover, lower};
 use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
@@ -279,9 +280,9 @@ fn drops(stage: Stage, plans: &[Plan], shifts: &[DVec3]) -> Vec<f64> {
     };
     let needed: Vec<f64> = poses.iter().enumerate().map(needed).collect();
     // The mean of the neighbourhood's maxima is never less than what is needed.
-    let near = |at: usize| near(times, at, EASE_SECS);
-    let max: Vec<f64> = (0..times.len()).map(|at| needed[near(at)].iter().copied().fold(0.0, f64::max)).collect();
-    (0..times.len()).map(|at| max[near(at)].iter().sum::<f64>() / near(at).len() as f64).collect()
+    let max = |at: usize| needed[near(times, at, EASE_SECS)].iter().copied().fold(0.0, f64::max);
+    let max: Vec<f64> = (0..times.len()).map(max).collect();
+    means(times, &max, EASE_SECS)
 }
 
 /// Local rotations of the legs' joints at each time.

@@ -90,7 +90,7 @@ impl Verdicts {
         }
     }
 
-    /// The worst of all.
+    /// Returns the worst of all.
     pub fn worst(&self) -> Option<Verdict> {
         let all = [
             self.limb_direction_error_mean,

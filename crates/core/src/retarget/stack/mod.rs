@@ -8,6 +8,7 @@ mod sampled;
 
 use serde::{Deserialize, Serialize};
 
+use super::math::clamped;
 use super::transfer::LayerClip;
 use crate::anim::{Clip, JointMask, Pose, SampleCursor, Skeleton};
 
@@ -107,9 +108,6 @@ impl ClipLayer {
 
     /// Clamps numbers to their ranges, and replaces those that aren't finite with the default.
     pub fn clamped(mut self) -> Self {
-        let clamped = |value: f64, default: f64, min: f64, max: f64| {
-            if value.is_finite() { value.clamp(min, max) } else { default }
-        };
         self.weight = clamped(self.weight, 1.0, 0.0, 1.0);
         self.speed = clamped(self.speed, 1.0, 0.0, Self::MAX_SPEED);
         self.start_secs = clamped(self.start_secs, 0.0, -Self::MAX_START_SECS, Self::MAX_START_SECS);

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use crate::anim::{Clip, Interpolation, JointIndex, Pose, PropertyTarget, SampleCursor, Skeleton};
 use crate::retarget::change::track::{Target, Track, Tracks};
 use crate::retarget::math::{angle_between, slerp};
-use crate::retarget::pose::{Local, WorldPose, parent_frame};
+use crate::retarget::pose::{WorldPose, ancestry, locals_of};
 
 /// How far any joint may turn away, in radians.
 const MAX_TURN: f64 = 0.05 * std::f64::consts::PI / 180.0;
@@ -56,6 +56,10 @@ pub fn bake(clip: &Clip, mut poses: Poses<'_>) -> Clip {
     loop {
         let mut tracks = kept.clone();
         tracks.tracks.extend(columns.iter().filter_map(|column| track(skeleton, column, &rows, share * column.limit)));
+        if tracks.tracks.is_empty() {
+            // All joints rest. A clip is as long as its tracks, so it needs one.
+            tracks.tracks.extend(columns.first().map(|column| column.track(&rows, &[0])));
+        }
         let baked = tracks.build(clip.name(), skeleton);
         // The errors of a chain of joints add up, though seldom all in one direction.
         if share < 1e-3 || is_close(&baked, &mut poses, &rows, MAX_OFFSET_PER_METRE * height) {
@@ -76,7 +80,7 @@ fn joint_of(target: Target) -> Option<JointIndex> {
 }
 
 fn world(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
-    WorldPose::new(skeleton, pose.locals().map(|local| Local::from(&local)).collect(), DQuat::IDENTITY)
+    WorldPose::new(skeleton, locals_of(pose), DQuat::IDENTITY)
 }
 
 /// The largest extent of the joints at rest, in metres.
@@ -92,11 +96,9 @@ fn columns(skeleton: &Skeleton, included: &[bool], offset: f64) -> Vec<Column> {
     // Distance to the farthest joint below each.
     let mut reach = vec![0.0_f64; skeleton.len()];
     for joint in skeleton.joints() {
-        let mut above = skeleton.parent(joint);
-        while let Some(ancestor) = above {
+        for ancestor in ancestry(skeleton, joint).skip(1) {
             let far = &mut reach[ancestor.get()];
             *far = far.max(rest.position(ancestor).distance(rest.position(joint)));
-            above = skeleton.parent(ancestor);
         }
     }
     let mut columns = Vec::new();
@@ -106,8 +108,7 @@ fn columns(skeleton: &Skeleton, included: &[bool], offset: f64) -> Vec<Column> {
         start += width;
     };
     for joint in skeleton.joints().filter(|joint| included[joint.get()]) {
-        let frame = parent_frame(skeleton, joint, DQuat::IDENTITY, |ancestor| rest.locals[ancestor.get()]);
-        let scale = frame.matrix3.determinant().abs().cbrt();
+        let scale = rest.parent_frame(skeleton, joint).matrix3.determinant().abs().cbrt();
         let per_reach = offset / reach[joint.get()];
         push(Target::Translation(joint), 3, if scale > 0.0 { offset / scale } else { offset });
         push(Target::Rotation(joint), 4, MAX_TURN.min(per_reach));
@@ -188,6 +189,17 @@ impl Column {
         &row.numbers[self.start..self.start + self.width]
     }
 
+    /// Returns the channel with the values of these rows.
+    fn track(&self, rows: &[Row], keys: &[usize]) -> Track {
+        Track {
+            target: self.target,
+            interpolation: Interpolation::Linear,
+            times: keys.iter().map(|&key| rows[key].time).collect(),
+            width: self.width,
+            values: keys.iter().flat_map(|&key| self.of(&rows[key])).copied().collect(),
+        }
+    }
+
     /// How far the value at a time is from the one between two others, in radians for rotations.
     fn error(&self, from: &Row, to: &Row, at: &Row) -> f64 {
         let factor = f64::from(at.time - from.time) / f64::from(to.time - from.time);
@@ -209,7 +221,7 @@ impl Column {
 fn track(skeleton: &Skeleton, column: &Column, rows: &[Row], limit: f64) -> Option<Track> {
     let first = rows.first()?;
     let is_constant = rows.iter().all(|row| column.of(row) == column.of(first));
-    let mut keys = vec![first];
+    let mut keys = vec![0];
     if is_constant {
         if numbers(skeleton, std::slice::from_ref(column), skeleton.rest()) == column.of(first) {
             return None;
@@ -229,17 +241,11 @@ fn track(skeleton: &Skeleton, column: &Column, rows: &[Row], limit: f64) -> Opti
                     step /= 2;
                 }
             }
-            keys.push(&rows[good]);
+            keys.push(good);
             from = good;
         }
     }
-    Some(Track {
-        target: column.target,
-        interpolation: Interpolation::Linear,
-        times: keys.iter().map(|row| row.time).collect(),
-        width: column.width,
-        values: keys.iter().flat_map(|row| column.of(row)).copied().collect(),
-    })
+    Some(column.track(rows, &keys))
 }
 
 /// Whether the clip has every joint where the poses have it.
