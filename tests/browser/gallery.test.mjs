@@ -68,10 +68,11 @@ for (const renderer of BACK_ENDS)
       await page.goto(`${site.address}?renderer=${renderer}`);
       await whenReady(page);
       for (const ending of [".wasm", ".glb"]) assert.equal(page.requests.filter((url) => url.endsWith(ending)).length, 1, ending);
-      const [program, sample] = await page.evaluate(() =>
-        [".wasm", ".glb"].map((ending) => performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(ending)).map((entry) => /** @type {PerformanceResourceTiming} */ (entry))[0]),
+      const [program, sample, shell] = await page.evaluate(() =>
+        [".wasm", ".glb", ".css"].map((ending) => performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(ending)).map((entry) => /** @type {PerformanceResourceTiming} */ (entry))[0]),
       );
-      assert.equal(program.initiatorType, "fetch", "the shell requests it");
+      assert.equal(program.initiatorType, "fetch", "a script requests it");
+      assert.ok(program.startTime < shell.responseEnd, "it doesn't wait for the shell");
       assert.equal(sample.initiatorType, "link", "the page itself requests it");
       assert.ok(sample.startTime < program.responseEnd && program.startTime < sample.responseEnd, "side by side");
       assert.deepEqual(page.troubles, []);

@@ -34,6 +34,9 @@ export function forcedBackend() {
   return wanted === "webgpu" || wanted === "webgl2" ? wanted : null;
 }
 
+/** The back end to try first, as far as can be told without asking for an adapter. */
+export const likelyBackend = () => forcedBackend() ?? (hasBackend("webgpu") ? "webgpu" : "webgl2");
+
 /**
  * Returns what this browser lacks and what to try, in sentences; null if it has everything.
  * @returns {{ missing: string[], attempts: string[] } | null}

@@ -1,7 +1,8 @@
 // Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is
 // downloaded only if the first can't be used.
-import { forcedBackend, hasBackend } from "./capabilities.js";
+import { likelyBackend } from "./capabilities.js";
 import { showProgress } from "./panels.js";
+import { programs, request } from "./request.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -10,13 +11,6 @@ import { showProgress } from "./panels.js";
 const MODELS_START = 0.4;
 
 /** @typedef {{ compiled: Promise<WebAssembly.Module>, abort: () => void }} Download */
-
-const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-programs"]'));
-/**
- * The build records the length, because the header may give the compressed one.
- * @type {Record<Backend, { script: string, wasm: string, bytes: number }>}
- */
-const programs = JSON.parse(meta.content);
 
 /**
  * Each is compiled once for all instances.
@@ -68,21 +62,22 @@ export async function loadProgram(backend) {
 function download(backend) {
   const started = downloads[backend];
   if (started !== undefined) return started;
-  const controller = new AbortController();
-  const compiled = compile(backend, controller.signal);
+  const early = window.earlyRequest;
+  delete window.earlyRequest;
+  const { response, abort } = early?.backend === backend ? early : request(backend);
+  const compiled = compile(response, programs[backend].bytes);
   // Avoids an unhandled rejection if nobody waits for it.
   compiled.catch(() => {});
-  return (downloads[backend] = { compiled, abort: () => controller.abort() });
+  return (downloads[backend] = { compiled, abort });
 }
 
 /**
  * Compiles the program while it downloads, and shows the progress.
- * @param {Backend} backend
- * @param {AbortSignal} signal
+ * @param {Promise<Response>} requested
+ * @param {number} bytes Its length.
  */
-async function compile(backend, signal) {
-  const { wasm, bytes } = programs[backend];
-  const response = await fetch(new URL(wasm, document.baseURI), { signal });
+async function compile(requested, bytes) {
+  const response = await requested;
   if (!response.ok || response.body === null) throw new Error(`${response.url}: the server answered ${response.status}`);
   let received = 0;
   /** @type {TransformStream<Uint8Array<ArrayBuffer>, Uint8Array<ArrayBuffer>>} */
@@ -99,4 +94,4 @@ async function compile(backend, signal) {
 }
 
 // The likely one, before anything else.
-if (typeof WebAssembly === "object") download(forcedBackend() ?? (hasBackend("webgpu") ? "webgpu" : "webgl2"));
+if (typeof WebAssembly === "object") download(likelyBackend());

@@ -204,6 +204,8 @@ export interface Gaitway {
 declare global {
   interface Window {
     gaitway: Gaitway;
+    /** The program that the page's head has requested, until the shell takes it over. */
+    earlyRequest?: { backend: Backend; response: Promise<Response>; abort: () => void };
     /** Files that the system opens with the installed page. */
     launchQueue?: { setConsumer(consumer: (launch: { files: FileSystemFileHandle[] }) => void): void };
   }

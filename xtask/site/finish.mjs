@@ -151,6 +151,10 @@ html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}
 html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await bundled("web/shell.css"))}"`);
 html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundled("web/shell.js"))}"`);
 html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
+const start = await bundled("web/start.js", "iife");
+html = replaced(html, '<script src="start.js"></script>', `<script>${start}</script>`);
+// The policy allows no other script in the page's text.
+html = replaced(html, "script-src 'self'", `script-src 'self' 'sha256-${crypto.createHash("sha256").update(start).digest("base64")}'`);
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 // Of several scenes with one model the first, which is the plainest.
 const images = Object.fromEntries(scenes.map(({ model }, index) => [model, stills[index].large]).reverse());

@@ -1,0 +1,9 @@
+// Requests the likely program before anything else. The build writes this script into the page's head: a file of its
+// own would arrive as late as the style sheet.
+import { likelyBackend } from "./shell/capabilities.js";
+import { request } from "./shell/request.js";
+
+if (typeof WebAssembly === "object") {
+  const backend = likelyBackend();
+  window.earlyRequest = { backend, ...request(backend) };
+}
