@@ -167,11 +167,55 @@ fn broken_archives_report_the_problem() {
     assert!(empty.contains("expected a model") && empty.contains("readme.txt"), "{empty}");
 }
 
+/// Returns where the directory of an archive of one file begins.
+fn directory(archive: &[u8]) -> usize {
+    archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory")
+}
+
+#[test]
+fn what_cannot_be_unpacked_names_the_file_and_what_was_found() {
+    let whole = zipped(&[("m.glb", Build::triangle().glb())]);
+    let check = |change: &dyn Fn(&mut [u8], usize), expected: &str| {
+        let (mut archive, at) = (whole.clone(), directory(&whole));
+        change(&mut archive, at);
+        let problem = unpacked("a.zip", archive).unwrap_err().to_string();
+        assert!(
+            problem.starts_with("a.zip: “m.glb”: expected ") && problem.contains(expected),
+            "{expected}: {problem}"
+        );
+    };
+    check(&|archive, at| archive[at + 8] |= 1, "expected stored or deflated data, found encrypted data; unpack it");
+    check(&|archive, at| archive[at + 10] = 14, "expected stored or deflated data, found LZMA; unpack it");
+    check(&|archive, at| archive[at + 16] ^= 1, "found other data; download or save it again");
+    // The directory has another size, either way, an impossible one, and a wrong offset.
+    check(&|archive, at| archive[at + 24] += 1, "found other data");
+    check(&|archive, at| archive[at + 24] -= 1, "found other data");
+    check(&|archive, at| archive[at + 26] = 0x10, "found other data");
+    check(&|archive, at| archive[at + 42] = 1, "of data at byte 1 of the archive, found no such data");
+    // A block of the type that Deflate doesn't have.
+    check(&|archive, _| archive[30 + "m.glb".len()] |= 0b110, "found other data");
+}
+
+#[test]
+fn an_archive_is_recognized_by_its_name_or_its_beginning() {
+    let whole = zipped(&[("m.glb", Build::triangle().glb()), ("empty", Vec::new())]);
+    let prefixed = [b"\r\n", &whole[..]].concat();
+    for (name, bytes) in
+        [("m", &whole), ("m.zip", &whole), ("M.ZIP", &prefixed), ("https://a.b/m.zip?raw=1", &prefixed)]
+    {
+        let files = unpacked(name, bytes.clone()).expect(name);
+        assert_eq!(files.names().collect::<Vec<_>>(), ["m.glb", "empty"], "{name}");
+        assert_eq!(check(&files), [""; 0], "{name}");
+    }
+    let page = unpacked("a.zip", b"<!DOCTYPE html><title>404</title>".to_vec()).unwrap_err().to_string();
+    assert!(page.starts_with("a.zip: expected a zip archive with a list of files at its end, found none"), "{page}");
+}
+
 /// The header claims a huge file, so it is refused before anything is unpacked.
 #[test]
 fn an_archive_that_is_too_large_is_rejected() {
     let mut archive = zipped(&[("m.glb", Build::triangle().glb())]);
-    let central = archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory");
+    let central = directory(&archive);
     archive[central + 24..central + 28].copy_from_slice(&0xF000_0000_u32.to_le_bytes());
     let problem = unpacked("bomb.zip", archive).unwrap_err().to_string();
     assert!(problem.contains("bomb.zip") && problem.contains("expected at most 2048 MiB in all"), "{problem}");

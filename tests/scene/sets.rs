@@ -204,7 +204,7 @@ fn files_from_an_archive_have_its_name_as_origin() {
     assert!(several.contains("a/m.gltf, b/n.gltf"), "{several}");
     let cut = write(&folder, "cut.zip", b"PK\x03\x04 and no more");
     let cut = open_paths(&[cut]).expect_err("it is no archive").to_string();
-    assert_eq!(cut, "cut.zip: not a readable zip: its list of files is missing or damaged (cut short?)");
+    assert!(cut.starts_with("cut.zip: expected a zip archive with a list of files at its end, found none"), "{cut}");
     std::fs::remove_dir_all(&folder).expect("it was created");
 }
 

@@ -1,6 +1,9 @@
 //! A set of named files in memory: dropped, picked, unpacked from an archive, read from disk or fetched.
 
-use std::io::{Cursor, Read};
+use std::borrow::Cow;
+
+use flate2::{Crc, Decompress, FlushDecompress, Status};
+use gaitway_unzip::{Data, Directory, Member};
 
 use super::LoadError;
 use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
@@ -47,7 +50,7 @@ impl FileSet {
     /// been added.
     pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Result<String, LoadError> {
         let (name, bytes) = (join("", &name.into()), bytes.into());
-        if bytes.starts_with(ZIP) && !is_npz(&bytes) {
+        if is_zip(&name, &bytes) {
             self.unpack(&name, &bytes)?;
         } else {
             self.insert(name.clone(), bytes);
@@ -135,45 +138,59 @@ impl FileSet {
 
     fn unpack(&mut self, archive_name: &str, bytes: &[u8]) -> Result<(), LoadError> {
         let error = |problem: String| LoadError::Archive { file: archive_name.to_owned(), problem };
-        let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
-            error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
-        })?;
-        let entries = archive.len();
+        let directory = Directory::find(bytes).map_err(error)?;
         let too_large = |expected: String, found: String| {
             let file = archive_name.to_owned();
             LoadError::TooLarge { file, place: String::new(), expected, found }
         };
-        if entries > MAX_ARCHIVE_FILES {
+        if directory.count > MAX_ARCHIVE_FILES as u64 {
             let expected = format!("at most {MAX_ARCHIVE_FILES} files in an archive");
-            return Err(too_large(expected, entries.to_string()));
+            return Err(too_large(expected, directory.count.to_string()));
         }
         // The archive is in memory together with what is unpacked from it.
         let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
-        for index in 0..entries {
-            let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
-            let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
-            if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
+        for member in directory.members() {
+            let member = member.map_err(error)?;
+            let name = &*member.name();
+            if member.is_folder() || name.starts_with("__MACOSX/") || bare_name(name).starts_with("._") {
                 continue;
             }
             let too_many_bytes = || {
                 let max = MAX_READ_BYTES >> 20;
                 too_large(format!("at most {max} MiB in all, packed and unpacked"), "more".to_owned())
             };
-            // An oversized header is trusted to save work; one that understates the size is caught while unpacking.
-            if entry.size() > bytes_left {
-                return Err(too_many_bytes());
-            }
-            let likely = entry.size().min(entry.compressed_size().saturating_mul(MAX_COMPRESSION));
-            let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
-            entry
-                .take(bytes_left + 1)
-                .read_to_end(&mut content)
-                .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_many_bytes)?;
+            bytes_left = bytes_left.checked_sub(member.bytes).ok_or_else(too_many_bytes)?;
+            let content = unpacked(bytes, &member).map_err(|problem| error(format!("“{name}”: {problem}")))?;
             self.insert(name, content);
         }
         Ok(())
     }
+}
+
+/// Returns a member's contents.
+fn unpacked(archive: &[u8], member: &Member) -> Result<Vec<u8>, String> {
+    let content = match member.data(archive)? {
+        Data::Stored(bytes) => Cow::Borrowed(bytes),
+        Data::Deflated(packed) => inflated(packed, member.bytes).ok_or_else(|| member.damaged())?.into(),
+    };
+    let mut crc = Crc::new();
+    crc.update(&content);
+    if member.is_sound(content.len(), crc.sum()) { Ok(content.into_owned()) } else { Err(member.damaged()) }
+}
+
+/// Returns what a Deflate stream holds, if that has the expected size.
+fn inflated(packed: &[u8], bytes: u64) -> Option<Vec<u8>> {
+    let possible = (packed.len() as u64).saturating_mul(MAX_COMPRESSION);
+    let mut content = Vec::with_capacity(usize::try_from(bytes).ok().filter(|_| bytes <= possible)?);
+    let status = Decompress::new(false).decompress_vec(packed, &mut content, FlushDecompress::Finish);
+    matches!(status, Ok(Status::StreamEnd)).then_some(content)
+}
+
+/// Returns whether a file is an archive to unpack. The name decides if something else precedes the archive, or if the file is
+/// damaged.
+fn is_zip(name: &str, bytes: &[u8]) -> bool {
+    let has_extension = without_query(name).to_ascii_lowercase().ends_with(".zip");
+    (has_extension || bytes.starts_with(ZIP)) && !is_npz(bytes)
 }
 
 /// Returns whether a zip archive holds NumPy arrays, so that it stays one file. Its first member's name decides.
