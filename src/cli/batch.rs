@@ -105,7 +105,7 @@ impl Batch<'_> {
 
     fn write(&self, job: &Job) -> Outcome<Made> {
         let motion = read_motion(&job.motion, &Disk::default())?;
-        let made = make(self.arguments, &self.opened.model, &motion, self.map.as_ref())?;
+        let made = make(&self.arguments.choices, &self.opened.model, &motion, self.map.as_ref())?;
         let bytes = clip_file(&self.opened, &made, self.arguments.clip_only, self.format)?;
         if let Some(folder) = job.out.parent() {
             fs::create_dir_all(folder)

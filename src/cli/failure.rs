@@ -11,11 +11,11 @@ use crate::retarget::{MapError, RetargetError};
 use crate::state::UnknownName;
 
 /// The result of a command or a part of one.
-pub(super) type Outcome<T = ()> = Result<T, Failure>;
+pub type Outcome<T = ()> = Result<T, Failure>;
 
 /// The member `error` of the document that `--json` prints. Unknown parts are left out. Boxed strings keep results small.
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Failure {
+pub struct Failure {
     /// All of it, as people read it: `FILE: PLACE: expected X, found Y; HINT`.
     message: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,36 +33,37 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    pub fn new(message: impl Display) -> Self {
+    pub(super) fn new(message: impl Display) -> Self {
         Self::default().saying(message)
     }
 
-    pub fn expected(expected: impl Into<String>, found: impl Into<String>) -> Self {
+    pub(super) fn expected(expected: impl Into<String>, found: impl Into<String>) -> Self {
         let (expected, found) = (expected.into(), found.into());
         let message = format!("expected {expected}, found {found}");
         Self::parts(None, None, Some(&expected), Some(&found)).saying(message)
     }
 
     /// Adds what to do.
-    pub fn with_hint(self, hint: impl Display) -> Self {
+    pub(super) fn with_hint(self, hint: impl Display) -> Self {
         let message = format!("{}; {hint}", self.message);
         self.saying(message)
     }
 
     /// Adds the place in the file, before the file itself.
-    pub fn at(mut self, place: &str) -> Self {
+    pub(super) fn at(mut self, place: &str) -> Self {
         self.message = format!("{place}: {}", self.message);
         self.place = Some(place.into());
         self
     }
 
     /// Adds the name of the file.
-    pub fn in_file(mut self, file: impl Display) -> Self {
+    pub(super) fn in_file(mut self, file: impl Display) -> Self {
         self.message = format!("{file}: {}", self.message);
         self.file = Some(file.to_string().into());
         self
     }
 
+    /// The message for people.
     pub fn message(&self) -> &str {
         &self.message
     }

@@ -9,56 +9,88 @@ use super::motion::{DOUBTFUL_REST, doubtful_rest, open_motion};
 use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
 use super::{MapArguments, open};
 use crate::anim::Skeleton;
+use crate::asset::Asset;
 use crate::files::Disk;
-use crate::library::proposal_for;
-use crate::retarget::{Body, Contradiction, Proposal, Recognized, ResolvedMap, Retargeting};
+use crate::library::{Model, Motion, proposal_for};
+use crate::retarget::{Body, Contradiction, JointMapFile, Proposal, Recognized, ResolvedMap, Retargeting};
 
 pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
-    let opened_model = open(std::slice::from_ref(&arguments.model), disk)?.model;
-    let opened_motion = open_motion(&arguments.motion, disk)?;
-    let proposal = proposal_for(&opened_model, &opened_motion);
-    let (model, motion) = (&opened_model.asset, &opened_motion.asset);
-    let map = proposal.to_map(model, motion).to_file(model, motion);
-    for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
-        for text in contradictions_text(found).into_iter().chain(left_out_text(found)) {
-            warn(&format!("{}: {text}", file.display()));
-        }
-    }
-    let doubtful = if proposal.pairs.is_empty() {
-        warn(NOTHING_MATCHES);
-        Vec::new()
-    } else {
-        doubtful_rests(opened_model.body(), opened_motion.body(), &map.resolve(model, motion)?)
-    };
-    for (clip, message) in &doubtful {
-        eprintln!("warning: {}: {clip}: {message}", arguments.motion.display());
-    }
+    let model = open(std::slice::from_ref(&arguments.model), disk)?.model;
+    let motion = open_motion(&arguments.motion, disk)?;
+    let proposed = Proposed::new(&model, &motion)?;
+    proposed.warn(arguments);
     if let Some(path) = &arguments.out {
-        write_output(path, map.to_json()?.as_bytes(), &["json"], disk)?;
+        write_output(path, proposed.map.to_json()?.as_bytes(), &["json"], disk)?;
         if is_standard_output(path) {
             return Ok(());
         }
     }
     if arguments.json {
-        let mut document = serde_json::to_value(&map).map_err(|error| error.to_string())?;
-        explain(&proposal, &mut document, &model.skeleton);
+        return print_json(&proposed.document()?);
+    }
+    print_bytes(proposed.text().as_bytes())
+}
+
+/// A proposed map and what is reported about it.
+pub(super) struct Proposed<'a> {
+    model: &'a Asset,
+    motion: &'a Asset,
+    proposal: Proposal,
+    map: JointMapFile,
+    /// See [`doubtful_rests`].
+    doubtful: Vec<(String, String)>,
+}
+
+impl<'a> Proposed<'a> {
+    pub fn new(model: &'a Model, motion: &'a Motion) -> Outcome<Self> {
+        let proposal = proposal_for(model, motion);
+        let map = proposal.to_map(&model.asset, &motion.asset).to_file(&model.asset, &motion.asset);
+        let doubtful = if proposal.pairs.is_empty() {
+            Vec::new()
+        } else {
+            doubtful_rests(model.body(), motion.body(), &map.resolve(&model.asset, &motion.asset)?)
+        };
+        Ok(Self { model: &model.asset, motion: &motion.asset, proposal, map, doubtful })
+    }
+
+    fn warn(&self, arguments: &MapArguments) {
+        for (file, found) in [(&arguments.model, &self.proposal.model), (&arguments.motion, &self.proposal.motion)] {
+            for text in contradictions_text(found).into_iter().chain(left_out_text(found)) {
+                warn(&format!("{}: {text}", file.display()));
+            }
+        }
+        if self.proposal.pairs.is_empty() {
+            warn(NOTHING_MATCHES);
+        }
+        for (clip, message) in &self.doubtful {
+            warn(&format!("{}: {clip}: {message}", arguments.motion.display()));
+        }
+    }
+
+    /// The map for scripts, which can be used as one.
+    pub fn document(&self) -> Outcome<Value> {
+        let (target, source) = (&self.model.skeleton, &self.motion.skeleton);
+        let mut document = serde_json::to_value(&self.map).map_err(|error| error.to_string())?;
+        explain(&self.proposal, &mut document, target);
         let names = |skeleton: &Skeleton, joints: &[_]| -> Vec<String> {
             joints.iter().map(|&joint| skeleton.label(joint)).collect()
         };
-        document["unmapped_targets"] = json!(names(&model.skeleton, &proposal.unmapped_targets));
-        document["unused_sources"] = json!(names(&motion.skeleton, &proposal.unused_sources));
-        document["warnings"] = warnings(&proposal, [&model.skeleton, &motion.skeleton], &doubtful);
-        return print_json(&document);
+        document["unmapped_targets"] = json!(names(target, &self.proposal.unmapped_targets));
+        document["unused_sources"] = json!(names(source, &self.proposal.unused_sources));
+        document["warnings"] = warnings(&self.proposal, [target, source], &self.doubtful);
+        Ok(document)
     }
-    let mut text = String::new();
-    for pair in &proposal.pairs {
-        let (target, source) = (model.skeleton.label(pair.target), motion.skeleton.label(pair.source));
-        let slot = pair.slot.map_or("", |slot| slot.name());
-        // Writing to a string cannot fail.
-        let _ =
-            writeln!(text, "{target:<32} {source:<32} {slot:<24} {:>4.0} %  {}", 100.0 * pair.confidence, pair.reason);
+
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for pair in &self.proposal.pairs {
+            let (target, source) = (self.model.skeleton.label(pair.target), self.motion.skeleton.label(pair.source));
+            let (slot, confidence) = (pair.slot.map_or("", |slot| slot.name()), 100.0 * pair.confidence);
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{target:<32} {source:<32} {slot:<24} {confidence:>4.0} %  {}", pair.reason);
+        }
+        text
     }
-    print_bytes(text.as_bytes())
 }
 
 /// The map is still written, without sources, to be filled in.

@@ -4,6 +4,7 @@ mod batch;
 mod change;
 mod convert;
 mod failure;
+pub mod functions;
 mod inputs;
 mod inspect;
 mod layer;
@@ -143,21 +144,11 @@ struct RetargetArguments {
     /// and patterns.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     motion: Vec<PathBuf>,
-    /// A clip's name or index in the motion [default: its first].
-    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
-    clip: Option<String>,
     /// The joint map [default: as `gaitway map` proposes].
     #[arg(long, value_name = "MAP.json")]
     map: Option<PathBuf>,
     #[command(flatten)]
-    options: RetargetOptions,
-    #[command(flatten)]
-    changes: ChangeOptions,
-    #[command(flatten)]
-    layers: LayerOptions,
-    /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
-    #[arg(long, value_name = "N", value_parser = read_loops)]
-    loops: Option<u16>,
+    choices: RetargetChoices,
     /// The file to write; `-` for standard output. A .bvh or .vrma holds the clip alone.
     #[arg(long, value_name = "OUT.glb|.bvh|.vrma", required_unless_present = "out_dir", conflicts_with = "out_dir")]
     out: Option<PathBuf>,
@@ -176,6 +167,23 @@ struct RetargetArguments {
     /// Prints the mapped joints and the quality figures as a JSON document.
     #[arg(long)]
     json: bool,
+}
+
+/// What the retargeted clip depends on besides the files.
+#[derive(Debug, Args)]
+struct RetargetChoices {
+    /// A clip's name or index in the motion [default: its first].
+    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
+    clip: Option<String>,
+    #[command(flatten)]
+    options: RetargetOptions,
+    #[command(flatten)]
+    changes: ChangeOptions,
+    #[command(flatten)]
+    layers: LayerOptions,
+    /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
+    #[arg(long, value_name = "N", value_parser = read_loops)]
+    loops: Option<u16>,
 }
 
 /// Options that override the map.

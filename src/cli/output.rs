@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::io::{ErrorKind, Write, stderr, stdout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, Outcome};
 use crate::files::{Disk, STANDARD_STREAM, is_stream, refuse_input, save_file};
@@ -12,8 +12,13 @@ pub(super) fn write_output(out: &Path, bytes: &[u8], extensions: &[&str], disk: 
     if is_standard_output(out) {
         return print_bytes(bytes);
     }
+    save_output(out, bytes, extensions, &disk.files_read())
+}
+
+/// Writes a file that is none of the `inputs`. `extensions` are those that fit the content, in lower case.
+pub(super) fn save_output(out: &Path, bytes: &[u8], extensions: &[&str], inputs: &[PathBuf]) -> Outcome {
     check_extension(out, extensions)?;
-    Ok(save_file(out, bytes, &disk.files_read())?)
+    Ok(save_file(out, bytes, inputs)?)
 }
 
 pub(super) fn is_standard_output(out: &Path) -> bool {

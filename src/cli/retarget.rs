@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
-use super::{RetargetArguments, batch, change, open};
+use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     let opened = open(std::slice::from_ref(&arguments.model), disk)?;
     let motion = open_motion(motion, disk)?;
     let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
-    let made = make(arguments, &opened.model, &motion, map.as_ref())?;
+    let made = make(&arguments.choices, &opened.model, &motion, map.as_ref())?;
     write(arguments, out, &opened, &made, disk)?;
     made.warnings.iter().for_each(|(_, message)| warn(message));
     if arguments.json {
@@ -47,11 +47,13 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
 }
 
 /// A retargeted clip and what is reported about it.
-pub(super) struct Made {
-    clip: Clip,
-    frames_per_sec: f64,
+pub struct Made {
+    /// For the model's skeleton.
+    pub clip: Clip,
+    /// The rate of its source, for formats that need one.
+    pub frames_per_sec: f64,
     warnings: Vec<(&'static str, String)>,
-    /// For scripts.
+    /// What `--json` prints.
     pub document: Value,
     /// For people.
     text: String,
@@ -59,13 +61,13 @@ pub(super) struct Made {
 
 /// Retargets a clip of a motion, changes it, and measures how well it fits.
 pub(super) fn make(
-    arguments: &RetargetArguments,
+    choices: &RetargetChoices,
     model: &Model,
     motion: &Motion,
     map: Option<&OpenedMap>,
 ) -> Outcome<Made> {
-    let resolved = resolve_map(arguments, model, motion, map)?;
-    let source_clip = choose_clip(&motion.source, &motion.asset, arguments.clip.as_deref())?;
+    let resolved = resolve_map(choices, model, motion, map)?;
+    let source_clip = choose_clip(&motion.source, &motion.asset, choices.clip.as_deref())?;
     let pair = Retargeting::new(model.body(), motion.body(), source_clip, &resolved)?;
     let retargeted = pair.bake()?;
     let figures = pair.figures(&retargeted);
@@ -75,16 +77,16 @@ pub(super) fn make(
         warnings.push(("nowhere-to-extract", message));
     }
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
-    let clip = with_layers(&model.asset, &resolved, &retargeted, arguments.loops.map(usize::from), &mut warnings);
+    let clip = with_layers(&model.asset, &resolved, &retargeted, choices.loops.map(usize::from), &mut warnings);
     let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
     let symmetry = || Symmetry::of(&model.asset, model.recognition());
-    let ChangedClip { clip, seam } = arguments.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
+    let ChangedClip { clip, seam } = choices.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
     let recognized = || model.recognition().clone();
-    let clip = arguments.layers.bake(&model.asset, clip, recognized, arguments.loops.is_some(), &mut warnings)?;
+    let clip = choices.layers.bake(&model.asset, clip, recognized, choices.loops.is_some(), &mut warnings)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);
-    document["changed"] = change::document(&arguments.changes, seam.as_ref());
+    document["changed"] = change::document(&choices.changes, seam.as_ref());
     let mut text = text(&resolved, &retargeted, &figures);
     if let Some(seam) = seam {
         text += &format!("seam              {seam}; blended\n");
@@ -95,7 +97,7 @@ pub(super) fn make(
 
 /// Returns the given map or else the proposed one, with the command line's options.
 fn resolve_map(
-    arguments: &RetargetArguments,
+    choices: &RetargetChoices,
     model: &Model,
     motion: &Motion,
     given: Option<&OpenedMap>,
@@ -118,8 +120,8 @@ fn resolve_map(
         ))
         .in_file(&motion.source));
     }
-    apply_options(&mut map, arguments);
-    map.resolve(&model.asset, &motion.asset).map_err(|problem| match &arguments.options.unmapped {
+    apply_options(&mut map, &choices.options);
+    map.resolve(&model.asset, &motion.asset).map_err(|problem| match &choices.options.unmapped {
         Some(_) if problem.path() == Some("unmapped.clip") => Failure::from(problem).at("--unmapped"),
         _ => in_map(problem),
     })
@@ -138,17 +140,21 @@ fn write(arguments: &RetargetArguments, out: &Path, opened: &Opened, made: &Made
 
 /// The content of the file. `clip_only` matters for a .glb; other formats hold nothing else.
 pub(super) fn clip_file(opened: &Opened, made: &Made, clip_only: bool, format: ClipFormat) -> Outcome<Vec<u8>> {
-    let Opened { model, model_files, .. } = opened;
-    let skeleton = &model.asset.skeleton;
     if clip_only || format != ClipFormat::Glb {
-        return Ok(write_clip(model, skeleton, &made.clip, made.frames_per_sec, format)?);
+        let model = &opened.model;
+        return Ok(write_clip(model, &model.asset.skeleton, &made.clip, made.frames_per_sec, format)?);
     }
+    model_file(opened, &[&made.clip], "use --clip-only to write skeleton and clip")
+}
+
+/// The model's file with more clips. `hint` says what to do if it has none.
+pub(super) fn model_file(opened: &Opened, clips: &[&Clip], hint: &str) -> Outcome<Vec<u8>> {
+    let Opened { model, model_files, .. } = opened;
     let Some(ModelFiles { set, name }) = model_files else {
-        let problem =
-            "this sample is generated and has no file to add a clip to; use --clip-only to write skeleton and clip";
-        return Err(Failure::new(problem).in_file(&model.source));
+        let failure = Failure::new("this sample is generated and has no file to add a clip to").with_hint(hint);
+        return Err(failure.in_file(&model.source));
     };
-    Ok(write_model(set, name, skeleton, &[&made.clip])?)
+    Ok(write_model(set, name, &model.asset.skeleton, clips)?)
 }
 
 /// The extensions that fit a model as GLB: a VRM file is a GLB, and stays VRM when it is written. Clips alone can be other files.
@@ -163,8 +169,7 @@ pub(super) fn clip_format_of(out: &Path) -> Option<ClipFormat> {
 }
 
 /// Applies the command line's options, which override the map.
-fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
-    let options = &arguments.options;
+fn apply_options(map: &mut JointMap, options: &RetargetOptions) {
     let set = |slot: &mut crate::retarget::RootPart, part: Option<super::RootPartArgument>| {
         *slot = part.map_or(*slot, Into::into);
     };

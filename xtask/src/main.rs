@@ -5,6 +5,7 @@
 mod data;
 mod page;
 mod process;
+mod python;
 mod setup;
 mod sizes;
 mod test;

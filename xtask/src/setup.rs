@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 
 use crate::process::{is_ci, output, repository, run};
+use crate::python;
 
 const WASM: &str = "wasm32-unknown-unknown";
 
@@ -27,13 +28,17 @@ pub fn has_clang() -> bool {
     output("clang", &["--print-targets"]).is_some_and(|targets| targets.contains("wasm32"))
 }
 
-/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver and clang. These are system packages, so they
-/// are installed only on a CI machine; anyone else is told the command.
+/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver, clang and Python with some packages.
 pub fn tests() -> anyhow::Result<()> {
     let missing = missing_packages();
-    if missing.is_empty() {
-        return Ok(());
+    if !missing.is_empty() {
+        system_packages(&missing)?;
     }
+    python::setup()
+}
+
+/// Installs system packages, but only on a CI machine; anyone else is told the command.
+fn system_packages(missing: &[&str]) -> anyhow::Result<()> {
     let names = missing.join(" ");
     if !cfg!(target_os = "linux") || output("apt-get", &["--version"]).is_none() {
         bail!("missing: {names}. Install the equivalents for this system, and set CHROMIUM to the browser's path");
@@ -44,7 +49,7 @@ pub fn tests() -> anyhow::Result<()> {
     let is_root = output("id", &["-u"]).as_deref() == Some("0");
     let (program, first): (&str, &[&str]) = if is_root { ("apt-get", &[]) } else { ("sudo", &["-n", "apt-get"]) };
     run(program, &[first, &["update"]].concat())?;
-    run(program, &[first, &["install", "--yes", "--no-install-recommends"], &missing].concat())
+    run(program, &[first, &["install", "--yes", "--no-install-recommends"], missing].concat())
 }
 
 fn missing_packages() -> Vec<&'static str> {
@@ -54,6 +59,9 @@ fn missing_packages() -> Vec<&'static str> {
     }
     if output("ffmpeg", &["-version"]).is_none() {
         missing.push("ffmpeg");
+    }
+    if !python::is_present() {
+        missing.push("python3-venv");
     }
     if cfg!(target_os = "linux") {
         if !has_clang() {

@@ -7,16 +7,19 @@ use std::process::Stdio;
 use anyhow::Context;
 
 use crate::process::{self, Step, command, repository, run_with, succeeded, target_folder, time_table};
-use crate::{page, setup, sizes};
+use crate::{page, python, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
     setup::page()?;
     setup::tests()?;
     check_scripts()?;
+    python::check()?;
     cargo_checks()?;
+    let cli = cli()?;
+    python::test(&cli)?;
     page::build(&[], None)?;
     sizes::compress_and_print(true)?;
-    node_tests()
+    node_tests(&cli)
 }
 
 /// Types and lints of the page's, the build's and the tests' scripts.
@@ -32,27 +35,32 @@ fn cargo_checks() -> anyhow::Result<()> {
     for targets in [&["--workspace", "--all-targets"][..], &core, &wasm] {
         process::run("cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())?;
     }
-    let doc = ["doc", "--no-deps", "--package", "gaitway", "--package", "gaitway-core"];
+    let packages = ["--package", "gaitway", "--package", "gaitway-core", "--package", "gaitway-python"];
+    let doc = [&["doc", "--no-deps"][..], &packages].concat();
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    // Node's tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them.
-    process::run("cargo", &["build", "--workspace"])
+    // Other tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them. With the
+    // tests, so that their dependencies' features, and everything compiled for them, stay the same.
+    process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
+}
+
+/// Returns the path of the command line.
+fn cli() -> anyhow::Result<String> {
+    let program = target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
+    Ok(program.to_str().context("the target folder's path is not UTF-8")?.to_owned())
 }
 
 /// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
-fn node_tests() -> anyhow::Result<()> {
+fn node_tests(cli: &str) -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
-    let target = target_folder();
-    let program = target.join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
-    let program = program.to_str().context("the target folder's path is not UTF-8")?;
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
     let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
     // One file at a time, since each drives a browser that renders on the CPU. A file takes minutes; one that hangs is killed.
     let mut arguments = vec!["--test", "--test-concurrency=1", "--test-timeout=1200000"];
-    let mut variables = vec![("GAITWAY_CLI", program), ("CHROMIUM", chromium)];
+    let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", chromium)];
     // Node sees a pipe and would choose the form for programs.
     if std::io::stdout().is_terminal() {
         arguments.push("--test-reporter=spec");

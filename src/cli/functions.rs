@@ -1,0 +1,109 @@
+//! Subcommands as functions of loaded files, for the Python package. They fail with the messages of the command line, print
+//! nothing, and give standard input and output no name.
+
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use serde_json::Value;
+
+use super::RetargetChoices;
+pub use super::failure::{Failure, Outcome};
+use super::map::Proposed;
+use super::motion::read_motion;
+use super::output::save_output;
+pub use super::retarget::Made;
+use super::retarget::{clip_format_of, make, model_extensions, model_file};
+use super::usage_message;
+use crate::anim::Clip;
+use crate::editor::{ClipFormat, OpenedMap, write_clip};
+use crate::files::{Disk, Opened, read_map};
+use crate::library::{Model, Motion};
+
+/// A loaded file and the paths of all files that were read for it, none of which is overwritten.
+#[derive(Debug)]
+pub struct Loaded<T> {
+    /// The content.
+    pub content: T,
+    /// Includes the files that others refer to.
+    pub files_read: Vec<PathBuf>,
+}
+
+/// Opens a model with its parts, as `--model` does.
+///
+/// # Errors
+/// If the files cannot be read or are not exactly one model.
+pub fn load_model(paths: &[PathBuf]) -> Outcome<Loaded<Opened>> {
+    let disk = Disk::default();
+    Ok(Loaded { content: disk.open_paths(paths)?, files_read: disk.files_read() })
+}
+
+/// Opens a motion, as `--motion` does.
+///
+/// # Errors
+/// If the file cannot be read or is not exactly one motion.
+pub fn load_motion(path: &Path) -> Outcome<Loaded<Motion>> {
+    let disk = Disk::default();
+    Ok(Loaded { content: read_motion(path, &disk)?, files_read: disk.files_read() })
+}
+
+/// Reads a joint map from JSON. Messages call it `name`.
+///
+/// # Errors
+/// If it is not a joint map.
+pub fn parse_map(name: &str, json: &str) -> Outcome<OpenedMap> {
+    Ok(OpenedMap { name: name.to_owned(), map: read_map(name, json.as_bytes())? })
+}
+
+/// Opens the file of a joint map.
+///
+/// # Errors
+/// If it cannot be read or is not a joint map.
+pub fn load_map(path: &Path) -> Outcome<OpenedMap> {
+    super::motion::open_map(path, &Disk::default())
+}
+
+/// Proposes a joint map: the document of `gaitway map --json`, which can be used as a map.
+///
+/// # Errors
+/// Never in practice: a proposed map fits.
+pub fn propose_map(model: &Model, motion: &Motion) -> Outcome<Value> {
+    Proposed::new(model, motion)?.document()
+}
+
+/// Retargets a clip. `options` are those of `gaitway retarget` that don't name files, such as `--feet=plant`; without a map, it
+/// is proposed.
+///
+/// # Errors
+/// If an option, the map or the motion doesn't fit.
+pub fn retarget(model: &Model, motion: &Motion, map: Option<&OpenedMap>, options: &[String]) -> Outcome<Made> {
+    #[derive(Parser)]
+    #[command(no_binary_name = true, disable_help_flag = true)]
+    struct Options {
+        #[command(flatten)]
+        choices: RetargetChoices,
+    }
+    let options = Options::try_parse_from(options).map_err(|error| Failure::from(usage_message(&error)))?;
+    make(&options.choices, model, motion, map)
+}
+
+/// Writes a clip alone, in the format that the extension asks for, a .glb without one. `inputs` are files that must not be
+/// overwritten.
+///
+/// # Errors
+/// If the format cannot hold the clip, or the file cannot be written.
+pub fn save_clip(out: &Path, model: &Model, clip: &Clip, frames_per_sec: f64, inputs: &[PathBuf]) -> Outcome {
+    let format = clip_format_of(out).unwrap_or(ClipFormat::Glb);
+    let bytes = write_clip(model, &model.asset.skeleton, clip, frames_per_sec, format)?;
+    save_output(out, &bytes, &ClipFormat::ALL.map(ClipFormat::extension), inputs)
+}
+
+/// Writes a model as a .glb, or a .vrm if it was one, with clips for its skeleton after its own.
+///
+/// # Errors
+/// If the model has no file or the output cannot be written.
+pub fn save_model(out: &Path, opened: &Opened, clips: &[&Clip], inputs: &[PathBuf]) -> Outcome {
+    let bytes = model_file(opened, clips, "write the clip alone")?;
+    let extensions = model_extensions(&opened.model.asset);
+    let extensions: Vec<&str> = extensions.into_iter().filter(|extension| ["glb", "vrm"].contains(extension)).collect();
+    save_output(out, &bytes, &extensions, inputs)
+}

@@ -1,0 +1,79 @@
+//! The Python package: a virtual environment for its tests in the target folder, its lints, and building and testing it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::Context;
+
+use crate::process::{output, repository, run, run_with, target_folder};
+
+/// What the environment has: a list of packages in `python`, and a copy of it once they are installed.
+const REQUIREMENTS: &str = "requirements.txt";
+/// A large package for one test.
+const RAY: &str = "requirements-ray.txt";
+
+const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
+
+/// Whether there is a Python that can make virtual environments.
+pub fn is_present() -> bool {
+    output(PYTHON, &["-c", "import ensurepip, venv"]).is_some()
+}
+
+/// Makes the environment. Without Ray, its test is skipped, and the next call tries again.
+pub fn setup() -> anyhow::Result<()> {
+    let environment = path(&environment())?;
+    if output(&program("python")?, &["--version"]).is_none() || !is_installed(REQUIREMENTS) {
+        run(PYTHON, &["-m", "venv", "--clear", &environment])?;
+        install(REQUIREMENTS)?;
+    }
+    if !is_installed(RAY)
+        && let Err(error) = install(RAY)
+    {
+        eprintln!("warning: {error:#}; the test with Ray is skipped");
+    }
+    Ok(())
+}
+
+/// Style and lints of the Python code.
+pub fn check() -> anyhow::Result<()> {
+    let ruff = program("ruff")?;
+    run(&ruff, &["format", "--check", "python"])?;
+    run(&ruff, &["check", "python"])
+}
+
+/// Builds the package like the other programs, installs it in the environment and runs its tests, which compare it with `cli`.
+pub fn test(cli: &str) -> anyhow::Result<()> {
+    let environment = path(&environment())?;
+    let build = ["develop", "--locked", "--quiet", "--manifest-path", "python/Cargo.toml"];
+    run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", environment.as_str())])?;
+    run_with(&program("python")?, &["-m", "pytest", "--quiet", "python"], &[("GAITWAY_CLI", cli)])
+}
+
+fn environment() -> PathBuf {
+    target_folder().join("python")
+}
+
+/// Returns the path of one of the environment's programs.
+fn program(name: &str) -> anyhow::Result<String> {
+    let folder = environment().join(if cfg!(windows) { "Scripts" } else { "bin" });
+    path(&folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
+}
+
+fn path(path: &std::path::Path) -> anyhow::Result<String> {
+    Ok(path.to_str().context("the target folder's path is not UTF-8")?.to_owned())
+}
+
+fn is_installed(requirements: &str) -> bool {
+    let wanted = fs::read(repository().join("python").join(requirements));
+    wanted.is_ok_and(|wanted| fs::read(environment().join(requirements)).is_ok_and(|installed| installed == wanted))
+}
+
+fn install(requirements: &str) -> anyhow::Result<()> {
+    let wanted = repository().join("python").join(requirements);
+    let wanted = path(&wanted)?;
+    let pip =
+        ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:", "--requirement"];
+    run(&program("python")?, &[&pip[..], &[wanted.as_str()]].concat())?;
+    fs::copy(&wanted, environment().join(requirements)).with_context(|| requirements.to_owned())?;
+    Ok(())
+}
