@@ -1,5 +1,5 @@
 // Renders scenes with `gaitway render`. Images are cached in the target folder: one is rendered again only when its
-// samples or the rendering code have changed, and the program is built only then.
+// samples or the rendering code have changed, and only then is the program built, unless GAITWAY_CLI names one.
 import { spawnSync } from "node:child_process";
 import crypto from "node:crypto";
 import fs from "node:fs";
@@ -37,8 +37,8 @@ export function renderScenes(wanted, samples) {
     return { scene, link, file: path.join(folder, `${hash.digest("hex").slice(0, 32)}.png`) };
   });
   const missing = images.filter(({ file }) => !fs.existsSync(file));
-  if (missing.length > 0) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
-  const program = path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
+  const program = process.env.GAITWAY_CLI ?? path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
+  if (missing.length > 0 && process.env.GAITWAY_CLI === undefined) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
   for (const { scene, link, file } of missing)
     run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
   return images.map(({ file }) => file);

@@ -57,7 +57,7 @@ fn run() -> anyhow::Result<()> {
 
 fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(features, url)?;
+    page::build(features, url, None)?;
     sizes::compress_and_print(features.is_empty())
 }
 
@@ -70,6 +70,6 @@ fn site_url(url: &str) -> anyhow::Result<String> {
 
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(&[], None)?;
+    page::build(&[], None, None)?;
     page::serve(port)
 }

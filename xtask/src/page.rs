@@ -51,8 +51,9 @@ pub fn dist() -> PathBuf {
     repository().join("dist")
 }
 
-/// `url` is the site's future URL, for link previews.
-pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
+/// `url` is the site's future URL, for link previews. `cli` is the command line that draws the pictures; without one, it is built
+/// if they have changed.
+pub fn build(features: &[&str], url: Option<&str>, cli: Option<&str>) -> anyhow::Result<()> {
     // Cargo spends most of a build on one core, in link-time optimization: meanwhile another runs wasm-opt on the first program.
     thread::scope(|scope| {
         let mut optimizing = Vec::new();
@@ -69,7 +70,8 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     let (dist, programs) = (dist(), programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
-    run("node", &arguments)
+    let variables: Vec<_> = cli.map(|cli| ("GAITWAY_CLI", cli)).into_iter().collect();
+    run_with("node", &arguments, &variables)
 }
 
 /// Serves the built page until the process is stopped.

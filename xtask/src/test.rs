@@ -17,7 +17,7 @@ pub fn run() -> anyhow::Result<()> {
     cargo_checks()?;
     let cli = cli()?;
     python::test(&cli)?;
-    page::build(&[], None)?;
+    page::build(&[], None, Some(&cli))?;
     sizes::compress_and_print(true)?;
     node_tests(&cli)
 }
