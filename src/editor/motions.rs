@@ -65,9 +65,8 @@ impl Editor {
         self.events.push(Event::MotionsAdded);
         let mut notice = added_from(clips, &motions);
         if is_by_hand {
-            let playing = self.library.active().and_then(|model| active_clip(model, &self.state));
-            if playing.is_some_and(|clip| !has_map && self.suit_feet(clip)) {
-                notice += " Its feet would slide or hover, so they are held on the ground: Undo lets them go.";
+            if !has_map && let Some(about_feet) = self.suit_feet() {
+                notice = format!("{notice} {about_feet}");
             }
             self.suits_follow = true;
             self.suit_follow();

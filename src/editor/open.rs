@@ -35,6 +35,7 @@ struct Companions {
     motions: Option<Vec<Motion>>,
     map: Option<MotionMap>,
     view: Option<ViewerState>,
+    is_by_hand: bool,
 }
 
 /// The contents of the notice about an opened model.
@@ -45,6 +46,7 @@ struct Opened {
     evicted: Vec<String>,
     lacks_joints: bool,
     about_motions: Option<String>,
+    about_feet: Option<&'static str>,
 }
 
 impl Editor {
@@ -62,7 +64,7 @@ impl Editor {
         self.refused.clear();
         let opened = match motions {
             motions if has_models => {
-                let opened = self.open_models(models, Companions { motions, map: waiting, view }, admit);
+                let opened = self.open_models(models, Companions { motions, map: waiting, view, is_by_hand }, admit);
                 if opened.is_ok() {
                     self.suits_follow = is_by_hand;
                     self.suit_automatic_follow();
@@ -113,10 +115,11 @@ impl Editor {
         companions: Companions,
         admit: Admit<'_>,
     ) -> Result<(), String> {
-        let Companions { motions, map, view } = companions;
-        let is_view = view.is_some();
+        let Companions { motions, map, view, is_by_hand } = companions;
+        let (is_view, has_map) = (view.is_some(), map.is_some());
         let keeps_motions = !is_view && motions.as_ref().is_none_or(|motions| !motions.is_empty());
         let motions = motions.unwrap_or_default();
+        let suits_feet = is_by_hand && !is_view && !has_map && !motions.is_empty();
         if keeps_motions {
             self.check_room(&motions)?;
         }
@@ -159,9 +162,13 @@ impl Editor {
             self.finish_view(is_view);
             None
         };
+        let about_feet = if suits_feet { self.suit_feet() } else { None };
         if was_loaded && !is_view {
             let is_new = self.library.models().len() + evicted.len() > known;
-            self.notify_undoable(Opened { name, is_new, others, evicted, lacks_joints, about_motions }.text());
+            let opened = Opened { name, is_new, others, evicted, lacks_joints, about_motions, about_feet };
+            self.notify_undoable(opened.text());
+        } else if let Some(about_feet) = about_feet {
+            self.notify_undoable(about_feet.to_owned());
         }
         Ok(())
     }
@@ -207,6 +214,7 @@ impl Editor {
         self.report(problems);
         self.choose_retargeted(new.first().map(ClipIdentity::first_of));
         let clips = self.clips_of_last(new.len());
+        self.events.extend((clips > 0).then_some(Event::MotionsAdded));
         let sentences = [(clips > 0).then(|| added_from(clips, &new)), dropped];
         let sentences: Vec<String> = sentences.into_iter().flatten().collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
@@ -429,7 +437,7 @@ impl Opened {
         if self.lacks_joints {
             text += " Open its .skel and .attach as well to add its joints.";
         }
-        if let Some(sentence) = &self.about_motions {
+        for sentence in self.about_motions.as_deref().into_iter().chain(self.about_feet) {
             text += &format!(" {sentence}");
         }
         text

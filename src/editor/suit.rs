@@ -3,7 +3,7 @@
 
 use super::Editor;
 use crate::retarget::{Feet, Verdict, Verdicts};
-use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, frame_all};
+use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, active_clip, frame_all};
 
 /// The camera follows if framing the whole travel would take it this many times as far away as framing the character.
 const FAR: f32 = 1.7;
@@ -29,20 +29,19 @@ impl Editor {
         }
     }
 
-    /// Holds the feet on the ground if a borrowed clip slides or hovers more than is acceptable and no map says what feet do.
-    /// Returns whether it did, which is a step of its own.
-    pub(super) fn suit_feet(&mut self, clip: usize) -> bool {
-        let Some(model) = self.library.active() else { return false };
-        let Some(figures) = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none()) else {
-            return false;
-        };
+    /// Holds the feet on the ground if the borrowed clip that plays slides or hovers more than is acceptable, in a step of its own.
+    /// Returns what to tell the user about it.
+    pub(super) fn suit_feet(&mut self) -> Option<&'static str> {
+        let model = self.library.active()?;
+        let clip = active_clip(model, &self.state)?;
+        let figures = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none())?;
         let verdicts = Verdicts::new(figures, model.size_metres());
-        let is_visible = [verdicts.foot_slide, verdicts.foot_hover].contains(&Some(Verdict::NeedsReview));
-        if is_visible {
-            self.end_gesture();
-            self.apply(Command::SetFeet(Some(Feet::Plant)));
-            self.end_gesture();
+        if ![verdicts.foot_slide, verdicts.foot_hover].contains(&Some(Verdict::NeedsReview)) {
+            return None;
         }
-        is_visible
+        self.end_gesture();
+        self.apply(Command::SetFeet(Some(Feet::Plant)));
+        self.end_gesture();
+        Some("The feet would slide or hover, so they are held on the ground. Undo turns this off.")
     }
 }

@@ -219,7 +219,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     harness.run();
     assert!(harness.query_by_label("Z").is_some());
     press(&mut harness, Tab::Info.label());
-    for (name, value) in [("Commercial usage name", "Allow"), (&*text::first_person("Head"), "Third person only")] {
+    for (name, value) in [("Commercial usage", "Allow"), (&*text::first_person("Head"), "Third person only")] {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");
     }
 }

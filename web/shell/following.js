@@ -105,7 +105,7 @@ export function showMissing(problems, link, isUnchanged = false) {
   byId("missing-rest").textContent = isUnchanged
     ? "The current view stays as it was."
     : isModel
-      ? "“Try again” loads the whole link."
+      ? "“Try again” reloads the whole link."
       : "Everything else is shown.";
   button("missing-again").onclick = () => {
     dialog("missing").close();

@@ -125,10 +125,11 @@ fn transforms(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, 
         let (at, font) = (pos2(right, heads.center().y), style::SMALL);
         ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
     }
-    transform(ui, &text::local_transform(parent.as_deref()), local);
+    // Below a scaled parent, the numbers are not metres.
+    transform(ui, &text::local_transform(parent.as_deref()), local, "");
     let character = shown.frame.characters.first();
     if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
-        transform(ui, "World", &decomposed(world));
+        transform(ui, "World", &decomposed(world), " m");
     }
 }
 
@@ -178,13 +179,14 @@ fn decomposed(world: &Affine3A) -> Transform {
     Transform::from_matrix(&(*world).into())
 }
 
-fn transform(ui: &mut Ui, title: &str, value: &Transform) {
+/// `unit`: of its position.
+fn transform(ui: &mut Ui, title: &str, value: &Transform, unit: &str) {
     let palette = style::palette(ui);
     ui.add_space(4.0);
     ui.add(egui::Label::new(RichText::new(title).small().color(palette.weak_text)).truncate());
     let (x, y, z) = value.rotation.normalize_or_identity().to_euler(EulerRot::XYZ);
     let degrees = Vec3::new(x, y, z) * (180.0 / std::f32::consts::PI);
-    let rows = [(text::POSITION, value.translation, " m"), ("Rotation", degrees, "°"), (text::SCALE, value.scale, "")];
+    let rows = [(text::POSITION, value.translation, unit), ("Rotation", degrees, "°"), (text::SCALE, value.scale, "")];
     for (name, numbers, unit) in rows {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
         ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, style::SMALL, palette.weak_text);

@@ -15,7 +15,7 @@ pub const NEEDS_RANGE: &str = "Set a range on the timeline first (keys I and O).
 /// Why that button is disabled.
 pub const TRIM_FIRST: &str = "To trim, turn off Reverse and reset the clip speed.";
 /// Button that brings back the whole clip.
-pub const UNDO_TRIM: &str = "Restore the whole clip";
+pub const UNDO_TRIM: &str = "Undo trim";
 /// Switch: the end is made to meet the start.
 pub const MAKE_LOOP: &str = "Make loopable";
 /// Slider: the time that the seam is blended over.
@@ -47,7 +47,7 @@ pub const ABOUT_LAYERS: &str = "Layers play over this clip, the last one on top.
 /// Chooser of a layer's clip.
 pub const LAYER_CLIP: &str = "Layer's clip";
 /// Button that swaps a layer with the next.
-pub const RAISE_LAYER: &str = "Raise";
+pub const RAISE_LAYER: &str = "Move up";
 /// Button that removes a layer.
 pub const REMOVE_LAYER: &str = "Remove layer";
 /// Topic of the choice of modes.

@@ -221,9 +221,9 @@ pub const REST_OF_MODEL: &str = "Rest pose of the model";
 /// Accessible name of the choice of the motion's rest pose.
 pub const REST_OF_MOTION: &str = "Rest pose of the motion";
 /// Choice of what happens to translations of joints other than the hips.
-pub const TRANSLATIONS: &str = "Translations of joints";
+pub const TRANSLATIONS: &str = "Joint translations";
 /// Choice of what happens to scales of joints other than the hips.
-pub const SCALES: &str = "Scales of joints";
+pub const SCALES: &str = "Joint scales";
 
 /// Returns the option of doing what the map sets for all unmapped joints.
 pub fn default_policy(policy: &str) -> String {
@@ -276,19 +276,19 @@ pub const ROTATION_ERROR: &str = "Rotation error";
 /// Button that saves the joint map.
 pub const SAVE_MAP: &str = "Save map";
 /// Button that loads a joint map.
-pub const LOAD_MAP: &str = "Load map";
+pub const LOAD_MAP: &str = "Load map…";
 /// Button that removes the motion.
 pub const REMOVE_MOTION: &str = "Remove motion";
 /// Button that saves the model's file with the current clip.
 pub const SAVE_GLB: &str = "Save GLB";
 /// Button that shows the motion's skeleton.
-pub const SHOW_SOURCE: &str = "Show it beside the model";
+pub const SHOW_SOURCE: &str = "Show source beside the model";
 /// The same button while the skeleton is shown.
-pub const HIDE_SOURCE: &str = "Hide it";
+pub const HIDE_SOURCE: &str = "Hide source";
 /// Why those buttons are disabled while one of the model's own clips is active.
 pub const NEEDS_BORROWED_CLIP: &str = "Choose a borrowed clip in the clip list first.";
 /// Button that opens the motion's skeleton as the model.
-pub const OPEN_INSTEAD: &str = "Open it instead of the model";
+pub const OPEN_INSTEAD: &str = "Open source instead of the model";
 
 // Channels and rotation offset
 /// Channels of a joint, as switches and reasons name them: translation, rotation, scale.

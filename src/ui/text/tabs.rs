@@ -225,8 +225,13 @@ pub fn split_words(key: &str) -> String {
         }
         previous = letter;
     }
-    // VRM 0.x misspells it.
-    words.replace("ussage", "usage")
+    // VRM 0.x misspells it, and ends many keys with “Name” for the name of a choice.
+    words
+        .replace("ussage", "usage")
+        .replace(" url", " URL")
+        .replace("icense", "icence")
+        .trim_end_matches(" name")
+        .to_owned()
 }
 
 // Camera tab

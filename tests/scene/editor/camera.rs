@@ -124,7 +124,22 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     assert!(!told.iter().any(is_told));
     let told = open_by_hand(&mut editor, "sample:mannequin_run");
     assert_eq!((editor.state().retarget.feet, told.iter().any(is_told)), (None, false));
+    // Opened together, model and motion are set up as one after the other.
+    let both = |is_by_hand| Contents {
+        is_by_hand,
+        motions: contents(&["sample:walk"]).motions,
+        ..contents(&["sample:dwarf"])
+    };
+    let opened = |contents, mut editor: Editor| {
+        editor.open(contents, None, &mut any).expect("fits");
+        let told = editor.take_events();
+        assert!(told.contains(&Event::MotionsAdded));
+        (editor.state().retarget.feet, told.iter().any(is_told))
+    };
+    assert_eq!(opened(both(true), super::editor("sample:pilot")), (Some(Feet::Plant), true));
+    assert_eq!(opened(both(true), Editor::default()), (Some(Feet::Plant), true), "in an empty editor as well");
     // A script gets what it says.
+    assert_eq!(opened(both(false), super::editor("sample:pilot")), (None, false));
     open(&mut editor, "sample:dwarf");
     editor.remove_motion(0);
     open(&mut editor, "sample:walk");
