@@ -12,7 +12,7 @@ use crate::anim::Skeleton;
 use crate::asset::Asset;
 use crate::files::Disk;
 use crate::library::{Model, Motion, proposal_for};
-use crate::retarget::{Body, Contradiction, JointMapFile, Proposal, Recognized, ResolvedMap, Retargeting};
+use crate::retarget::{Body, Contradiction, JointMap, Proposal, Recognized, ResolvedMap, Retargeting};
 
 pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let model = open(std::slice::from_ref(&arguments.model), disk)?.model;
@@ -20,7 +20,8 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let proposed = Proposed::new(&model, &motion)?;
     proposed.warn(arguments);
     if let Some(path) = &arguments.out {
-        write_output(path, proposed.map.to_json()?.as_bytes(), &["json"], disk)?;
+        let map = proposed.map.to_file(&model.asset, &motion.asset);
+        write_output(path, map.to_json()?.as_bytes(), &["json"], disk)?;
         if is_standard_output(path) {
             return Ok(());
         }
@@ -36,7 +37,7 @@ pub(super) struct Proposed<'a> {
     model: &'a Asset,
     motion: &'a Asset,
     proposal: Proposal,
-    map: JointMapFile,
+    map: JointMap,
     /// See [`doubtful_rests`].
     doubtful: Vec<(String, String)>,
 }
@@ -44,7 +45,7 @@ pub(super) struct Proposed<'a> {
 impl<'a> Proposed<'a> {
     pub fn new(model: &'a Model, motion: &'a Motion) -> Outcome<Self> {
         let proposal = proposal_for(model, motion);
-        let map = proposal.to_map(&model.asset, &motion.asset).to_file(&model.asset, &motion.asset);
+        let map = proposal.to_map(&model.asset, &motion.asset);
         let doubtful = if proposal.pairs.is_empty() {
             Vec::new()
         } else {
@@ -70,7 +71,8 @@ impl<'a> Proposed<'a> {
     /// The map for scripts, which can be used as one.
     pub fn document(&self) -> Outcome<Value> {
         let (target, source) = (&self.model.skeleton, &self.motion.skeleton);
-        let mut document = serde_json::to_value(&self.map).map_err(|error| error.to_string())?;
+        let mut document =
+            serde_json::to_value(self.map.to_file(self.model, self.motion)).map_err(|error| error.to_string())?;
         explain(&self.proposal, &mut document, target);
         let names = |skeleton: &Skeleton, joints: &[_]| -> Vec<String> {
             joints.iter().map(|&joint| skeleton.label(joint)).collect()
