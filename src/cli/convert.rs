@@ -69,7 +69,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
 
 /// Whether the arguments ask for another clip than the file's.
 fn changes_clip(arguments: &ConvertArguments) -> bool {
-    !arguments.changes.changes().is_none() || !arguments.layers.layers.is_empty()
+    !arguments.changes.changes().is_none() || !arguments.layers.layers.is_empty() || !arguments.pins.is_empty()
 }
 
 /// Writes one clip with its skeleton.
@@ -79,13 +79,15 @@ fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: 
     Ok(write_clip(&model, &model.asset.skeleton, &clip, clip.frames_per_sec(), format)?)
 }
 
-/// Returns the chosen clip with its changes and layers, and prints its seam and warnings.
+/// Returns the chosen clip with its changes, layers and pins, and prints its seam and warnings.
 fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
     let clip = &asset.clips[choose_clip(name, asset, arguments.clip.as_deref())?];
     let mut warnings = Vec::new();
     let symmetry = || Symmetry::of(asset, &recognize(asset));
     let ChangedClip { clip, seam } = arguments.changes.change(asset, clip.clone(), symmetry, &mut warnings)?;
+    let period_secs = f64::from(clip.duration_secs());
     let clip = arguments.layers.bake(asset, clip, || recognize(asset), false, &mut warnings)?;
+    let clip = arguments.pins.bake(asset, || recognize(asset), clip, period_secs)?;
     warnings.iter().for_each(|(_, message)| warn(message));
     if let Some(seam) = seam {
         print_error(&format!("seam: {seam}; blended"));

@@ -11,6 +11,7 @@ mod layer;
 mod map;
 mod motion;
 mod output;
+mod pin;
 mod pose;
 #[cfg(feature = "render")]
 mod quiet;
@@ -42,6 +43,7 @@ use failure::{Failure, Outcome};
 use layer::LayerOptions;
 use motion::{MotionArguments, Overrides};
 use output::{is_standard_output, print_error, print_json, warn};
+use pin::PinOptions;
 
 /// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
@@ -103,6 +105,8 @@ struct Moment {
     /// The skinning method.
     #[arg(long, value_enum)]
     skinning: Option<Skinning>,
+    #[command(flatten)]
+    pins: PinOptions,
 }
 
 impl Moment {
@@ -181,6 +185,8 @@ struct RetargetChoices {
     changes: ChangeOptions,
     #[command(flatten)]
     layers: LayerOptions,
+    #[command(flatten)]
+    pins: PinOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
@@ -262,6 +268,8 @@ struct ConvertArguments {
     changes: ChangeOptions,
     #[command(flatten)]
     layers: LayerOptions,
+    #[command(flatten)]
+    pins: PinOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
@@ -468,6 +476,11 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
             Skinning::Rigid => SkinningMode::Rigid,
             Skinning::DualQuaternion => SkinningMode::DualQuaternion,
         }));
+    }
+    if let Some(model) = editor.library().active().filter(|_| !moment.pins.is_empty()) {
+        for (joint, pin) in moment.pins.pins(&model.asset, model.recognition())? {
+            editor.apply(Command::SetPin { joint, pin: Some(pin) });
+        }
     }
     Ok(())
 }

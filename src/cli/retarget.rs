@@ -82,7 +82,9 @@ pub(super) fn make(
     let symmetry = || Symmetry::of(&model.asset, model.recognition());
     let ChangedClip { clip, seam } = choices.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
     let recognized = || model.recognition().clone();
+    let period_secs = f64::from(clip.duration_secs());
     let clip = choices.layers.bake(&model.asset, clip, recognized, choices.loops.is_some(), &mut warnings)?;
+    let clip = choices.pins.bake(&model.asset, recognized, clip, period_secs)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);

@@ -45,7 +45,10 @@ impl Editor {
         let is_auto = self.state.camera == CameraChoice::Auto;
         let has_turntable = self.state.camera_options.turntable != 0.0;
         // Grabbing the scene or a joint stops the turntable.
-        let grabs = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::SetPose { .. });
+        let grabs = matches!(
+            command,
+            Command::Orbit { .. } | Command::Pan { .. } | Command::SetPose { .. } | Command::SetPin { .. }
+        );
         if grabs && has_turntable {
             self.record(Command::SetTurntable(0.0));
         }

@@ -1,6 +1,8 @@
 //! Exports: the active joint map, the model with a retargeted clip, a clip alone. Images are up to the shell, which has the
 //! graphics device.
 
+use glam::Vec3;
+
 use super::names::stem;
 use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
@@ -8,7 +10,9 @@ use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
-use crate::state::{ViewerState, active_clip, active_map, has_layers, stacked_layers, written_skeleton};
+use crate::state::{
+    ViewerState, active_clip, active_map, has_layers, looks_at_camera, pinned_clip, stacked_layers, written_skeleton,
+};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +22,7 @@ pub enum Export {
         /// Index into [`Library::motions`](crate::library::Library::motions).
         motion: usize,
     },
-    /// The model with one of its clips that is retargeted, changed or below layers.
+    /// The model with one of its clips that is retargeted, changed, below layers or pinned.
     Model {
         /// Index among all clips of the active model; one of its own clips as it is in the file is an error.
         clip: usize,
@@ -54,12 +58,12 @@ impl ExportedFile {
     }
 }
 
-/// Whether a clip as it plays is not in the model's file: it is retargeted, changed or below layers.
+/// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or pinned.
 pub fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
-    model.is_derived(clip) || has_layers(model, state)
+    model.is_derived(clip) || has_layers(model, state) || !state.edits.pins.is_empty()
 }
 
-/// A clip with its layers baked in, if it has any.
+/// A clip with its layers and pins baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
     remark: Option<String>,
@@ -171,14 +175,27 @@ impl Editor {
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
-        let Some(clip) = model.clip(clip).filter(|_| !below.is_empty() || !over.is_empty()) else {
-            return Ok(BakedClip { clip: None, remark: None });
-        };
-        let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
-        let baking = baking(clip, below, &periods, None);
-        let clip = bake_layers(&model.asset, clip, below, &baking);
-        let clip = bake_stack(&model.asset.skeleton, &clip, &over);
-        let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
-        Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })
+        let Some(clip) = model.clip(clip) else { return Ok(BakedClip { clip: None, remark: None }) };
+        let mut baked = BakedClip { clip: None, remark: None };
+        if !below.is_empty() || !over.is_empty() {
+            let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
+            let baking = baking(clip, below, &periods, None);
+            let layered = bake_layers(&model.asset, clip, below, &baking);
+            baked.clip = Some(bake_stack(&model.asset.skeleton, &layered, &over));
+            let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
+            baked.remark = (!baking.seamless).then(|| seam.to_owned());
+        }
+        // Pins repeat with the clip, not with its layers.
+        let (period_secs, eye) = (f64::from(clip.duration_secs()), looks_at_camera(&self.state).then(|| self.eye()));
+        let pinned = pinned_clip(model, &self.state, baked.clip.as_ref().unwrap_or(clip), period_secs, eye);
+        baked.clip = pinned.or(baked.clip);
+        Ok(baked)
+    }
+
+    /// The camera's position in the current view.
+    fn eye(&self) -> Vec3 {
+        let mut frame = Frame::default();
+        evaluate(&self.library, &self.state, self.aspect, &mut frame);
+        frame.view.eye
     }
 }

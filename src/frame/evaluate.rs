@@ -13,7 +13,7 @@ use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
     COMPARED_SKINNING, Comparison, EnvironmentChoice, LayerSampler, LightSetup, LookTarget, PoseSampler, SourceOnStage,
-    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, panes,
+    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, looks_at_camera, panes,
     resolved_bounds, source_on_stage, world_from_model,
 };
 
@@ -91,10 +91,8 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let follows = state.camera_options.follow;
     let travel = if follows { travel(model, frame.clip, state, &mut frame.scratch) } else { Vec3::ZERO };
     frame.scratch.travel = travel;
-    let eye = match state.display.look_at {
-        LookTarget::Camera => camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose),
-        _ => None,
-    };
+    let needs_eye = state.display.look_at == LookTarget::Camera || looks_at_camera(state);
+    let eye = needs_eye.then(|| camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose)).flatten();
     frame.scratch.sampler.apply_avatar(model, state, eye);
     let source = source_on_stage(library, state);
     write_characters(library, model, state, source.as_ref(), frame);

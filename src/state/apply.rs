@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
+use super::pins;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
     CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, VertexChoice,
@@ -47,6 +48,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetSprings(on) => state.display.springs = on,
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
         Command::ClearPose => state.edits.pose.clear(),
+        Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
         Command::SetLayers(layers) => set_layers(state, layers),
@@ -118,6 +120,10 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     state.edits.pose.clear();
     for (joint, degrees) in wanted.edits.pose {
         set_pose(state, None, joint, Some(degrees));
+    }
+    state.edits.pins.clear();
+    for (joint, pin) in wanted.edits.pins {
+        pins::set_pin(state, None, joint, Some(pin));
     }
     state.edits.names.clear();
     for (joint, name) in wanted.edits.names {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::pins::apply_pins;
 use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
 use super::{LayerSampler, UpAxis, ViewerState};
 use crate::anim::{
@@ -12,7 +13,7 @@ use crate::anim::{
 };
 use crate::avatar::{Avatar, LookAt, SpringCache, SpringMotion, apply_expressions, resolve_weights};
 use crate::library::{Model, ModelId};
-use crate::retarget::ClipLayer;
+use crate::retarget::{ClipLayer, Pin};
 
 /// The target of an avatar's gaze.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -51,6 +52,7 @@ struct SpringsKey {
     up: UpAxis,
     joints: BTreeMap<usize, [f32; 3]>,
     layers: Vec<ClipLayer>,
+    pins: BTreeMap<usize, Pin>,
 }
 
 impl AvatarPose {
@@ -136,8 +138,8 @@ fn gaze_direction(
 impl SpringsKey {
     fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
         let (revision, up) = (model.clips_revision(), state.edits.up);
-        let (joints, layers) = (state.edits.pose.clone(), state.edits.layers.clone());
-        Self { model: model.id, revision, clip, range, repeats, up, joints, layers }
+        let (joints, layers, pins) = (state.edits.pose.clone(), state.edits.layers.clone(), state.edits.pins.clone());
+        Self { model: model.id, revision, clip, range, repeats, up, joints, layers, pins }
     }
 
     /// Whether [`Self::new`] would return the same, without allocating.
@@ -153,10 +155,11 @@ impl SpringsKey {
             && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
             && self.joints == state.edits.pose
             && self.layers == state.edits.layers
+            && self.pins == state.edits.pins
     }
 }
 
-/// The active clip with layers, manually posed joints and constraints, without a crossfade.
+/// The active clip with layers, manually posed and pinned joints and constraints, without a crossfade and gazes at the camera.
 struct ClipMotion<'a> {
     model: &'a Model,
     state: &'a ViewerState,
@@ -172,6 +175,7 @@ impl SpringMotion for ClipMotion<'_> {
         sample_pose(self.model, self.clip, time_secs, time_secs, self.cursor, pose);
         self.layers.apply(self.model, self.state, time_secs, pose);
         pose_joints(self.model, self.state, pose);
+        apply_pins(self.model, self.state, None, Some(time_secs), pose);
         for constraint in &self.model.asset.avatar.constraints {
             constraint.apply(skeleton, pose);
         }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Feet, JointMap, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Feet, JointMap, Pin, RootOptions, Unmapped};
 
 /// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +66,13 @@ pub enum Command {
     },
     /// Returns all joints to the clip.
     ClearPose,
+    /// Pins a joint, unless the model can't pin it this way; `None` returns it to the clip.
+    SetPin {
+        /// Index in the file.
+        joint: usize,
+        /// Replaces the pin it had.
+        pin: Option<Pin>,
+    },
     /// Renames a joint (index in the file); an empty name restores the file's.
     RenameJoint {
         /// Index in the file.

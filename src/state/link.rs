@@ -4,6 +4,7 @@
 mod changes;
 mod files;
 mod layers;
+mod pins;
 mod values;
 
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
@@ -13,6 +14,7 @@ pub use self::files::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
     linked_files, most_similar_link, public_link, shown_files,
 };
+pub use self::pins::read_pin;
 pub use self::values::with_current_member;
 use self::values::*;
 use super::ViewerState;
@@ -200,6 +202,7 @@ const KEYS: &[Key] = &[
     key!("look", display.look_at, read_look, write_look, "camera, x,y,z in metres, or off"),
     key!("springs", display.springs, flag, write_flag, "0 or 1"),
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
+    Key { name: "pin", repeatable: true, read: pins::read, write: pins::write, reset: pins::reset },
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
     word!(
         "channel",

@@ -17,6 +17,7 @@ mod map_code;
 mod map_edit;
 mod maps;
 mod names;
+mod pins;
 mod playhead;
 mod stage;
 mod unknown;
@@ -36,7 +37,9 @@ pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
 pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layer};
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
-pub use link::{LinkError, from_link, from_object, read_layer, to_link, to_object, with_current_member};
+pub use link::{
+    LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member,
+};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
     linked_files, most_similar_link, public_link, shown_files,
@@ -45,6 +48,7 @@ pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
+pub use pins::{looks_at_camera, pinned_clip, pinning};
 pub use playhead::{
     PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_secs, manual_degrees, manual_rotation,
     play_range, unknown_clip, world_from_model,

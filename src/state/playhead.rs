@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::avatar::AvatarPose;
+use super::pins::apply_pins;
 use super::{ClipChoice, LayerSampler, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
@@ -132,9 +133,10 @@ impl PoseSampler {
         pose_joints(model, state, &mut self.pose);
     }
 
-    /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
-    /// world space, without which the eyes don't follow the camera. Allocates only when the spring simulation restarts.
+    /// Applies pins and the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
+    /// world space, without which nothing follows the camera. Allocates only when the spring simulation restarts.
     pub fn apply_avatar(&mut self, model: &Model, state: &ViewerState, eye: Option<Vec3>) {
+        apply_pins(model, state, eye, None, &mut self.pose);
         self.avatar.apply(model, state, eye, &mut self.pose, &mut self.properties);
         for (&index, &weight) in &state.edits.morph {
             if let Some(slot) = self.pose.morph_weights.get_mut(index) {

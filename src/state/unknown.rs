@@ -9,9 +9,11 @@ pub enum NameKind {
     Clip,
     /// A material variant.
     Variant,
+    /// A joint, by name, index or body part.
+    Joint,
 }
 
-/// A requested clip or variant that doesn't exist.
+/// A requested clip, variant or joint that doesn't exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownName {
     /// What was requested.
@@ -31,6 +33,7 @@ impl UnknownName {
         match self.kind {
             NameKind::Clip => "the name or index of a clip",
             NameKind::Variant => "the name of a material variant",
+            NameKind::Joint => "the name, index or body part of a joint",
         }
     }
 
@@ -52,6 +55,7 @@ impl fmt::Display for UnknownName {
         let plural = match self.kind {
             NameKind::Clip => "clips",
             NameKind::Variant => "variants",
+            NameKind::Joint => "joints",
         };
         write!(f, "expected {}, found “{}”; ", self.expected(), self.name)?;
         let names = self.suggestions().join(", ");

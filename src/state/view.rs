@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Feet, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Feet, Pin, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -157,6 +157,8 @@ pub struct Edits {
     /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::manual_rotation`]. They override
     /// the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
+    /// Pinned joints, by index in the file. They override the clip and manual poses.
+    pub pins: BTreeMap<usize, Pin>,
     /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
     /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,

@@ -236,6 +236,40 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         assert.ok(furthest(await pose(page), shown) < 1e-6);
       });
 
+      onPage("a pinned hand stays while the dance goes on, in the link, too", model, async (page) => {
+        const hand = async (/** @type {TestPage} */ page) => {
+          const { nodes } = await pose(page);
+          const world = nodes.find(({ name }) => name === "mixamorig:LeftHand")?.world ?? [];
+          return world.slice(12, 15);
+        };
+        await open(page, site.data(DANCE));
+        await apply(page, { t: 1, play: 0 });
+        const free = await hand(page);
+        const { nodes } = await pose(page);
+        const number = nodes.find(({ name }) => name === "mixamorig:LeftHand")?.node;
+        const head = nodes.find(({ name }) => name === "mixamorig:Head")?.node;
+        const before = await picture(page);
+        // Above the head, within reach.
+        const at = [free[0], free[1] + 0.1, free[2] + 0.05];
+        await apply(page, { pin: [`${number}:at:${at.join(",")}`, `${head}:look:camera`] });
+        const pinned = await hand(page);
+        assert.ok(Math.hypot(...pinned.map((x, axis) => x - at[axis])) < 1e-4, `${pinned} instead of ${at}`);
+        assert.ok(meanDifference(await picture(page), before) > 0);
+        const { model, motion, map, clip, pin } = await state(page);
+        assert.deepEqual(pin.map((text) => text.split(":")[1]), head < number ? ["look", "at"] : ["at", "look"]);
+        const all = Object.entries({ model, motion, map, clip: clip ?? "", pin, t: 1, play: 0 });
+        const link = all.flatMap(([key, value]) => [value].flat().map((value) => `${key}=${encodeURIComponent(value)}`)).join("&");
+        const again = await site.page({ renderer, link });
+        try {
+          assert.equal(furthest(await pose(again), await pose(page)), 0);
+          await assert.rejects(apply(again, { pin: ["x:at:1,2,3"] }), /pin/);
+        } finally {
+          await again.finish();
+        }
+        await apply(page, { pin: null });
+        assert.deepEqual(await hand(page), free);
+      });
+
       onPage("the active map is saved as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });

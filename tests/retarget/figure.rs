@@ -227,6 +227,12 @@ impl Figure {
         let skeleton = &self.asset.skeleton;
         let mut pose: Pose = skeleton.rest().clone();
         clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+        self.world_of(&pose)
+    }
+
+    /// World rotations (without scale) and positions of all joints in a pose.
+    pub fn world_of(&self, pose: &Pose) -> Vec<(DQuat, DVec3)> {
+        let skeleton = &self.asset.skeleton;
         let mut world: Vec<(DQuat, DVec3, f64)> = Vec::new();
         for (local, parent) in pose.locals().zip(skeleton.parents()) {
             let (turn, at, scale) = parent.map_or((DQuat::IDENTITY, DVec3::ZERO, 1.0), |parent| world[parent.get()]);

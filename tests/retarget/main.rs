@@ -19,6 +19,7 @@ mod figure;
 mod laws;
 mod layers;
 mod pairs;
+mod pins;
 mod rests;
 mod soles;
 mod stack;

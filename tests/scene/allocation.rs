@@ -2,7 +2,9 @@
 
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
+use gaitway::retarget::{Pin, PinGoal, PinTimes};
 use gaitway::state::{CameraOptions, Command, Selection, ViewerState, apply};
+use glam::Vec3;
 
 use crate::allocations::allocations_after;
 use crate::data::walker;
@@ -32,5 +34,9 @@ fn a_second_loop_of_the_clip_does_not_allocate() {
     state.inspect.weights = true;
     state.inspect.split = true;
     state.edits.pose.insert(15, [20.0, 0.0, 0.0]);
+    let times = Some(PinTimes { start_secs: 0.2, end_secs: 0.6, blend_secs: 0.1 });
+    for (joint, goal) in [(9, PinGoal::Point(Vec3::Y)), (13, PinGoal::Joint(5, Vec3::X)), (5, PinGoal::Camera)] {
+        state.edits.pins.insert(joint, Pin { goal, times });
+    }
     assert_eq!(allocations_while_playing(&library, state, 70, 200), 0);
 }

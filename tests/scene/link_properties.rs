@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, LayerMask, LayerMode, MapEntry, RootOptions, RootPart,
-    Unmapped,
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, LayerMask, LayerMode, MapEntry, Pin, PinGoal, PinTimes,
+    RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
@@ -151,6 +151,15 @@ impl Random {
         ClipLayer { clip: self.text(), weight, speed, start_secs, mode: self.one(&LayerMode::ALL), mask }
     }
 
+    fn pin(&mut self) -> Pin {
+        let point = Vec3::new(self.number(), self.number(), self.number());
+        let goals =
+            [PinGoal::Point(point), PinGoal::Joint(self.below(300), point), PinGoal::Look(point), PinGoal::Camera];
+        let [start_secs, end_secs, blend_secs] = [0; 3].map(|_| f64::from(self.number()));
+        let times = PinTimes { start_secs, end_secs, blend_secs };
+        Pin { goal: self.one(&goals), times: self.often().then_some(times) }
+    }
+
     fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
         match field {
             32 => {
@@ -218,6 +227,7 @@ impl Random {
             }
             37 => state.edits.clips = self.clips(),
             38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
+            39 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
             26 => state.camera_options.turntable = self.number(),
             27 => {
                 state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();

@@ -38,6 +38,7 @@ mod loop_frames;
 mod manual_pose;
 mod map_edits;
 mod motion;
+mod pins;
 mod pointers;
 #[path = "../support/random.rs"]
 mod random;

@@ -18,6 +18,7 @@ mod mirror;
 mod models;
 mod motion;
 mod picture;
+mod pins;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
 mod text_widths;

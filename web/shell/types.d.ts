@@ -169,6 +169,7 @@ export interface State {
   layers: string[];
   camera: string;
   pose: string;
+  pin: string[];
   names: string;
   embed: boolean;
   exposure: number;

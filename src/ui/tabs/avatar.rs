@@ -1,6 +1,7 @@
 //! Avatars: expressions, gaze and spring bones in the Display tab, licence and authors in the Info tab.
 
 use egui::Ui;
+use glam::Vec3;
 
 use super::report::fact;
 use crate::avatar::Avatar;
@@ -39,18 +40,23 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         out.commands.push(Command::SetLookAt(target));
     }
     if let LookTarget::Point(mut point) = now {
-        let mut is_changed = false;
-        ui.horizontal(|ui| {
-            for (coordinate, name) in [(&mut point.x, "X"), (&mut point.y, "Y"), (&mut point.z, "Z")] {
-                let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).suffix(" m");
-                let field = field.update_while_editing(false);
-                is_changed |= ui.add_sized([80.0, 26.0], field).accessible_name(name).changed();
-            }
-        });
-        if is_changed {
+        if coordinates(ui, &mut point) {
             out.commands.push(Command::SetLookAt(LookTarget::Point(point)));
         }
     }
+}
+
+/// Fields for the coordinates of a point; returns whether it was changed.
+pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
+    let mut is_changed = false;
+    ui.horizontal(|ui| {
+        for (coordinate, name) in [(&mut point.x, "X"), (&mut point.y, "Y"), (&mut point.z, "Z")] {
+            let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).suffix(" m");
+            let field = field.update_while_editing(false);
+            is_changed |= ui.add_sized([80.0, 26.0], field).accessible_name(name).changed();
+        }
+    });
+    is_changed
 }
 
 /// Shows a slider per expression. It follows the clip until the user moves it.

@@ -4,6 +4,7 @@ use egui::{RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::formula;
+use super::pin;
 use super::report::aligned;
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
@@ -53,6 +54,7 @@ pub fn show(
         pose_sliders(ui, shown, asset, joint, local.rotation, out);
     }
     reset_buttons(ui, shown, asset.skeleton.source_index(joint), out);
+    pin::show(ui, shown, model, joint, out);
     // Transforms or matrices: they say the same.
     if !card.shows_matrices {
         transforms(ui, shown, asset, joint, &local);

@@ -9,6 +9,7 @@ mod joint_card;
 mod lists;
 mod materials;
 mod performance;
+mod pin;
 pub mod report;
 mod scene_tree;
 mod validation;
@@ -21,6 +22,7 @@ use super::{Output, Shown, UiState, controls, motion, text};
 pub use formula::VertexProbe;
 pub use joint_card::JointCard;
 pub use lists::Lists;
+pub(super) use pin::rounded;
 pub use scene_tree::SceneTree;
 pub use view_options::PictureSettings;
 

@@ -14,13 +14,14 @@ pub struct Help {
     was_open: bool,
 }
 
-const GESTURES: [(&str, &str); 8] = [
+const GESTURES: [(&str, &str); 9] = [
     ("Drop files", "Open a model, borrow motion for it, or apply a joint map"),
     ("Drag", "Orbit"),
     ("Right drag, shift drag", "Pan"),
     ("Wheel, pinch", "Zoom to the pointer"),
     ("Two-finger drag", "Pan"),
     ("Drag a ring", text::HELP_RING),
+    ("Drag a handle", text::HELP_HANDLE),
     ("Click a joint", "Select it; in the Motion tab, choose its source"),
     ("Double-click", text::FRAME_ALL),
 ];

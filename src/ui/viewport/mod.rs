@@ -13,6 +13,7 @@ mod legend;
 pub mod notices;
 pub mod overlays;
 pub mod panes;
+mod pins;
 mod recording;
 pub mod sheet;
 
@@ -35,11 +36,13 @@ pub struct ViewportState {
     pub(in crate::ui) has_focus: bool,
     hovered: Option<PickedJoint>,
     grab: Option<gizmo::Grab>,
+    /// The pinned joint whose handle is dragged, and where the handle is from the pointer.
+    pin: Option<(usize, egui::Vec2)>,
 }
 
 impl Default for ViewportState {
     fn default() -> Self {
-        Self { aspect: DEFAULT_ASPECT, hovered_joint: None, has_focus: false, hovered: None, grab: None }
+        Self { aspect: DEFAULT_ASPECT, hovered_joint: None, has_focus: false, hovered: None, grab: None, pin: None }
     }
 }
 
@@ -85,7 +88,8 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     }
-    if !gizmo::show(ui, painter, &response, shown, local, out) {
+    let is_grabbed = pins::show(ui, painter, &response, shown, local, out);
+    if !is_grabbed && !gizmo::show(ui, painter, &response, shown, local, out) {
         camera::show(ui, &response, shown, out);
     }
     if !formula::point_at_vertex(&response, shown, local, out) {

@@ -42,3 +42,9 @@ pub fn yaw_of(rotation: DQuat) -> f64 {
     let side = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     2.0 * (side * rotation.y).atan2(side * rotation.w)
 }
+
+/// From 0 to 1, flat at both ends.
+pub fn smooth(share: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}

@@ -3,8 +3,8 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
-//! with its source. `change` mirrors, trims, loops and moves any clip, and `stack` puts others over it. `pose`, `keys` and
-//! `math` are shared by all.
+//! with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts others over it, and `pins` holds hands and
+//! feet. `pose`, `keys`, `math` and `two_bones` are shared by all.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -35,11 +35,13 @@ mod keys;
 mod map;
 mod math;
 mod measure;
+mod pins;
 mod pose;
 mod recognize;
 mod retargeting;
 mod stack;
 mod transfer;
+mod two_bones;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
@@ -51,6 +53,7 @@ pub use map::{
     opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};
+pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub(crate) use recognize::words;
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};

@@ -5,7 +5,7 @@ mod mirror;
 mod path;
 mod seam;
 mod time;
-pub(super) mod track;
+pub(in crate::retarget) mod track;
 
 use serde::{Deserialize, Serialize};
 

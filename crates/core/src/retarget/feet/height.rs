@@ -1,9 +1,9 @@
 //! Height of the body above the ground before its feet are planted: in motion capture, bodies often hover or sink.
 
 use super::body::{means, near};
-use super::leg::smooth;
 use super::plan::LegContacts;
 use crate::anim::JointIndex;
+use crate::retarget::math::smooth;
 use crate::retarget::pose::{WorldPose, is_within};
 use crate::retarget::transfer::Transfer;
 

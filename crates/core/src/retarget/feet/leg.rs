@@ -1,10 +1,11 @@
-//! Two-bone inverse kinematics for a leg, by the law of cosines: the knee bends about its hinge and the foot keeps its direction.
+//! A leg as two bones: its knee bends about a hinge, and the foot keeps its direction.
 
 use glam::{DQuat, DVec3};
 
 use crate::anim::{JointIndex, Skeleton};
-use crate::retarget::math::unit;
+use crate::retarget::math::{smooth, unit};
 use crate::retarget::pose::{WorldPose, is_within};
+use crate::retarget::two_bones::reach_goal;
 
 /// A leg is never stretched beyond this share of its length: a straight knee has no plane.
 const MAX_REACH: f64 = 0.999;
@@ -88,28 +89,9 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     let hinge = leg.hinge(pose, thigh, shin);
     let reach = (thigh + shin).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
     let certainty = smooth(by.length() / (SMALL_MOVE * length));
-    let bend = knee_bend(thigh, shin, hinge, goal.length().min(reach), certainty);
-    let knee_turn = DQuat::from_axis_angle(hinge, bend);
-    let (Some(line), Some(aim)) = ((thigh + knee_turn * shin).try_normalize(), goal.try_normalize()) else {
-        return unmoved;
-    };
-    let swing = DQuat::from_rotation_arc(line, aim);
+    let distance = goal.length().min(reach);
+    let Some([swing, knee_turn]) = reach_goal([thigh, shin], hinge, goal, distance, certainty) else { return unmoved };
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
-}
-
-/// By how much the knee bends further about its hinge for the ankle to be at a distance from the hip. A knee
-/// bent the wrong way is turned round in proportion to `certainty`.
-fn knee_bend(thigh: DVec3, shin: DVec3, hinge: DVec3, distance: f64, certainty: f64) -> f64 {
-    let along = (thigh + shin).dot(hinge);
-    let (upper, lower) = (thigh.reject_from_normalized(hinge), shin.reject_from_normalized(hinge));
-    let product = upper.length() * lower.length();
-    if product <= 0.0 {
-        return 0.0;
-    }
-    let squares = upper.length_squared() + lower.length_squared();
-    let wanted = ((distance * distance - along * along - squares) / (2.0 * product)).clamp(-1.0, 1.0).acos();
-    let bent = hinge.dot(upper.cross(lower)).atan2(upper.dot(lower));
-    wanted - bent + 2.0 * (1.0 - certainty) * bent.min(0.0)
 }
 
 /// Local rotations of hip, knee and ankle that turn the leg while the foot keeps its direction.
@@ -127,10 +109,4 @@ pub fn turned_locals(leg: &Leg, skeleton: &Skeleton, pose: &WorldPose, turns: Le
         local(leg.knee, carried(leg.knee, leg.hip, turns.thigh), turns.shin),
         local(leg.ankle, carried(leg.ankle, leg.knee, turns.shin), DQuat::IDENTITY),
     ]
-}
-
-/// From 0 to 1, flat at both ends.
-pub fn smooth(share: f64) -> f64 {
-    let share = share.clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
 }

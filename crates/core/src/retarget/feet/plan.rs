@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::leg::{Leg, smooth};
+use super::leg::Leg;
 use super::sole::Sole;
-use crate::retarget::math::HORIZONTAL;
+use crate::retarget::math::{HORIZONTAL, smooth};
 use crate::retarget::pose::WorldPose;
 
 /// Transition into and out of a contact.

@@ -1,0 +1,186 @@
+//! Pins baked into a clip: the pinned joints get linear keys, as few as a greedy search finds; other channels are kept.
+
+use glam::DQuat;
+
+use super::{Pin, PinTimes, Pinning};
+use crate::anim::{Clip, Interpolation, JointIndex, Pose, SampleCursor};
+use crate::retarget::change::track::{Target, Track, Tracks};
+use crate::retarget::keys::resample::union;
+use crate::retarget::math::{angle_between, slerp};
+use crate::retarget::pose::{WorldPose, is_within, locals_of};
+
+/// Largest errors of any joint: an angle, and a distance as a share of the height. A fifth is left for times between samples.
+const MAX_DEGREES: f64 = 0.8 * 0.05;
+const MAX_SHARE: f64 = 0.8 * 1e-4;
+
+/// Longest time between samples, and how often it is halved where joints turn fast.
+const MAX_STEP_SECS: f32 = 1.0 / 60.0;
+const MAX_HALVINGS: u32 = 8;
+
+impl Pinning<'_> {
+    /// Returns a clip with the pins baked in. It repeats after `period_secs`, and so do the times of the pins.
+    pub fn bake(&self, clip: &Clip, period_secs: f64) -> Clip {
+        let skeleton = &self.asset.skeleton;
+        let mut sampled = Sampled::new(self, clip, period_secs);
+        let mut tracks = Tracks::of(clip);
+        for (joint, pin) in self.in_order() {
+            let joints = if pin.is_gaze() { vec![joint] } else { self.limb(joint).map_or_else(Vec::new, Vec::from) };
+            // With an overlapping pin, both search for their own keys.
+            let Some(&first) = joints.first() else { continue };
+            let below: Vec<JointIndex> = skeleton.joints().filter(|&other| is_within(skeleton, other, first)).collect();
+            let times = sampled.close_times(&joints, &below);
+            let kept = fewest(times.len(), |from, to| {
+                sampled.is_close([times[from], times[to]], &times[from + 1..to], &joints, &below)
+            });
+            for joint in joints {
+                tracks.tracks.retain(|track| track.target != Target::Rotation(joint));
+                tracks.tracks.push(Track {
+                    target: Target::Rotation(joint),
+                    interpolation: Interpolation::Linear,
+                    times: kept.iter().map(|&at| times[at]).collect(),
+                    width: 4,
+                    values: kept
+                        .iter()
+                        .flat_map(|&at| sampled.at(times[at]).local(joint).rotation.to_array())
+                        .collect(),
+                });
+            }
+        }
+        tracks.build(clip.name(), skeleton)
+    }
+}
+
+/// Indices of samples to keep: from each, the search goes on to the farthest for which `fits` holds, as far as doubling and
+/// halving the step tells.
+fn fewest(count: usize, mut fits: impl FnMut(usize, usize) -> bool) -> Vec<usize> {
+    let (mut kept, mut from) = (vec![0], 0);
+    while from + 1 < count {
+        let (mut near, mut step) = (from + 1, 2);
+        while from + step < count && fits(from, from + step) {
+            near = from + step;
+            step *= 2;
+        }
+        let mut far = (from + step).min(count);
+        while far - near > 1 {
+            let middle = (near + far) / 2;
+            if fits(from, middle) { near = middle } else { far = middle }
+        }
+        kept.push(near);
+        from = near;
+    }
+    kept
+}
+
+/// The pinned clip at close times.
+struct Sampled<'a> {
+    pinning: &'a Pinning<'a>,
+    clip: &'a Clip,
+    period_secs: f64,
+    times: Vec<f32>,
+    max_distance: f64,
+    cursor: SampleCursor,
+    pose: Pose,
+}
+
+impl<'a> Sampled<'a> {
+    fn new(pinning: &'a Pinning<'a>, clip: &'a Clip, period_secs: f64) -> Self {
+        let rest = WorldPose::new(
+            &pinning.asset.skeleton,
+            locals_of(pinning.asset.skeleton.rest()),
+            DQuat::from_mat3(&pinning.world_from_model.matrix3.as_dmat3()),
+        );
+        let heights = || rest.positions.iter().map(|at| at.y);
+        let height = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+        let times = close_times(clip, pinning.pins.values(), period_secs);
+        let (cursor, pose) = (SampleCursor::default(), pinning.asset.skeleton.rest().clone());
+        Self { pinning, clip, period_secs, times, max_distance: MAX_SHARE * height, cursor, pose }
+    }
+
+    /// Samples the pose with all pins.
+    fn at(&mut self, time_secs: f32) -> &Pose {
+        let skeleton = &self.pinning.asset.skeleton;
+        self.pose.copy_from(skeleton.rest());
+        self.clip.sample(skeleton, time_secs, &mut self.cursor, &mut self.pose);
+        // The end is that of the last round, not the start of another.
+        let is_end = time_secs >= self.clip.duration_secs() || self.period_secs <= 0.0;
+        let pin_secs = if is_end { self.period_secs } else { f64::from(time_secs) % self.period_secs };
+        self.pinning.apply(pin_secs, &mut self.pose);
+        &self.pose
+    }
+
+    /// The times, and more where `joints` turn so fast that they would be off between two of them.
+    fn close_times(&mut self, joints: &[JointIndex], below: &[JointIndex]) -> Vec<f32> {
+        let mut close = Vec::with_capacity(self.times.len());
+        // Of each interval that is left its end and the number of times it was halved.
+        let mut left: Vec<(f32, u32)> = self.times.iter().rev().map(|&time| (time, 0)).collect();
+        while let Some((to, halvings)) = left.pop() {
+            if let Some(&from) = close.last() {
+                let middle: f32 = 0.5 * (from + to);
+                let is_inside = from < middle && middle < to;
+                if is_inside && halvings < MAX_HALVINGS && !self.is_close([from, to], &[middle], joints, below) {
+                    left.extend([(to, halvings + 1), (middle, halvings + 1)]);
+                    continue;
+                }
+            }
+            close.push(to);
+        }
+        close
+    }
+
+    /// Whether `joints`, interpolated between two times, bring all joints in `below` to where they are in between.
+    fn is_close(&mut self, [from, to]: [f32; 2], between: &[f32], joints: &[JointIndex], below: &[JointIndex]) -> bool {
+        let skeleton = &self.pinning.asset.skeleton;
+        let ends = [from, to].map(|at| {
+            let pose = self.at(at);
+            joints.iter().map(|&joint| pose.local(joint).rotation.as_dquat()).collect::<Vec<DQuat>>()
+        });
+        between.iter().all(|&at| {
+            let factor = f64::from(at - from) / f64::from(to - from);
+            let exact = WorldPose::new(skeleton, locals_of(self.at(at)), DQuat::IDENTITY);
+            let mut locals = exact.locals.clone();
+            for ((joint, &before), &after) in joints.iter().zip(&ends[0]).zip(&ends[1]) {
+                locals[joint.get()].rotation = slerp(before, after, factor);
+            }
+            let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
+            below.iter().all(|&joint| {
+                angle_between(exact.rotation(joint), found.rotation(joint)).to_degrees() <= MAX_DEGREES
+                    && exact.position(joint).distance(found.position(joint)) <= self.max_distance
+            })
+        })
+    }
+}
+
+/// The times of all keys and those at which a pin sets in or ends, with the moment before each, since values may jump there;
+/// and more in between.
+fn close_times<'a>(clip: &Clip, pins: impl Iterator<Item = &'a Pin>, period_secs: f64) -> Vec<f32> {
+    let duration_secs = clip.duration_secs();
+    let mut jumps = vec![0.0, duration_secs];
+    let rounds = if period_secs > 0.0 { (f64::from(duration_secs) / period_secs).ceil() as usize } else { 1 };
+    let edges: Vec<f64> = pins
+        .filter_map(|pin| pin.times)
+        .flat_map(|PinTimes { start_secs, end_secs, blend_secs }| {
+            [start_secs - blend_secs, start_secs, end_secs, end_secs + blend_secs]
+        })
+        .chain([0.0])
+        .filter(|edge| (0.0..=period_secs).contains(edge))
+        .collect();
+    for round in 0..rounds {
+        jumps.extend(edges.iter().map(|edge| (round as f64 * period_secs + edge) as f32));
+    }
+    for channel in clip.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step) {
+        jumps.extend(&clip.timelines()[channel.timeline as usize]);
+    }
+    let before: Vec<f32> = jumps.iter().map(|time| time.next_down()).collect();
+    let after: Vec<f32> = jumps.iter().map(|time| time.next_up()).collect();
+    let keys = clip.timelines().iter().map(Vec::as_slice).chain([&jumps[..], &before, &after]);
+    let mut times = union(keys);
+    times.retain(|&time| (0.0..=duration_secs).contains(&time));
+    let mut close = Vec::with_capacity(times.len());
+    for pair in times.windows(2) {
+        let steps = ((pair[1] - pair[0]) / MAX_STEP_SECS).ceil().max(1.0);
+        close.extend((0..steps as usize).map(|step| pair[0] + (pair[1] - pair[0]) * (step as f32 / steps)));
+    }
+    close.extend(times.last());
+    close.dedup();
+    close
+}

@@ -1,0 +1,132 @@
+//! Pins the selected joint: a section of its card.
+
+use egui::Ui;
+use glam::Vec3;
+
+use super::avatar::coordinates;
+use crate::anim::JointIndex;
+use crate::asset::Slot;
+use crate::library::Model;
+use crate::retarget::{Pin, PinGoal, PinTimes};
+use crate::state::{Command, pinning, play_range, title};
+use crate::ui::controls::{self, SliderSettings};
+use crate::ui::{Output, Shown, text};
+
+const BLEND: SliderSettings =
+    SliderSettings { range: (0.0, 2.0), default: DEFAULT_BLEND_SECS, decimals: 2, suffix: " s", logarithmic: false };
+const DEFAULT_BLEND_SECS: f64 = 0.25;
+
+/// Shows a choice of goals: a head looks, other joints are held if they are at the end of two bones.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, out: &mut Output) {
+    let skeleton = &model.asset.skeleton;
+    let number = skeleton.source_index(joint);
+    let before = shown.state.edits.pins.get(&number).copied();
+    let allows = |goal| pinning(model, shown.state, None).allows(number, goal);
+    let is_head = model.recognition().slot(joint) == Some(Slot::Head);
+    let Some(character) = shown.frame.characters.first() else { return };
+    let world_from = |joint: JointIndex| character.world_from_joint[joint.get()];
+    let position = Vec3::from(world_from(joint).translation);
+    // The offset that leaves a joint where it is.
+    let at_joint = |other: JointIndex| {
+        let at = world_from(other).inverse().transform_point3(position);
+        PinGoal::Joint(skeleton.source_index(other), at)
+    };
+    let now = before.map(|pin| pin.goal);
+    let point_now = match now {
+        Some(PinGoal::Point(at) | PinGoal::Look(at)) => at,
+        // Halfway to the camera, where the handle covers the head.
+        _ if is_head => rounded(model, position.midpoint(shown.frame.view.eye)),
+        _ => rounded(model, position),
+    };
+    let others = || skeleton.joints().filter(|&other| model.rig().is_real(other) && allows(at_joint(other)));
+    let mut pin = before;
+    let chosen = if is_head {
+        let goals = [
+            (None, text::NOT_PINNED),
+            (Some(PinGoal::Look(point_now)), text::LOOK_AT_POINT),
+            (Some(PinGoal::Camera), text::LOOK_AT_CAMERA),
+        ];
+        ui.label(text::LOOK);
+        controls::segmented_about(ui, text::LOOK, Some(now), &goals)
+    } else if allows(PinGoal::Point(point_now)) {
+        let joint_now = match now {
+            Some(goal @ PinGoal::Joint(..)) => Some(goal),
+            _ => others().next().map(at_joint),
+        };
+        let goals = [
+            (None, text::NOT_PINNED),
+            (Some(PinGoal::Point(point_now)), text::PIN_TO_POINT),
+            (joint_now, text::PIN_TO_JOINT),
+        ];
+        let goals = &goals[..if joint_now.is_some() { 3 } else { 2 }];
+        ui.label(text::PIN);
+        controls::segmented_about(ui, text::PIN, Some(now), goals)
+    } else {
+        return;
+    };
+    if let Some(goal) = chosen {
+        pin = goal.map(|goal| Pin { goal, times: before.and_then(|pin| pin.times) });
+    }
+    if let Some(pin) = &mut pin {
+        goal(ui, shown, model, &mut pin.goal, others().map(|other| (other, at_joint(other))));
+        times(ui, shown, model, &mut pin.times);
+    }
+    if pin != before {
+        out.commands.push(Command::SetPin { joint: number, pin });
+    }
+}
+
+/// Coordinates of the goal, and the joint that another is held at.
+fn goal(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    goal: &mut PinGoal,
+    others: impl Iterator<Item = (JointIndex, PinGoal)>,
+) {
+    let skeleton = &model.asset.skeleton;
+    match goal {
+        PinGoal::Point(at) | PinGoal::Look(at) => _ = coordinates(ui, at),
+        PinGoal::Joint(other, _) => {
+            let other = skeleton.joint_of_source(*other);
+            let name = |joint| title(Some(shown.state), &model.asset, joint).into_owned();
+            let combo = egui::ComboBox::from_id_salt("pinned to").width(ui.available_width()).truncate();
+            let combo = combo.selected_text(other.map(name).unwrap_or_default());
+            let response = combo.show_ui(ui, |ui| {
+                for (joint, at) in others {
+                    if ui.selectable_label(other == Some(joint), name(joint)).clicked() {
+                        *goal = at;
+                    }
+                }
+            });
+            response.response.accessible_name(text::PINNED_TO);
+        }
+        PinGoal::Camera => return,
+    }
+    controls::hint(ui, text::PIN_HINT);
+}
+
+/// Limits the pin to the range of the clip that is playing.
+fn times(ui: &mut Ui, shown: &Shown<'_>, model: &Model, times: &mut Option<PinTimes>) {
+    let Some(clip) = shown.clip_index() else { return };
+    if controls::switch(ui, text::PIN_IN_RANGE, times.is_some()) {
+        let range = play_range(model, clip, shown.state);
+        let (start_secs, end_secs) = (range.start_secs, range.end_secs);
+        *times = if times.is_some() {
+            None
+        } else {
+            Some(PinTimes { start_secs, end_secs, blend_secs: DEFAULT_BLEND_SECS })
+        };
+    }
+    if let Some(times) = times {
+        controls::hint(ui, text::pin_times(*times));
+        times.blend_secs = controls::slider(ui, text::BLEND, times.blend_secs, BLEND).unwrap_or(times.blend_secs);
+    }
+}
+
+/// Rounds a point to a power of ten that is finer than a pointer, for a person a millimetre: this keeps the link short.
+pub fn rounded(model: &Model, at: Vec3) -> Vec3 {
+    let size = model.rest_bounds().diagonal().clamp(1e-3, 1e6);
+    let steps = 10_f32.powf(3.0 - size.log10().floor());
+    (steps * at).round() / steps
+}

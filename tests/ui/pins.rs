@@ -1,0 +1,157 @@
+//! Pinning joints: the section of the selected joint's card, and the handles in the viewport.
+
+use egui::{PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::anim::TimeRange;
+use gaitway::editor::Export;
+use gaitway::retarget::{Pin, PinGoal, PinTimes};
+use gaitway::state::Command;
+use gaitway::ui::{Saved, UiAction, text};
+use glam::Vec3;
+
+use crate::bench::{Bench, NARROW, WIDE, drag, press, sample_bench};
+use crate::motion::{choose, reach};
+
+/// Joints of the walker, by index in the file.
+const HEAD: usize = 5;
+const LEFT_HAND: usize = 9;
+const LEFT_SHOULDER: usize = 6;
+
+fn selected(size: [f32; 2], joint: usize) -> Harness<'static, Bench> {
+    let mut harness = sample_bench(size);
+    harness.state_mut().editor.apply(Command::SelectJoint(Some(joint)));
+    harness.run();
+    harness
+}
+
+fn place(bench: &Bench, joint: usize) -> Vec3 {
+    let skeleton = &bench.library().active().expect("a model").asset.skeleton;
+    let joint = skeleton.joint_of_source(joint).expect("a joint");
+    bench.frame.characters[0].world_from_joint[joint.get()].translation.into()
+}
+
+fn on_screen(bench: &Bench, at: Vec3) -> Pos2 {
+    let view = &bench.frame.view;
+    let at = view.projection_from_view * view.view_from_world * at.extend(1.0);
+    let (x, y) = (0.5 + 0.5 * at.x / at.w, 0.5 - 0.5 * at.y / at.w);
+    bench.viewport.min + vec2(x * bench.viewport.width(), y * bench.viewport.height())
+}
+
+fn pin_of(harness: &Harness<'_, Bench>, joint: usize) -> Option<Pin> {
+    harness.state().state().edits.pins.get(&joint).copied()
+}
+
+fn choice(harness: &mut Harness<'_, Bench>, about: &str, option: &str) -> Vec<Command> {
+    reach(harness, &text::labelled(about, option))
+}
+
+#[test]
+fn a_hand_is_pinned_where_it_is_dragged_and_let_go() {
+    for size in [WIDE, NARROW] {
+        let mut harness = selected(WIDE, LEFT_HAND);
+        let before = place(harness.state(), LEFT_HAND);
+        choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+        let pinned = pin_of(&harness, LEFT_HAND).expect("is pinned");
+        assert!(matches!(pinned.goal, PinGoal::Point(at) if at.distance(before) < 1e-3), "it stays: {pinned:?}");
+        harness.set_size(size.into());
+        harness.run();
+        let handle = on_screen(harness.state(), before);
+        let to = handle + vec2(-20.0, -30.0);
+        let commands = drag(&mut harness, handle, to, PointerButton::Primary);
+        let are_pins = commands.iter().all(|command| matches!(command, Command::SetPin { joint: LEFT_HAND, .. }));
+        assert!(!commands.is_empty() && are_pins, "{commands:?}");
+        harness.run();
+        let hand = place(harness.state(), LEFT_HAND);
+        assert!(hand.distance(before) > 0.02, "{hand}");
+        assert!(on_screen(harness.state(), hand).distance(to) < 3.0, "{} {to}", on_screen(harness.state(), hand));
+        harness.set_size(WIDE.into());
+        harness.run();
+        press(&mut harness, text::UNDO_STEP);
+        assert_eq!(pin_of(&harness, LEFT_HAND), Some(pinned), "the drag is one step");
+        choice(&mut harness, text::PIN, text::NOT_PINNED);
+        assert_eq!(pin_of(&harness, LEFT_HAND), None);
+        assert!(place(harness.state(), LEFT_HAND).distance(before) < 1e-6);
+    }
+}
+
+#[test]
+fn time_stands_still_over_a_handle_and_the_camera_turns_beside_it() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+    let handle = on_screen(harness.state(), place(harness.state(), LEFT_HAND));
+    let corner = harness.state().viewport.left_bottom() + vec2(30.0, -30.0);
+    for (at, holds) in [(handle, true), (corner, false)] {
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run();
+        assert_eq!(harness.state().panels.holds_time, holds, "{at}");
+    }
+    let commands = drag(&mut harness, corner, corner + vec2(50.0, 0.0), PointerButton::Primary);
+    assert!(!commands.is_empty() && commands.iter().all(|command| matches!(command, Command::Orbit { .. })));
+}
+
+#[test]
+fn a_hand_is_pinned_to_another_joint() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    let before = place(harness.state(), LEFT_HAND);
+    choice(&mut harness, text::PIN, text::PIN_TO_JOINT);
+    choose(&mut harness, text::PINNED_TO, "Head");
+    assert!(matches!(pin_of(&harness, LEFT_HAND), Some(Pin { goal: PinGoal::Joint(HEAD, _), .. })));
+    harness.run();
+    assert!(place(harness.state(), LEFT_HAND).distance(before) < 5e-3, "it stays");
+    let handle = on_screen(harness.state(), before);
+    drag(&mut harness, handle, handle + vec2(-25.0, 0.0), PointerButton::Primary);
+    assert!(matches!(pin_of(&harness, LEFT_HAND), Some(Pin { goal: PinGoal::Joint(HEAD, _), .. })));
+    harness.run();
+    assert!(place(harness.state(), LEFT_HAND).distance(before) > 0.02);
+}
+
+#[test]
+fn a_head_looks_at_the_camera_or_a_point() {
+    let mut harness = selected(WIDE, HEAD);
+    choice(&mut harness, text::LOOK, text::LOOK_AT_CAMERA);
+    assert_eq!(pin_of(&harness, HEAD), Some(Pin { goal: PinGoal::Camera, times: None }));
+    choice(&mut harness, text::LOOK, text::LOOK_AT_POINT);
+    assert!(matches!(pin_of(&harness, HEAD), Some(Pin { goal: PinGoal::Look(_), .. })));
+    assert!(harness.query_by_label(text::PINNED_TO).is_none());
+}
+
+/// A joint that isn't at the end of two bones has no such choice.
+#[test]
+fn only_ends_of_limbs_are_pinned() {
+    let harness = selected(WIDE, 1);
+    assert!(harness.query_by_label(&text::labelled(text::PIN, text::PIN_TO_POINT)).is_none());
+    let harness = selected(WIDE, LEFT_SHOULDER);
+    assert!(harness.query_by_label(&text::labelled(text::PIN, text::PIN_TO_POINT)).is_some(), "two bones of the spine");
+}
+
+#[test]
+fn a_pin_holds_in_the_range_with_a_blend() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+    let range = TimeRange { start_secs: 0.25, end_secs: 0.75 };
+    harness.state_mut().editor.apply(Command::SetRange(Some(range)));
+    harness.run();
+    reach(&mut harness, text::PIN_IN_RANGE);
+    let times = pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times).expect("is limited");
+    assert_eq!((times.start_secs, times.end_secs), (0.25, 0.75));
+    harness.get_by_label(text::BLEND).set_value_accesskit(0.5);
+    harness.run();
+    let blended = pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times).expect("is limited");
+    assert_eq!(blended, PinTimes { blend_secs: 0.5, ..times });
+    assert!(harness.query_by_label(&text::pin_times(blended)).is_some());
+    reach(&mut harness, text::PIN_IN_RANGE);
+    assert_eq!(pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times), None);
+}
+
+/// The model's own clip is exported with its pins, as one more clip.
+#[test]
+fn a_pinned_clip_can_be_saved() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    press(&mut harness, text::EXPORT);
+    assert!(harness.query_by_label(text::SAVE_GLB).is_none());
+    press(&mut harness, text::EXPORT);
+    choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+    crate::header::choose(&mut harness, text::EXPORT, text::SAVE_GLB);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+}
