@@ -6,7 +6,7 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
     BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
-    MutedChannel, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    MutedChannel, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
@@ -139,6 +139,18 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         (
             "edits.pose",
             with(&|state| state.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])),
+        ),
+        (
+            "edits.pins",
+            with(&|state| {
+                let times = Some(PinTimes { start_secs: 0.25, end_secs: 1.0 / 3.0, blend_secs: 0.1 });
+                let at = Vec3::new(0.1, -1.0 / 3.0, 2e-7);
+                let goals = [PinGoal::Point(at), PinGoal::Joint(4, at), PinGoal::Look(at), PinGoal::Camera];
+                let pins = (3..)
+                    .zip(goals)
+                    .map(|(joint, goal)| (joint, Pin { goal, times: times.filter(|_| joint % 2 == 0) }));
+                state.edits.pins = pins.collect();
+            }),
         ),
         (
             "edits.clips",

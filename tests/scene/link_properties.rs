@@ -107,7 +107,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..40 {
+        for field in 0..41 {
             if self.often() {
                 self.set(&mut state, field);
             }

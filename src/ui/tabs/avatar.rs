@@ -39,10 +39,10 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if let Some(target) = controls::segmented_about(ui, text::EYES, Some(now), &choices) {
         out.commands.push(Command::SetLookAt(target));
     }
-    if let LookTarget::Point(mut point) = now {
-        if coordinates(ui, &mut point) {
-            out.commands.push(Command::SetLookAt(LookTarget::Point(point)));
-        }
+    if let LookTarget::Point(mut point) = now
+        && coordinates(ui, &mut point)
+    {
+        out.commands.push(Command::SetLookAt(LookTarget::Point(point)));
     }
 }
 

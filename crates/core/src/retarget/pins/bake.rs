@@ -9,9 +9,13 @@ use crate::retarget::keys::resample::union;
 use crate::retarget::math::{angle_between, slerp};
 use crate::retarget::pose::{WorldPose, is_within, locals_of};
 
-/// Largest errors of any joint: an angle, and a distance as a share of the height. A fifth is left for times between samples.
-const MAX_DEGREES: f64 = 0.8 * 0.05;
-const MAX_SHARE: f64 = 0.8 * 1e-4;
+/// Largest errors of any joint: an angle, and a distance as a share of the height.
+const MAX_DEGREES: f64 = 0.05;
+const MAX_SHARE: f64 = 1e-4;
+
+/// Parts of these errors for the times between two samples, and for the samples between two keys. They add up.
+const BETWEEN_SAMPLES: f64 = 0.2;
+const BETWEEN_KEYS: f64 = 0.8;
 
 /// Longest time between samples, and how often it is halved where joints turn fast.
 const MAX_STEP_SECS: f32 = 1.0 / 60.0;
@@ -30,7 +34,7 @@ impl Pinning<'_> {
             let below: Vec<JointIndex> = skeleton.joints().filter(|&other| is_within(skeleton, other, first)).collect();
             let times = sampled.close_times(&joints, &below);
             let kept = fewest(times.len(), |from, to| {
-                sampled.is_close([times[from], times[to]], &times[from + 1..to], &joints, &below)
+                sampled.is_close([times[from], times[to]], &times[from + 1..to], BETWEEN_KEYS, [&joints, &below])
             });
             for joint in joints {
                 tracks.tracks.retain(|track| track.target != Target::Rotation(joint));
@@ -117,7 +121,12 @@ impl<'a> Sampled<'a> {
             if let Some(&from) = close.last() {
                 let middle: f32 = 0.5 * (from + to);
                 let is_inside = from < middle && middle < to;
-                if is_inside && halvings < MAX_HALVINGS && !self.is_close([from, to], &[middle], joints, below) {
+                // Halfway through an S-curve there is no error.
+                let between = [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
+                if is_inside
+                    && halvings < MAX_HALVINGS
+                    && !self.is_close([from, to], &between, BETWEEN_SAMPLES, [joints, below])
+                {
                     left.extend([(to, halvings + 1), (middle, halvings + 1)]);
                     continue;
                 }
@@ -127,8 +136,15 @@ impl<'a> Sampled<'a> {
         close
     }
 
-    /// Whether `joints`, interpolated between two times, bring all joints in `below` to where they are in between.
-    fn is_close(&mut self, [from, to]: [f32; 2], between: &[f32], joints: &[JointIndex], below: &[JointIndex]) -> bool {
+    /// Whether `joints`, interpolated between two times, bring all joints in `below` to where they are in between, but for a
+    /// part of the largest errors.
+    fn is_close(
+        &mut self,
+        [from, to]: [f32; 2],
+        between: &[f32],
+        part: f64,
+        [joints, below]: [&[JointIndex]; 2],
+    ) -> bool {
         let skeleton = &self.pinning.asset.skeleton;
         let ends = [from, to].map(|at| {
             let pose = self.at(at);
@@ -143,8 +159,8 @@ impl<'a> Sampled<'a> {
             }
             let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
             below.iter().all(|&joint| {
-                angle_between(exact.rotation(joint), found.rotation(joint)).to_degrees() <= MAX_DEGREES
-                    && exact.position(joint).distance(found.position(joint)) <= self.max_distance
+                angle_between(exact.rotation(joint), found.rotation(joint)).to_degrees() <= part * MAX_DEGREES
+                    && exact.position(joint).distance(found.position(joint)) <= part * self.max_distance
             })
         })
     }
