@@ -13,8 +13,8 @@ use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
     COMPARED_SKINNING, Comparison, EnvironmentChoice, LayerSampler, LightSetup, LookTarget, PoseSampler, SourceOnStage,
-    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, looks_at_camera, panes,
-    resolved_bounds, source_on_stage, world_from_model,
+    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, looks_at_camera,
+    panes, resolved_bounds, source_on_stage, world_from_model,
 };
 
 /// Buffers and lookups reused between frames.

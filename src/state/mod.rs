@@ -37,9 +37,7 @@ pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
 pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layer};
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
-pub use link::{
-    LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member,
-};
+pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
     linked_files, most_similar_link, public_link, shown_files,

@@ -5,7 +5,7 @@ use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model};
-use gaitway::retarget::{Pin, PinGoal, PinTimes};
+use gaitway::retarget::{ClipLayer, Pin, PinGoal, PinTimes};
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, History, OrbitCamera, Playhead, UpAxis, ViewerState, apply, from_link, to_link,
 };
@@ -192,6 +192,30 @@ fn exported(editor: &Editor, what: Export) -> Library {
     library_of(Model::new(file.name, load(&files).expect("can be read"), Vec::new()))
 }
 
+/// Compares a written clip with what is shown over `secs`.
+fn check_written(editor: &Editor, written: &Library, secs: f64, (max_metres, max_degrees): (f32, f32)) {
+    let skeleton = &editor.library().active().expect("a model").asset.skeleton;
+    let model = written.active().expect("a model");
+    for step in 0..120 {
+        let time_secs = secs * (f64::from(step) + 0.37) / 121.0;
+        let at = |state: &ViewerState| {
+            let playhead = Playhead { time_secs, ..state.playhead.clone() };
+            ViewerState { playhead, ..state.clone() }
+        };
+        let shown = frame(editor.library(), &at(editor.state()));
+        let again = frame(written, &at(&ViewerState::default()));
+        for joint in skeleton.joints() {
+            let found = model.asset.skeleton.find(skeleton.name(joint)).expect("has the name");
+            let world = |frame: &Frame, joint: JointIndex| frame.characters[0].world_from_joint[joint.get()];
+            let (a, b) = (world(&shown, joint), world(&again, found));
+            assert!(a.translation.distance(b.translation) < max_metres, "{} at {time_secs}", skeleton.name(joint));
+            let turn = |world: glam::Affine3A| -> Quat { world.to_scale_rotation_translation().1 };
+            let off = turn(a).angle_between(turn(b)).to_degrees();
+            assert!(off < max_degrees, "{} at {time_secs}: {off}", skeleton.name(joint));
+        }
+    }
+}
+
 /// The exported clip is what is shown; the model's own is still there.
 #[test]
 fn exports_have_the_pins() {
@@ -208,26 +232,40 @@ fn exports_have_the_pins() {
     }
     let format = ClipFormat::Glb;
     for what in [Export::Clip { clip: 0, format }, Export::Model { clip: 0 }] {
-        let written = exported(&editor, what);
-        let model = written.active().expect("a model");
-        for step in 0..60 {
-            let time_secs = (f64::from(step) + 0.37) / 61.0;
-            let at = |state: &ViewerState| {
-                let playhead = Playhead { time_secs, ..state.playhead.clone() };
-                ViewerState { playhead, ..state.clone() }
-            };
-            let shown = frame(editor.library(), &at(editor.state()));
-            let again = frame(&written, &at(&ViewerState::default()));
-            let skeleton = &editor.library().active().expect("a model").asset.skeleton;
-            for joint in skeleton.joints() {
-                let found = model.asset.skeleton.find(skeleton.name(joint)).expect("has the name");
-                let world = |frame: &Frame, joint: JointIndex| frame.characters[0].world_from_joint[joint.get()];
-                let (a, b) = (world(&shown, joint), world(&again, found));
-                assert!(a.translation.distance(b.translation) < 1.8e-4, "{} at {time_secs}", skeleton.name(joint));
-                let turn = |world: glam::Affine3A| -> Quat { world.to_scale_rotation_translation().1 };
-                assert!(turn(a).angle_between(turn(b)).to_degrees() < 0.1, "{} at {time_secs}", skeleton.name(joint));
-            }
-        }
+        check_written(&editor, &exported(&editor, what), 1.0, (1.8e-4, 0.1));
+    }
+}
+
+/// Two walks fit a wave of this speed: a pin of the walk holds in both. Layers and pins are baked one after the other, and each
+/// may be off by as much as is allowed.
+#[test]
+fn exports_repeat_the_pins_of_a_clip_that_a_layer_makes_longer() {
+    let times = Some(PinTimes { start_secs: 0.3, end_secs: 0.6, blend_secs: 0.2 });
+    let hand = pin(PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)));
+    let mut editor = Editor::new(walker(), ViewerState::default());
+    let wave = ClipLayer { clip: "Wave".to_owned(), speed: 1.3125, ..ClipLayer::default() };
+    for command in [
+        Command::SetLayers(vec![wave]),
+        set(LEFT_HAND, Pin { times, ..hand }),
+        set(RIGHT_HAND, pin(PinGoal::Joint(HIPS, Vec3::new(-0.2, 0.1, 0.1)))),
+    ] {
+        editor.apply(command);
+    }
+    let written = exported(&editor, Export::Clip { clip: 0, format: ClipFormat::Glb });
+    let walk_secs = f64::from(editor.library().active().expect("a model").asset.clips[0].duration_secs());
+    let secs = f64::from(written.active().expect("a model").asset.clips[0].duration_secs());
+    assert!((secs - 2.0 * walk_secs).abs() < 1e-4, "{secs}");
+    check_written(&editor, &written, secs, (3.6e-4, 0.1));
+    let at = |time_secs: f64| {
+        let playhead = Playhead { time_secs, ..Playhead::default() };
+        let state = ViewerState { playhead, ..ViewerState::default() };
+        let frame = frame(&written, &state);
+        let skeleton = &written.active().expect("a model").asset.skeleton;
+        let joint = skeleton.find("LeftHand").expect("a hand");
+        Vec3::from(frame.characters[0].world_from_joint[joint.get()].translation)
+    };
+    for time_secs in [0.45, 0.45 + walk_secs] {
+        assert!(at(time_secs).distance(Vec3::new(0.25, 1.2, 0.3)) < 3.6e-4, "{time_secs}");
     }
 }
 

@@ -140,6 +140,13 @@ fn a_pin_holds_in_the_range_with_a_blend() {
     let blended = pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times).expect("is limited");
     assert_eq!(blended, PinTimes { blend_secs: 0.5, ..times });
     assert!(harness.query_by_label(&text::pin_times(blended)).is_some());
+    assert!(harness.query_by_label(text::PIN_TO_RANGE).is_none(), "it has the range");
+    harness.state_mut().editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.1, end_secs: 0.5 })));
+    harness.run();
+    assert_eq!(pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times), Some(blended), "it keeps its times");
+    reach(&mut harness, text::PIN_TO_RANGE);
+    let moved = pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times);
+    assert_eq!(moved, Some(PinTimes { start_secs: 0.1, end_secs: 0.5, blend_secs: 0.5 }));
     reach(&mut harness, text::PIN_IN_RANGE);
     assert_eq!(pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times), None);
 }

@@ -4,7 +4,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use super::avatar::coordinates;
-use crate::anim::JointIndex;
+use crate::anim::{JointIndex, TimeRange};
 use crate::asset::Slot;
 use crate::library::Model;
 use crate::retarget::{Pin, PinGoal, PinTimes};
@@ -109,18 +109,18 @@ fn goal(
 /// Limits the pin to the range of the clip that is playing.
 fn times(ui: &mut Ui, shown: &Shown<'_>, model: &Model, times: &mut Option<PinTimes>) {
     let Some(clip) = shown.clip_index() else { return };
+    let TimeRange { start_secs, end_secs } = play_range(model, clip, shown.state);
+    let in_range = |blend_secs| Some(PinTimes { start_secs, end_secs, blend_secs });
     if controls::switch(ui, text::PIN_IN_RANGE, times.is_some()) {
-        let range = play_range(model, clip, shown.state);
-        let (start_secs, end_secs) = (range.start_secs, range.end_secs);
-        *times = if times.is_some() {
-            None
-        } else {
-            Some(PinTimes { start_secs, end_secs, blend_secs: DEFAULT_BLEND_SECS })
-        };
+        *times = if times.is_some() { None } else { in_range(DEFAULT_BLEND_SECS) };
     }
-    if let Some(times) = times {
-        controls::hint(ui, text::pin_times(*times));
-        times.blend_secs = controls::slider(ui, text::BLEND, times.blend_secs, BLEND).unwrap_or(times.blend_secs);
+    if let Some(limits) = times {
+        controls::hint(ui, text::pin_times(*limits));
+        limits.blend_secs = controls::slider(ui, text::BLEND, limits.blend_secs, BLEND).unwrap_or(limits.blend_secs);
+        let other = in_range(limits.blend_secs).filter(|other| other != limits);
+        if other.is_some() && ui.button(text::PIN_TO_RANGE).clicked() {
+            *times = other;
+        }
     }
 }
 

@@ -20,10 +20,10 @@ pub const HELP_HANDLE: &str = "Move the goal of a pinned joint";
 pub const PINNED_TO: &str = "Pinned to";
 /// Switch: the pin holds only between the in and out points.
 pub const PIN_IN_RANGE: &str = "Only in the range";
+/// Button that moves a pin's times to the in and out points.
+pub const PIN_TO_RANGE: &str = "Use the current range";
 
 /// Returns when a pin holds.
 pub fn pin_times(PinTimes { start_secs, end_secs, .. }: PinTimes) -> String {
-    format!(
-        "From {start_secs:.2} s to {end_secs:.2} s. To change it, move the in and out points, then switch off and on."
-    )
+    format!("Holds from {start_secs:.2} s to {end_secs:.2} s.")
 }
