@@ -1,6 +1,6 @@
 //! Handles of pins: each is dragged in the plane of the viewport.
 
-use egui::{Painter, Response, Stroke, Ui, Vec2};
+use egui::{Painter, Response, Stroke, Ui};
 use glam::Vec3;
 
 use super::panes::{pane_at, to_screen};
@@ -84,7 +84,8 @@ fn moved(shown: &Shown<'_>, pane: egui::Rect, pin: &Pin, to: egui::Pos2) -> Opti
         }
         PinGoal::Camera => return None,
     };
-    (by != Vec2::ZERO && goal != pin.goal).then_some(Pin { goal, ..*pin })
+    // Rounding leaves the handle a little off the pointer, which isn't a move.
+    (by.length() > 0.1 && goal != pin.goal).then_some(Pin { goal, ..*pin })
 }
 
 fn world_from_joint(shown: &Shown<'_>, number: usize) -> Option<glam::Affine3A> {
