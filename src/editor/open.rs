@@ -417,7 +417,7 @@ impl Editor {
         let images = vec![None; motion.asset.images.len()];
         let mut model = Model::new(motion.source.clone(), motion.asset.clone(), images);
         (model.origin, model.is_own) = (motion.origin.clone(), motion.is_own);
-        let companions = Companions { motions: Some(Vec::new()), map: None, view: None };
+        let companions = Companions { motions: Some(Vec::new()), map: None, view: None, is_by_hand: false };
         (self.needs_redraw, self.is_changed) = (true, true);
         self.open_models(vec![model.into()], companions, admit)
     }

@@ -47,7 +47,7 @@ pub const ABOUT_LAYERS: &str = "Layers play over this clip, the last one on top.
 /// Chooser of a layer's clip.
 pub const LAYER_CLIP: &str = "Layer's clip";
 /// Button that swaps a layer with the next.
-pub const RAISE_LAYER: &str = "Move up";
+pub const RAISE_LAYER: &str = "Raise";
 /// Button that removes a layer.
 pub const REMOVE_LAYER: &str = "Remove layer";
 /// Topic of the choice of modes.
