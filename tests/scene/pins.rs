@@ -319,12 +319,32 @@ fn clips_are_written_with_pins() {
     // Conversion changes one of the file's own clips, under another name.
     let converted = path("converted.glb");
     let own = document(&["inspect", &model, "--json"])["clips"].as_array().expect("clips").len();
-    if own > 0 {
-        let done = run(&["convert", &model, "--pin", &format!("{name}=at:0.3,0.9,0.4"), "--out", &converted]);
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        let pin = format!("{name}=at:0.3,0.9,0.4");
-        let shown = document(&["pose", &model, "--clip", "0", "--time", "0.3", "--pin", &pin, "--json"]);
-        assert!(at(&converted, own, "0.3").distance(node(&shown, &name)) < 3e-4);
+    assert!(own > 0);
+    let done = run(&["convert", &model, "--pin", &format!("{name}=at:0.3,0.9,0.4"), "--out", &converted]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let pin = format!("{name}=at:0.3,0.9,0.4");
+    let shown = document(&["pose", &model, "--clip", "0", "--time", "0.3", "--pin", &pin, "--json"]);
+    assert!(at(&converted, own, "0.3").distance(node(&shown, &name)) < 3e-4);
+}
+
+#[test]
+fn a_written_clip_that_a_layer_makes_longer_repeats_its_pins() {
+    let out = folder("pinned-layers").0.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    let (layer, pin) = ("Wave:speed:1.3125", "leftHand=at:0.25,1.2,0.3@0.3,0.6,0.2");
+    let (model, walk) = (["--model", "sample:walker"], ["--motion", "sample:walker", "--clip", "Walk"]);
+    let done =
+        run(&[&["retarget"], &model[..], &walk, &["--layer", layer, "--pin", pin, "--clip-only", "--out", out]]
+            .concat());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let secs = |document: &Value| document["clips"][0]["duration_secs"].as_f64().expect("a clip");
+    let walk_secs = secs(&document(&["inspect", "sample:walker", "--json"]));
+    let written_secs = secs(&document(&["inspect", out, "--json"]));
+    assert!((written_secs - 2.0 * walk_secs).abs() < 1e-4, "{written_secs}");
+    for time_secs in [0.45, 0.45 + walk_secs] {
+        let found =
+            node(&document(&["pose", out, "--clip", "0", "--time", &time_secs.to_string(), "--json"]), "LeftHand");
+        assert!(found.distance(Vec3::new(0.25, 1.2, 0.3)) < 3.6e-4, "{time_secs}: {found}");
     }
 }
 
