@@ -246,8 +246,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await apply(page, { t: 1, play: 0 });
         const free = await hand(page);
         const { nodes } = await pose(page);
-        const number = nodes.find(({ name }) => name === "mixamorig:LeftHand")?.node;
-        const head = nodes.find(({ name }) => name === "mixamorig:Head")?.node;
+        const [number, head] = ["mixamorig:LeftHand", "mixamorig:Head"].map((joint) => nodes.find(({ name }) => name === joint)?.node ?? NaN);
         const before = await picture(page);
         // Above the head, within reach.
         const at = [free[0], free[1] + 0.1, free[2] + 0.05];
