@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::icons::{Icon, icon_button_sized};
+use super::icons::{Icon, icon_button_sized, icon_size};
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
 use crate::editor::{name_and_place, short_name};
 use crate::library::{Model, ModelId, Motion};
@@ -156,7 +156,8 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
                 ui.spacing_mut().item_spacing.x = 2.0;
                 let has_motion = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
                 let borrow_width = if has_motion { BORROW_WIDTH + 2.0 } else { 0.0 };
-                let size = egui::vec2(ui.available_width() - borrow_width - CLEAR_SIZE - 2.0, row_height);
+                let close_width = icon_size(ui, CLEAR_SIZE).x + 2.0;
+                let size = egui::vec2(ui.available_width() - borrow_width - close_width, row_height);
                 let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", is_active)).inner;
                 if scrolls && is_active {
                     row.scroll_to_me(None);
@@ -180,7 +181,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
 /// Returns whether the button that borrows the motion of an open model was clicked.
 fn borrow_button(ui: &mut Ui, name: &str) -> bool {
     ui.spacing_mut().button_padding.x = 4.0;
-    let button = ui.add_sized([BORROW_WIDTH, CLEAR_SIZE], egui::Button::new(text::BORROW).small());
+    let button = controls::sized(ui, [BORROW_WIDTH, CLEAR_SIZE], egui::Button::new(text::BORROW).small());
     controls::named(&button, || text::borrow_from(name));
     button.on_hover_ui(|ui| drop(ui.label(text::borrow_from(name)))).clicked()
 }
@@ -217,11 +218,12 @@ pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
     let filled = !text.is_empty();
     ui.horizontal(|ui| {
         // The button and its spacing: a row that is too wide would widen the panel in every pass.
-        let clear_width = if filled { CLEAR_SIZE + ui.spacing().item_spacing.x } else { 0.0 };
+        let clear_width = if filled { icon_size(ui, CLEAR_SIZE).x + ui.spacing().item_spacing.x } else { 0.0 };
         let field = ui.add(
             egui::TextEdit::singleline(text)
                 .hint_text(hint)
                 .margin(egui::Margin::symmetric(10, 6))
+                .align(egui::Align2::LEFT_CENTER)
                 .desired_width(ui.available_width() - clear_width),
         );
         if field.changed() {

@@ -12,11 +12,12 @@ const MENU_WIDTH: f32 = 220.0;
 const NAME_WIDTH: f32 = 350.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let frame = egui::Frame::new().inner_margin(egui::Margin { left: 10, right: 10, top: 5, bottom: 3 });
+    let (side, gap) = if local.layout.is_narrow { (6, 0.0) } else { (10, 4.0) };
+    let frame = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 5, bottom: 3 });
     egui::Panel::top("header").frame(frame).resizable(false).show_separator_line(false).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.set_height(32.0);
-            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.set_height(controls::row_height(ui, 32.0));
+            ui.spacing_mut().item_spacing.x = gap;
             left(ui, local, out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));
         });

@@ -111,6 +111,8 @@ pub struct UiState {
     pub holds_time: bool,
     /// The model in the open Info tab, which needs its thumbnails and the GPU memory; taken by the app in each frame.
     pub info_model: Option<ModelId>,
+    /// What had the focus when the recording began, which gets it back.
+    focus_before_recording: Option<Option<egui::Id>>,
     lists: tabs::Lists,
     clip_list: clips::ClipList,
     scene_tree: tabs::SceneTree,
@@ -331,10 +333,12 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     local.holds_time = false;
     let narrow = is_narrow(ui);
     local.layout.is_narrow = narrow;
+    style::size_controls(ui, narrow);
     if !shown.state.page.embed {
         header::show(ui, &shown, local, out);
     }
-    let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
+    let side = if narrow { 6 } else { 12 };
+    let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")
         .frame(bottom)
         .resizable(false)

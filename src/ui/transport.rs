@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::icons::{Icon, icon_button, play_button};
+use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
 use super::{Output, Shown, UiState, controls, feet, layers, style, text};
 use crate::anim::{LoopMode, TimeRange};
@@ -39,12 +39,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     }
     ui.horizontal(|ui| {
         ui.set_height(44.0);
-        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().item_spacing.x = if narrow { 0.0 } else { 4.0 };
         ui.add_enabled_ui(shown.is_animated(), |ui| play_buttons(ui, shown, out));
         ui.add_space(8.0);
-        times(ui, shown);
+        let room = narrow.then(|| ui.available_width() - narrow_width(ui, shown));
+        times(ui, shown, room);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
             if narrow {
                 speed_menu(ui, shown, out);
                 loop_cycle(ui, shown, out);
@@ -63,7 +63,8 @@ fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if icon_button(ui, Icon::StepBack, text::PREVIOUS_FRAME, false).clicked() {
         out.commands.push(Command::StepFrames(-1));
     }
-    if play_button(ui, shown.state.playback.playing && shown.is_animated(), 40.0).clicked() {
+    let size = controls::row_height(ui, 40.0);
+    if play_button(ui, shown.state.playback.playing && shown.is_animated(), size).clicked() {
         out.commands.push(Command::TogglePlaying);
     }
     if icon_button(ui, Icon::StepForward, text::NEXT_FRAME, false).clicked() {
@@ -71,7 +72,13 @@ fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-fn times(ui: &mut Ui, shown: &Shown<'_>) {
+/// The width of what stands to the right of the times on a narrow screen.
+fn narrow_width(ui: &Ui, shown: &Shown<'_>) -> f32 {
+    icon_size(ui, ICON_SIZE).x + controls::button_width(ui, &speed_text(shown)) + 4.0
+}
+
+/// Shows time and frame, in this width if there is a limit.
+fn times(ui: &mut Ui, shown: &Shown<'_>, room: Option<f32>) {
     let palette = style::palette(ui);
     let Some(clip) = shown.clip() else {
         ui.label(RichText::new(text::REST_POSE).color(palette.weak_text));
@@ -82,12 +89,21 @@ fn times(ui: &mut Ui, shown: &Shown<'_>) {
     let frame = (time_secs * per_sec + 1e-4).floor();
     let last = (duration_secs * per_sec).round();
     ui.vertical(|ui| {
+        if let Some(room) = room {
+            ui.set_max_width(room);
+        }
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.add_space(5.0);
-        let seconds = text::seconds(time_secs, duration_secs);
-        ui.add(egui::Label::new(RichText::new(seconds).color(palette.text)).extend());
-        let frames = text::frames(frame, last, per_sec);
-        ui.add(egui::Label::new(RichText::new(frames).small().color(palette.weak_text)).extend());
+        let label = |ui: &mut Ui, text: RichText| {
+            let label = egui::Label::new(text);
+            ui.add(if room.is_some() { label.truncate() } else { label.extend() });
+        };
+        label(ui, RichText::new(text::seconds(time_secs, duration_secs)).color(palette.text));
+        let mut frames = text::frames(frame, last, per_sec);
+        if room.is_some_and(|room| room < controls::text_width(ui, &frames, style::SMALL)) {
+            frames = text::frame(frame, last);
+        }
+        label(ui, RichText::new(frames).small().color(palette.weak_text));
     });
 }
 
@@ -179,12 +195,15 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     ui.label(RichText::new(text::SPEED).small().color(palette.weak_text));
 }
 
+fn speed_text(shown: &Shown<'_>) -> String {
+    text::speed((shown.state.playback.speed * 100.0).round() / 100.0)
+}
+
 fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let label = text::speed((shown.state.playback.speed * 100.0).round() / 100.0);
-    let button = ui.menu_button(label, |ui| {
+    let button = ui.menu_button(speed_text(shown), |ui| {
         for speed in [0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0] {
             let chosen = (shown.state.playback.speed - speed).abs() < 1e-6;
-            if ui.selectable_label(chosen, text::speed(speed)).clicked() {
+            if controls::choice(ui, chosen, &text::speed(speed)).clicked() {
                 out.commands.push(Command::SetSpeed(speed));
                 ui.close();
             }

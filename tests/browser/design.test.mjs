@@ -67,6 +67,18 @@ for (const renderer of BACK_ENDS)
         await page.finish();
       });
 
+    test("what a finger presses on a phone is high enough", async () => {
+      const page = await site.page({ renderer, link: "", viewport: PHONE });
+      const least = Number.parseInt(value("touch"), 10);
+      const controls = await page.evaluate(() =>
+        [...document.querySelectorAll("#gallery :is(a, button), #mirror button")].map((control) => ({ name: control.getAttribute("aria-label") ?? control.textContent, height: control.getBoundingClientRect().height })),
+      );
+      assert.ok(controls.length > 10, `${controls.length} controls`);
+      assert.deepEqual(controls.filter(({ height }) => height < least), []);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
+    });
+
     test("a long load says how far it is and can be cancelled", async () => {
       let isClosed = false;
       const slow = http.createServer((_, response) => {

@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
+use crate::bench::{NARROW, WIDE, bench, model_with_clips, motion_bench, painted, press, sample_bench};
 
 #[test]
 fn panels_fold_away_and_come_back() {
@@ -111,6 +111,87 @@ fn everything_stays_on_the_screen() {
 }
 
 #[test]
+fn the_times_end_before_the_buttons_on_their_right() {
+    for size in [[320.0, 480.0], [360.0, 640.0], NARROW] {
+        let mut harness = sample_bench(size);
+        let button = harness.get_by_label(text::LOOP).rect();
+        for (text, is_cut, rect) in painted(&harness) {
+            let is_beside = rect.center().y > button.top() && rect.left() < button.left();
+            assert!(!is_beside || (rect.right() <= button.left() && !is_cut), "{text} at {rect:?} on {size:?}");
+        }
+        harness.state_mut().change(|state| state.playback.speed = 0.25);
+        harness.run();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        assert!(screen.contains_rect(harness.get_by_label(&text::speed(0.25)).rect()), "{size:?}");
+    }
+}
+
+/// The buttons of a row stand side by side at one height.
+#[test]
+fn rows_of_buttons_are_level() {
+    for size in [NARROW, WIDE] {
+        let mut harness = motion_bench(size, &["dance.bvh"]);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        for (tab, labels) in [(Tab::Motion, [text::REMATCH, text::CLEAR_MAP]), (Tab::Camera, [text::FRONT, text::TOP])]
+        {
+            harness.state_mut().panels.layout.tab = tab;
+            harness.run();
+            let [first, last] = labels.map(|label| harness.get_by_label(label).rect());
+            assert_eq!(first.y_range(), last.y_range(), "{labels:?} on {size:?}");
+        }
+    }
+}
+
+#[test]
+fn the_backgrounds_names_stand_apart() {
+    for size in [WIDE, [1000.0, 700.0], NARROW, [320.0, 900.0]] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        harness.state_mut().panels.layout.tab = Tab::Camera;
+        harness.run();
+        harness.get_by_label(text::ENVIRONMENT).scroll_to_me();
+        harness.run();
+        let names = [text::COLOR, text::ENVIRONMENT, text::BLURRED, text::NO_BACKGROUND];
+        let texts: Vec<_> = painted(&harness).into_iter().filter(|(text, ..)| names.contains(&text.as_str())).collect();
+        assert!(texts.len() >= names.len(), "{size:?}: {texts:?}");
+        for (at, (text, _, rect)) in texts.iter().enumerate() {
+            for (other, _, other_rect) in &texts[at + 1..] {
+                assert!(!rect.expand2(egui::vec2(3.0, 0.0)).intersects(*other_rect), "{text} and {other} on {size:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_placeholder_of_a_search_field_is_in_its_middle() {
+    let mut harness = sample_bench(NARROW);
+    harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+    harness.state_mut().panels.layout.tab = Tab::Scene;
+    harness.run();
+    let field = harness.get_by_label(text::SEARCH_NODES).rect();
+    let texts = painted(&harness);
+    let (_, _, rect) = texts.iter().find(|(text, ..)| text == text::SEARCH_NODES).expect("a placeholder");
+    assert!((rect.center().y - field.center().y).abs() < 3.0, "{rect:?} in {field:?}");
+}
+
+#[test]
+fn posing_can_be_ended_on_any_screen() {
+    for size in [[800.0, 600.0], NARROW, [320.0, 480.0], WIDE] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.joint_card.is_posing = true;
+        harness.run();
+        let viewport = harness.state().viewport;
+        for (text, _, rect) in painted(&harness) {
+            if [text::POSING, text::DONE_POSING].contains(&text.as_str()) {
+                assert!(viewport.shrink(10.0).contains_rect(rect), "{text} at {rect:?} in {viewport:?}");
+            }
+        }
+        press(&mut harness, text::DONE_POSING);
+        assert!(!harness.state().panels.joint_card.is_posing);
+    }
+}
+
+#[test]
 fn embedded_there_is_only_picture_and_transport() {
     let mut harness = sample_bench(WIDE);
     harness.state_mut().change(|state| {
@@ -129,13 +210,13 @@ fn embedded_there_is_only_picture_and_transport() {
     assert_eq!(harness.state().actions, [UiAction::OpenPage]);
 }
 
-/// The height that the samples take on the first screen, below the canvas.
-const GALLERY_HEIGHT: f32 = 120.0;
+/// The first screens, with the height that the samples take below the canvas, and the viewport's least share of the screen.
+const FIRST_SCREENS: [([f32; 2], f32, f32); 2] = [(WIDE, 120.0, 0.5), (NARROW, 150.0, 0.6)];
 
 #[test]
 fn the_first_screen_is_mostly_viewport() {
-    for (size, share) in [(WIDE, 0.5), (NARROW, 0.6)] {
-        let mut harness = sample_bench([size[0], size[1] - GALLERY_HEIGHT]);
+    for (size, samples, share) in FIRST_SCREENS {
+        let mut harness = sample_bench([size[0], size[1] - samples]);
         harness.state_mut().panels.layout = Layout::default();
         harness.state_mut().panels.start(size[0]);
         harness.run();

@@ -5,13 +5,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-use egui::accesskit::{Action, ActionData, Role, TreeUpdate};
+use egui::accesskit::{Action, ActionData, Node, NodeId, Role, TreeUpdate};
 use egui::{Context, FullOutput, Plugin, RawInput};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use gaitway::app::mirror::{Mirror, entries};
-use gaitway::ui::Tab;
+use gaitway::retarget::ClipLayer;
+use gaitway::state::Command;
+use gaitway::ui::{Sheet, Tab, Toast, text};
 use serde_json::Value;
 
-use crate::bench::{NARROW, WIDE, motion_bench};
+use crate::bench::{Bench, NARROW, WIDE, motion_bench, press};
 
 /// Keeps the last tree that a harness builds.
 struct Spy(Arc<Mutex<Option<TreeUpdate>>>);
@@ -50,6 +54,69 @@ fn everything_that_takes_the_focus_has_a_name() {
                 }
             }
         }
+    }
+}
+
+/// Height and width of a control that fingers can hit, as in web/theme.css.
+const TOUCH: f64 = 44.0;
+
+fn check_touch_sizes(update: &TreeUpdate, place: &str) {
+    let mut count = 0;
+    let entries = entries(update);
+    let listed: BTreeSet<&str> = entries.iter().map(|entry| entry["id"].as_str().expect("an id")).collect();
+    let is_control =
+        |id: &NodeId, node: &Node| node.supports_action(Action::Focus) && listed.contains(id.0.to_string().as_str());
+    for (_, node) in update.nodes.iter().filter(|(id, node)| is_control(id, node)) {
+        let rect = node.bounds().expect("bounds");
+        let name = node.label().unwrap_or_default();
+        // The markers lie above the timeline, which needs its own height, and are as wide as others are high.
+        let is_marker = [text::IN_POINT, text::OUT_POINT].contains(&name);
+        let (width, height) = if is_marker { (TOUCH, 30.0) } else { (0.0, TOUCH) };
+        assert!(rect.height() >= height && rect.width() >= width, "{name} in {place}: {rect:?} {:?}", node.role());
+        count += 1;
+    }
+    assert!(count > 10, "{place}: {count}");
+}
+
+#[test]
+fn every_control_of_a_phone_is_large_enough_for_fingers() {
+    for size in [NARROW, [360.0, 640.0], [320.0, 480.0]] {
+        let mut harness = motion_bench(size, &["borrowed.bvh", "second.bvh"]);
+        let tree = Arc::new(Mutex::new(None));
+        harness.ctx.add_plugin(Spy(tree.clone()));
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(3)));
+        harness.state_mut().editor.apply(Command::SetLayers(vec![ClipLayer::default()]));
+        let check = |harness: &mut Harness<'_, Bench>, place: &str| {
+            harness.run();
+            let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+            check_touch_sizes(&update, &format!("{place} at {size:?}"));
+        };
+        check(&mut harness, "transport");
+        for label in [text::MENU, text::EXPORT] {
+            press(&mut harness, label);
+            check(&mut harness, label);
+        }
+        harness.key_press(egui::Key::Escape);
+        harness.run();
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Clips);
+        check(&mut harness, "clips");
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        for tab in [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion] {
+            harness.state_mut().panels.layout.tab = tab;
+            check(&mut harness, tab.label());
+        }
+        for part in [text::OPTIONS, text::FIT, text::FILES] {
+            harness.get_by_label(part).scroll_to_me();
+            harness.run();
+            press(&mut harness, part);
+            check(&mut harness, part);
+        }
+        harness.state_mut().panels.layout.sheet = None;
+        harness.state_mut().panels.joint_card.is_posing = true;
+        harness.state_mut().panels.messages.error = Some("broken.glb: it is not a GLB file".to_owned());
+        let text = "Opened.".to_owned();
+        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
+        check(&mut harness, "messages");
     }
 }
 

@@ -128,6 +128,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
             let field = egui::TextEdit::singleline(&mut typed.text)
                 .hint_text("Name or number; empty: none")
                 .margin(egui::Margin::symmetric(8, 5))
+                .align(egui::Align2::LEFT_CENTER)
                 .desired_width(ui.available_width());
             ui.add(field).labelled_by(label.id)
         })
@@ -230,7 +231,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
         ui.label(RichText::new(text::ROTATION_OFFSET).small().color(weak))
             .on_hover_text("In the joint's own space: about its X, then Y, then Z");
         let turned = turn.rotation != Quat::IDENTITY;
-        if turned && ui.small_button(text::RESET_OFFSET).on_hover_text("No offset").clicked() {
+        if turned && controls::small_button(ui, text::RESET_OFFSET).on_hover_text("No offset").clicked() {
             degrees = [0.0; 3];
         }
     });
@@ -245,7 +246,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
                 .update_while_editing(false)
                 .prefix(prefix)
                 .suffix("°");
-            let field = ui.add_sized([width, 26.0], field);
+            let field = controls::sized(ui, [width, 26.0], field);
             controls::named(&field, || text::rotation_offset_about(axis));
         }
     });
@@ -284,11 +285,11 @@ fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Opti
     let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate();
     let combo = combo.selected_text(&texts.policy);
     let response = combo.show_ui(ui, |ui| {
-        if ui.selectable_label(own.is_none(), &texts.default_policy).clicked() {
+        if controls::choice(ui, own.is_none(), &texts.default_policy).clicked() {
             pressed = Some(None);
         }
         for (policy, text) in &texts.policies {
-            if ui.selectable_label(own == Some(policy), text).clicked() {
+            if controls::choice(ui, own == Some(policy), text).clicked() {
                 pressed = Some(Some(policy.clone()));
             }
         }

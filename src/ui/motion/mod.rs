@@ -16,7 +16,7 @@ use std::sync::{Arc, LazyLock};
 use egui::{RichText, Ui};
 
 use self::rows::Row;
-use super::icons::{Icon, icon_button_sized};
+use super::icons::{Icon, icon_button_sized, icon_size};
 use super::{HostState, Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
@@ -284,8 +284,8 @@ const EDIT_BUTTON_HEIGHT: f32 = 30.0;
 
 /// Returns whether the button was clicked.
 fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bool {
-    let button = egui::Button::new(text).min_size(egui::vec2(width, EDIT_BUTTON_HEIGHT)).truncate();
-    ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, EDIT_BUTTON_HEIGHT], button))
+    let button = egui::Button::new(text).truncate();
+    ui.add_enabled_ui(enabled, |ui| controls::sized(ui, [width, EDIT_BUTTON_HEIGHT], button))
         .inner
         .on_hover_text(hover)
         .clicked()
@@ -317,7 +317,7 @@ fn edits(
 ) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let width = ui.available_width() - 2.0 * (EDIT_BUTTON_HEIGHT + 6.0);
+        let width = ui.available_width() - 2.0 * (icon_size(ui, EDIT_BUTTON_HEIGHT).x + 6.0);
         let clicking = local.motion.clicking.is_some();
         let (text, hover) = if clicking {
             (text::STOP_PICKING, "Leave the viewport alone again")
@@ -369,7 +369,7 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
             egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
         let response = combo.show_ui(ui, |ui| {
             for (index, name) in contents.motions.iter().enumerate() {
-                if ui.selectable_label(index == pairing.index, name).clicked() {
+                if controls::choice(ui, index == pairing.index, name).clicked() {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
             }

@@ -165,13 +165,13 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
     let mut pressed = None;
     ui.horizontal(|ui| {
         let weak = style::palette(ui).weak_text;
-        ui.add_sized([52.0, 28.0], egui::Label::new(RichText::new(label).color(weak)));
+        controls::sized(ui, [52.0, 28.0], egui::Label::new(RichText::new(label).color(weak)));
         let combo = egui::ComboBox::from_id_salt(("rest", label))
             .width(ui.available_width())
             .selected_text(text::rest_choice(chosen));
         let response = combo.show_ui(ui, |ui| {
             for choice in RestChoice::ALL {
-                if ui.selectable_label(choice == chosen, text::rest_choice(choice)).clicked() {
+                if controls::choice(ui, choice == chosen, text::rest_choice(choice)).clicked() {
                     pressed = Some(choice);
                 }
             }
@@ -216,12 +216,12 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
     };
     let combo = egui::ComboBox::from_id_salt("unmapped").width(ui.available_width()).truncate().selected_text(text);
     let response = combo.show_ui(ui, |ui| {
-        if ui.selectable_label(playing.is_none(), text::REST).clicked() {
+        if controls::choice(ui, playing.is_none(), text::REST).clicked() {
             out.commands.push(Command::SetUnmapped(Some(Unmapped::Rest)));
         }
         for (index, title) in titles.iter().enumerate().take(clips.len()) {
             let chosen = playing.is_some_and(|(clip, _)| clip == index);
-            if ui.selectable_label(chosen, title).clicked() {
+            if controls::choice(ui, chosen, title).clicked() {
                 out.commands.push(plays(index, playing.is_some_and(|(_, frozen)| frozen)));
             }
         }

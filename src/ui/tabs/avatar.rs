@@ -53,7 +53,7 @@ pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
         for (coordinate, name) in [(&mut point.x, "X"), (&mut point.y, "Y"), (&mut point.z, "Z")] {
             let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).suffix(" m");
             let field = field.update_while_editing(false);
-            is_changed |= ui.add_sized([80.0, 26.0], field).accessible_name(name).changed();
+            is_changed |= controls::sized(ui, [80.0, 26.0], field).accessible_name(name).changed();
         }
     });
     is_changed

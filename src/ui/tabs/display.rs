@@ -134,7 +134,7 @@ fn channel(ui: &mut Ui, now: Channel, out: &mut Output) {
     let response = combo
         .show_ui(ui, |ui| {
             for channel in Channel::ALL {
-                if ui.selectable_label(channel == now, text::channel(channel)).clicked() {
+                if controls::choice(ui, channel == now, text::channel(channel)).clicked() {
                     out.commands.push(Command::SetChannel(channel));
                 }
             }

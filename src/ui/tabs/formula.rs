@@ -176,7 +176,7 @@ fn equation(
         ui.label(RichText::new(vertex_title(model, choice)).strong());
         if shown.state.selection.vertex.is_some() {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let unpin = ui.small_button(text::UNPIN_VERTEX);
+                let unpin = controls::small_button(ui, text::UNPIN_VERTEX);
                 if unpin.on_hover_text("Inspect the vertex under the pointer again").clicked() {
                     out.commands.push(Command::SelectVertex(None));
                 }
@@ -211,7 +211,8 @@ fn term_row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, term: &FormulaTerm, o
     let number = model.asset.skeleton.source_index(term.joint);
     let is_selected = shown.state.selection.joint == Some(number);
     ui.add_space(3.0);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 21.0), Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), controls::row_height(ui, 21.0)), Sense::click());
     let label = text::joint_weight(&name, term.weight);
     let role = egui::accesskit::Role::Button;
     response.widget_info(|| WidgetInfo::selected(role, true, is_selected, &label));

@@ -11,7 +11,7 @@ use crate::asset::Asset;
 use crate::library::Model;
 use crate::state::{Command, manual_degrees, title};
 use crate::ui::controls::SliderSettings;
-use crate::ui::icons::{Icon, icon_button_sized};
+use crate::ui::icons::{Icon, icon_button_sized, icon_size};
 use crate::ui::{Output, Shown, controls, style, text};
 
 /// What the card remembers.
@@ -67,18 +67,20 @@ pub fn show(
     }
 }
 
+const CLOSE_SIZE: f32 = 24.0;
+
 fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
     ui.horizontal(|ui| {
-        let width = ui.available_width() - 100.0;
+        let width = ui.available_width() - icon_size(ui, CLOSE_SIZE).x - 76.0;
         ui.scope(|ui| {
             ui.set_max_width(width);
             name(ui, shown, asset, joint, card, out);
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button_sized(ui, Icon::Close, text::DESELECT_JOINT, false, 24.0).clicked() {
+            if icon_button_sized(ui, Icon::Close, text::DESELECT_JOINT, false, CLOSE_SIZE).clicked() {
                 out.commands.push(Command::SelectJoint(None));
             }
-            if card.renaming.is_none() && ui.small_button(text::RENAME).clicked() {
+            if card.renaming.is_none() && controls::small_button(ui, text::RENAME).clicked() {
                 let name = title(Some(shown.state), asset, joint).into_owned();
                 card.renaming = Some((asset.skeleton.source_index(joint), name));
             }
@@ -145,7 +147,10 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: 
         return;
     };
     let in_file = asset.skeleton.name(joint);
-    let field = egui::TextEdit::singleline(typed).hint_text(in_file).desired_width(f32::INFINITY);
+    let field = egui::TextEdit::singleline(typed)
+        .hint_text(in_file)
+        .align(egui::Align2::LEFT_CENTER)
+        .desired_width(f32::INFINITY);
     let field = ui.add(field).accessible_name(text::JOINT_NAME);
     let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
     if field.lost_focus() {

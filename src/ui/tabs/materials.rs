@@ -27,9 +27,11 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, lists: &Lists, out: &
 fn row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, material: &MaterialText, out: &mut Output) {
     let hidden = &shown.state.edits.hidden;
     let is_shown = !hidden.materials.contains(&material.index);
-    let height = 22.0 + material.lines.len() as f32 * LINE_HEIGHT;
+    // As high as the eye.
+    let name_height = controls::row_height(ui, 22.0);
+    let height = name_height + material.lines.len() as f32 * LINE_HEIGHT;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let first = rect.with_max_y(rect.top() + 22.0);
+    let first = rect.with_max_y(rect.top() + name_height);
     let palette = style::palette(ui);
     let color = if is_shown { palette.text } else { palette.weak_text };
     let id = Id::unique(("material", material.index));

@@ -84,7 +84,7 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
         for (edge, name) in [(0, "Width in pixels"), (1, "Height in pixels")] {
             let value = &mut settings.size[edge];
             let field = egui::DragValue::new(value).range(16..=MAX_PICTURE_SIZE).suffix(" px");
-            ui.add_sized([90.0, 26.0], field).accessible_name(name);
+            controls::sized(ui, [90.0, 26.0], field).accessible_name(name);
         }
     });
     if controls::switch(ui, text::TRANSPARENT_BACKGROUND, settings.transparent) {
@@ -118,11 +118,11 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
         ui.spacing_mut().item_spacing.x = 6.0;
         let width = (ui.available_width() - 4.0 * 6.0) / 5.0;
         for (yaw_degrees, pitch_degrees, label) in sides {
-            if ui.add_sized([width, 30.0], egui::Button::new(label)).clicked() {
+            if controls::sized(ui, [width, 30.0], egui::Button::new(label)).clicked() {
                 out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));
             }
         }
-        if ui.add_sized([width, 30.0], egui::Button::new("Fit")).on_hover_text(text::FRAME_ALL_KEY).clicked() {
+        if controls::sized(ui, [width, 30.0], egui::Button::new("Fit")).on_hover_text(text::FRAME_ALL_KEY).clicked() {
             out.commands.push(Command::FrameAll);
         }
     });

@@ -92,6 +92,11 @@ pub fn frames(frame: f64, last: f64, per_sec: f64) -> String {
     format!("Frame {frame:.0} / {last:.0} at {} fps", (10.0 * per_sec).round() / 10.0)
 }
 
+/// Returns the numbers of the current and the last frame, where there is no room for [`frames`].
+pub fn frame(frame: f64, last: f64) -> String {
+    format!("Frame {frame:.0} / {last:.0}")
+}
+
 /// Returns the time and the frame under the pointer.
 pub fn time_and_frame(secs: f64, per_sec: f64) -> String {
     format!("{secs:.2} s · frame {:.0}", (secs * per_sec + 1e-4).floor())

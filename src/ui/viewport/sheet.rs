@@ -7,7 +7,7 @@ use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
 
 /// The rectangle of a sheet, at the bottom of what the panels leave free. It leaves a strip of the viewport visible.
 pub fn rect(free: Rect) -> Rect {
-    let height = (free.height() * 0.62).max(240.0).min(free.height() - 56.0).max(0.0);
+    let height = (free.height() * 0.66).max(240.0).min(free.height() - 56.0).max(0.0);
     Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
 }
 
@@ -29,16 +29,16 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         }
         let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
         let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
-        content.spacing_mut().interact_size.y = style::TOUCH;
         content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
         match sheet {
             Sheet::Clips => clips::show(&mut content, shown, local, out),
             Sheet::Inspector => {
-                content.add_space(28.0);
+                content.add_space(34.0);
                 tabs::show(&mut content, shown, local, out);
             }
         }
-        let close = Rect::from_min_size(pos2(rect.right() - 44.0, rect.top() + 10.0), vec2(32.0, 32.0));
+        let size = ui.spacing().interact_size;
+        let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + 4.0), size);
         let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
         if icon_button(&mut corner, Icon::Close, text::CLOSE_SHEET, false).clicked() {
             local.layout.sheet = None;

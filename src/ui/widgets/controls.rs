@@ -52,10 +52,44 @@ pub fn hint(ui: &mut Ui, text: impl Into<RichText>) {
 /// Height of a row in lists and of tabs.
 pub const ROW_HEIGHT: f32 = 30.0;
 
-/// The height of a row that reacts to the pointer: `height`, or more on sheets, for fingers.
+/// The height of a row that reacts to the pointer: `height`, or more for fingers.
 pub fn row_height(ui: &Ui, height: f32) -> f32 {
-    let least = ui.spacing().interact_size.y;
-    if least < style::TOUCH { height } else { height.max(least) }
+    style::press_size(ui, vec2(0.0, height)).y
+}
+
+/// Adds a control of this width and height, or as high as controls are at least: those of a row would otherwise be stepped.
+pub fn sized(ui: &mut Ui, [width, height]: [f32; 2], control: impl egui::Widget) -> Response {
+    let height = height.max(ui.spacing().interact_size.y);
+    ui.add_sized([width, height], control)
+}
+
+/// A low button beside a title, as high as others for fingers.
+pub fn small_button(ui: &mut Ui, label: &str) -> Response {
+    let height = row_height(ui, 0.0);
+    ui.add(egui::Button::new(label).small().min_size(vec2(0.0, height)))
+}
+
+/// A button that is on or off, in lists and groups.
+pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
+    // Pale like rows and segments. egui also fills sliders with this colour.
+    let before = ui.visuals().selection;
+    let palette = style::palette(ui);
+    let selection = &mut ui.visuals_mut().selection;
+    (selection.bg_fill, selection.stroke.color) = (palette.chosen, palette.accent);
+    let response = ui.selectable_label(on, label);
+    ui.visuals_mut().selection = before;
+    response
+}
+
+/// The width of a line of text.
+pub fn text_width(ui: &Ui, text: &str, font: egui::FontId) -> f32 {
+    // Doesn't allocate, as a layout would.
+    ui.fonts_mut(|fonts| text.chars().map(|letter| fonts.glyph_width(&font, letter)).sum())
+}
+
+/// The width of a button with this text.
+pub fn button_width(ui: &Ui, text: &str) -> f32 {
+    text_width(ui, text, style::BODY) + 2.0 * ui.spacing().button_padding.x
 }
 
 /// A row with a label on the left and a switch on the right; returns true when it was flipped.
@@ -82,7 +116,8 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     response.clicked()
 }
 
-/// Buttons of equal width, of which one is selected; returns the value of the one that was pressed.
+/// Buttons of equal width, of which one is selected, in as many rows as their texts need; returns the value of the one that
+/// was pressed.
 pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
     segmented_about(ui, "", chosen, choices)
 }
@@ -108,6 +143,9 @@ pub fn tabs<T: Copy + PartialEq>(
     segments(ui, Some(open), tabs, Segments::Tabs { badge: &badge })
 }
 
+/// Between the texts of neighbouring segments.
+const SEGMENT_GAP: f32 = 8.0;
+
 /// What a row of segments is.
 #[derive(Clone, Copy)]
 enum Segments<'a, T> {
@@ -125,20 +163,31 @@ fn segments<T: Copy + PartialEq>(
 ) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
-    let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), row_height(ui, ROW_HEIGHT)), Sense::hover());
     let (role, about, font) = match row {
-        Segments::Choice { about } => {
-            ui.painter().rect_filled(bar, style::CORNER, palette.surface);
-            (Role::RadioButton, about, style::SMALL)
-        }
+        Segments::Choice { about } => (Role::RadioButton, about, style::SMALL),
+        Segments::Tabs { .. } => (Role::Tab, "", style::BODY),
+    };
+    let (room, height) = (ui.available_width(), row_height(ui, ROW_HEIGHT));
+    // Texts too long for a single row share several.
+    let widths = choices.iter().map(|(_, label)| text_width(ui, label, font.clone()));
+    let widest = widths.fold(1.0, f32::max) + SEGMENT_GAP;
+    let count = choices.len().max(1);
+    let rows = match row {
+        Segments::Choice { .. } => count.div_ceil(((room / widest) as usize).clamp(1, count)),
+        Segments::Tabs { .. } => 1,
+    };
+    let columns = count.div_ceil(rows);
+    let (bar, whole) = ui.allocate_exact_size(vec2(room, rows as f32 * height), Sense::hover());
+    match row {
+        Segments::Choice { .. } => drop(ui.painter().rect_filled(bar, style::CORNER, palette.surface)),
         Segments::Tabs { .. } => {
             ui.painter().hline(bar.x_range(), bar.bottom() + 3.0, Stroke::new(1.0, palette.line));
-            (Role::Tab, "", style::BODY)
         }
-    };
-    let width = bar.width() / choices.len().max(1) as f32;
+    }
+    let size = vec2(bar.width() / columns as f32, height);
     for (index, (value, label)) in choices.iter().enumerate() {
-        let cell = Rect::from_min_size(bar.min + vec2(index as f32 * width, 0.0), vec2(width, bar.height()));
+        let at = vec2((index % columns) as f32, (index / columns) as f32);
+        let cell = Rect::from_min_size(bar.min + at * size, size);
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
         response.widget_info(|| {
@@ -178,10 +227,13 @@ pub fn slider(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) ->
 fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> Option<f64> {
     let mut new = value;
     label_and_value(ui, label, &mut new, &settings);
-    ui.spacing_mut().slider_width = ui.available_width();
+    let width = ui.available_width();
+    ui.spacing_mut().slider_width = width;
     let mut bar = new;
+    let (row, _) = ui.allocate_exact_size(vec2(width, row_height(ui, SLIDER_HEIGHT)), Sense::hover());
     knob_style(ui);
-    let response = ui.add(
+    let middle = Rect::from_center_size(row.center(), vec2(width, SLIDER_HEIGHT));
+    let response = ui.new_child(egui::UiBuilder::new().max_rect(middle)).add(
         egui::Slider::new(&mut bar, settings.range.0..=settings.range.1)
             .show_value(false)
             .logarithmic(settings.logarithmic)
@@ -191,7 +243,8 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
     if response.changed() {
         new = bar;
     }
-    if is_double_clicked(&response) {
+    // Its knob is as high as the slider, but what a finger presses is as high as the row.
+    if ui.interact(row, response.id, Sense::click()).double_clicked() {
         new = settings.default;
     }
     (new != value).then_some(new)
@@ -202,10 +255,13 @@ pub fn is_double_clicked(slider: &Response) -> bool {
     slider.interact(Sense::click()).double_clicked()
 }
 
+/// Height of a slider, which its knob fills.
+const SLIDER_HEIGHT: f32 = 20.0;
+
 /// Draws the knobs of all further sliders in this `Ui` as rings in the accent colour.
 pub fn knob_style(ui: &mut Ui) {
     let palette = style::palette(ui);
-    ui.spacing_mut().interact_size.y = 20.0;
+    ui.spacing_mut().interact_size.y = SLIDER_HEIGHT;
     let widgets = &mut ui.visuals_mut().widgets;
     for (widget, width) in [(&mut widgets.inactive, 2.0), (&mut widgets.hovered, 2.5), (&mut widgets.active, 3.0)] {
         widget.fg_stroke = Stroke::new(width, palette.accent);
@@ -227,9 +283,10 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
     ui.horizontal(|ui| {
         let field_width = 76.0;
         let width = (ui.available_width() - field_width - 8.0).max(20.0);
-        let (rect, _) = ui.allocate_exact_size(vec2(width, 24.0), Sense::hover());
+        let height = row_height(ui, 24.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         elided(ui, rect, label, style::palette(ui).text);
-        ui.spacing_mut().interact_size.y = 24.0;
+        ui.spacing_mut().interact_size.y = height;
         let (min, max) = settings.range;
         let before = *value;
         // When a field loses the focus, egui sets the number that it shows, rounded and clamped, even if nothing was typed.
@@ -239,7 +296,7 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
             text.parse().ok().filter(|&typed: &f64| typed != shown)
         };
         let field = ui.add_sized(
-            [field_width, 24.0],
+            [field_width, height],
             egui::DragValue::new(value)
                 .speed((max - min) / 300.0)
                 .range(min..=max)

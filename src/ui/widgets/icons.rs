@@ -31,13 +31,16 @@ pub enum Icon {
     Redo,
 }
 
-/// A square button with an icon; `label` is its accessible name and its tooltip.
+/// Width and height of most buttons with an icon.
+pub const ICON_SIZE: f32 = 32.0;
+
+/// A button with an icon, square for a pointer; `label` is its accessible name and its tooltip.
 pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, chosen: bool) -> Response {
-    icon_button_sized(ui, icon, label, chosen, 32.0)
+    icon_button_sized(ui, icon, label, chosen, ICON_SIZE)
 }
 
 pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, size: f32) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(icon_size(ui, size), Sense::click());
     response.widget_info(|| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), chosen, label));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
@@ -55,6 +58,11 @@ pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, siz
         paint(ui.painter(), icon, Rect::from_center_size(rect.center(), Vec2::splat(size * 0.5)), color);
     }
     response.on_hover_text(label)
+}
+
+/// The size of such a button: what is beside it leaves it room.
+pub fn icon_size(ui: &Ui, size: f32) -> Vec2 {
+    style::press_size(ui, Vec2::splat(size))
 }
 
 /// The large round play button.

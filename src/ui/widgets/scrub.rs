@@ -2,7 +2,7 @@
 
 use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{accessible, style};
+use super::{accessible, controls, style};
 use crate::anim::{Clip, TimeRange};
 use crate::library::ModelId;
 use crate::ui::text;
@@ -90,6 +90,8 @@ fn times(duration_secs: f64, width: f64) -> Vec<(f32, String)> {
 
 /// Height of the bar: handles, rail, marks and times.
 const HEIGHT: f32 = 52.0;
+/// Lower screens have no room to spare.
+const ROOMY_HEIGHT: f32 = 400.0;
 /// Space for the handles at either end of the rail.
 pub const MARGIN: f32 = 9.0;
 
@@ -97,6 +99,8 @@ pub const MARGIN: f32 = 9.0;
 struct Bar {
     rect: Rect,
     rail: Rect,
+    /// Space above for fingers.
+    above: f32,
     duration_secs: f64,
 }
 
@@ -117,8 +121,12 @@ pub fn show(
     clip_id: (ModelId, usize),
     marks: &mut KeyMarks,
 ) -> (Option<Scrubbed>, bool) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let rect = rect.with_min_x(rect.left() + scrub.gutter);
+    // Fingers get room above the handles and below the rail, where the screen has it.
+    let is_roomy = controls::row_height(ui, 0.0) > 0.0 && ui.ctx().content_rect().height() >= ROOMY_HEIGHT;
+    let (above, below) = if is_roomy { (14.0, 5.0) } else { (0.0, 0.0) };
+    let height = above + HEIGHT + below;
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let rect = rect.with_min_x(rect.left() + scrub.gutter).with_min_y(rect.top() + above);
     let rail =
         Rect::from_x_y_ranges(rect.left() + MARGIN..=rect.right() - MARGIN, rect.top() + 20.0..=rect.top() + 25.0);
     let Some(clip) = scrub.clip.filter(|clip| clip.duration_secs() > 0.0) else {
@@ -126,7 +134,7 @@ pub fn show(
         return (None, false);
     };
     let duration_secs = f64::from(clip.duration_secs());
-    let bar = Bar { rect, rail, duration_secs };
+    let bar = Bar { rect, rail, above, duration_secs };
     let range = scrub.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
 
     let seek_area = Rect::from_x_y_ranges(rect.x_range(), rect.top() + 13.0..=rect.bottom());
@@ -160,7 +168,9 @@ pub fn show(
 fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
     let x = bar.x_of(secs);
+    // Fingers reach further, to the sides and up, where nothing else is.
     let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 8.0), vec2(18.0, 18.0));
+    let grab = grab.expand2(vec2(bar.above, 0.0)).with_min_y(grab.top() - bar.above);
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
     handle.widget_info(|| WidgetInfo::slider(true, secs, label));
     let requested = accessible::slider(ui, &handle, secs, bar.duration_secs, 1.0 / scrub.frames_per_sec);

@@ -39,6 +39,10 @@ pub const WINDOW_CORNER: u8 = length("window-corner");
 pub const WINDOW_MARGIN: i8 = length("window-margin") as i8;
 /// Minimum height of what a finger presses.
 pub const TOUCH: f32 = length("touch") as f32;
+/// Minimum size of what a finger presses. Not a square: a narrow header has room for six buttons, the name and the menu.
+const FINGER_SIZE: Vec2 = Vec2::new(38.0, TOUCH);
+/// Minimum size of what a pointer presses.
+const POINTER_SIZE: Vec2 = Vec2::splat(28.0);
 
 /// The three sizes of text: titles, what controls and lists say, and notes, headings of groups and numbers.
 pub const HEADING: FontId = FontId::proportional(length("heading") as f32);
@@ -115,6 +119,21 @@ pub fn install(context: &egui::Context) {
     }
 }
 
+/// Makes the controls of this `Ui`, and of all menus and windows, large enough for fingers or for a pointer.
+pub fn size_controls(ui: &mut Ui, for_fingers: bool) {
+    let size = if for_fingers { FINGER_SIZE } else { POINTER_SIZE };
+    if ui.spacing().interact_size != size {
+        ui.ctx().all_styles_mut(|style| style.spacing.interact_size = size);
+        ui.spacing_mut().interact_size = size;
+    }
+}
+
+/// The size of something to press: `size`, or more for fingers.
+pub fn press_size(ui: &Ui, size: Vec2) -> Vec2 {
+    let least = ui.spacing().interact_size;
+    if least.y < TOUCH { size } else { size.max(least) }
+}
+
 /// The font of all text, TrueType; see assets/font/README.md. The browser draws the letters that it lacks, with the system's
 /// fonts.
 #[cfg(target_arch = "wasm32")]
@@ -154,7 +173,7 @@ fn style(theme: Theme, palette: &Palette) -> Style {
     let spacing = &mut style.spacing;
     spacing.item_spacing = Vec2::new(f32::from(const { length("gap") }), 6.0);
     spacing.button_padding = Vec2::new(f32::from(const { length("button-margin") }), 5.0);
-    spacing.interact_size = Vec2::new(28.0, 28.0);
+    spacing.interact_size = POINTER_SIZE;
     spacing.slider_rail_height = 4.0;
     spacing.icon_width = 18.0;
     spacing.icon_width_inner = 10.0;

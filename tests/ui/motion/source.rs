@@ -126,7 +126,7 @@ fn a_joint_is_picked_in_the_viewport() {
         let at = screen_position(&harness, 0, "LeftHand");
         assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
         assert!(harness.query_by_label(&text::what_follows("LeftHand")).is_some());
-        let commands = press(&mut harness, &text::joint(head, "Head"));
+        let commands = reach(&mut harness, &text::joint(head, "Head"));
         assert_eq!(commands, [Command::SetSource { motion: 0, target: hand, source: Some(head) }]);
         assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some(), "the table is back on {size:?}");
         // The button and Escape both end picking without a change.
