@@ -1,17 +1,20 @@
 //! The buttons in the upper right corner of the viewport.
 
-use egui::{Align, Layout, Rect, Ui, vec2};
+use egui::{Align, Layout, Rect, RichText, Ui, vec2};
 
 use crate::state::Command;
 use crate::ui::icons::{Icon, icon_button};
-use crate::ui::{Output, Shown, UiAction, UiState, style, text};
+use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 
 pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let is_embedded = shown.state.page.embed;
     if is_embedded && !local.host.has_gallery {
         return;
     }
-    let strip = Rect::from_min_size(rect.min + vec2(10.0, 10.0), vec2(rect.width() - 20.0, 36.0));
+    let strip = Rect::from_min_size(
+        rect.min + vec2(10.0, 10.0),
+        vec2(rect.width() - 20.0, controls::row_height(ui, 32.0) + 4.0),
+    );
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     // Translucent, legible over any scene.
     let fill = style::palette(ui).panel.gamma_multiply(0.86);
@@ -27,11 +30,18 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
     });
     // Its switch may be out of sight, and the gizmo takes the drags that would orbit.
     if local.joint_card.is_posing && !is_embedded {
-        pill.show(&mut bar, |ui| {
-            if ui.button(text::DONE_POSING).clicked() {
+        let palette = style::palette(ui);
+        let width = controls::text_width(ui, text::POSING, style::BODY) + controls::button_width(ui, text::DONE_POSING);
+        let has_room = bar.available_width() >= width + ui.spacing().item_spacing.x + 12.0;
+        let left = if has_room { 10 } else { 2 };
+        pill.inner_margin(egui::Margin { left, ..egui::Margin::same(2) }).show(&mut bar, |ui| {
+            let done = RichText::new(text::DONE_POSING).color(palette.on_accent);
+            if ui.add(egui::Button::new(done).fill(palette.accent)).clicked() {
                 local.joint_card.is_posing = false;
             }
-            ui.label(text::POSING);
+            if has_room {
+                ui.label(text::POSING);
+            }
         });
     }
 }
