@@ -1,8 +1,8 @@
 //! Layers over the current clip: a section below the clip's edits, and tracks under the timeline.
 
-use egui::{Rect, Ui, vec2};
+use egui::{Rect, Response, Ui, vec2};
 
-use super::icons::{Icon, icon_button_sized};
+use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, feet, style, text};
 use crate::library::Model;
@@ -25,12 +25,23 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut layers = before.clone();
     let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
+    // The layer that was just added gets the focus, and then its card is scrolled to.
+    let added_id = ui.scope_id().with("added layer");
+    let added: Option<usize> = ui.data(|data| data.get_temp(added_id));
     for (index, layer) in layers.iter_mut().enumerate() {
         let done = ui.push_id(("layer", index), |ui| {
             controls::card(ui, |ui| card(ui, shown, model, layer, index + 1 < before.len()))
         });
+        let (chooser, how) = done.inner;
+        if added == Some(index) && chooser.has_focus() {
+            ui.scroll_to_rect(done.response.rect, None);
+            ui.data_mut(|data| data.remove::<usize>(added_id));
+        } else if added == Some(index) {
+            chooser.request_focus();
+            ui.ctx().request_repaint();
+        }
         ui.add_space(4.0);
-        moved = done.inner.map(|how| (index, how)).or(moved);
+        moved = how.map(|how| (index, how)).or(moved);
     }
     match moved {
         Some((index, Moved::Raised)) => layers.swap(index, index + 1),
@@ -42,6 +53,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         let playing = shown.clip_index();
         let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
         layers.push(ClipLayer { clip: name_of(model, clip), ..ClipLayer::default() });
+        ui.data_mut(|data| data.insert_temp(added_id, before.len()));
     }
     controls::hint(ui, text::ABOUT_LAYERS);
     if layers != *before {
@@ -62,28 +74,37 @@ fn name_of(model: &Model, clip: usize) -> String {
     }
 }
 
-fn card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer, can_rise: bool) -> Option<Moved> {
+/// Returns the chooser of the clip, and how the layer is moved.
+fn card(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    layer: &mut ClipLayer,
+    can_rise: bool,
+) -> (Response, Option<Moved>) {
     let mut moved = None;
     let clip = clip_of_layer(model, layer);
     let titles = model.clip_titles();
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         let shown = clip.and_then(|clip| titles.get(clip)).unwrap_or(&layer.clip);
-        let width = ui.available_width() - 92.0;
+        let buttons = controls::button_width(ui, text::RAISE_LAYER) + icon_size(ui, BUTTON_SIZE).x;
+        let width = ui.available_width() - buttons - 2.0 * ui.spacing().item_spacing.x;
         let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);
         let response = combo.show_ui(ui, |ui| {
             for (index, title) in titles.iter().enumerate() {
-                if ui.selectable_label(clip == Some(index), title).clicked() {
+                if controls::choice(ui, clip == Some(index), title).clicked() {
                     layer.clip = name_of(model, index);
                 }
             }
         });
-        response.response.accessible_name(text::LAYER_CLIP);
+        let chooser = response.response.accessible_name(text::LAYER_CLIP);
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
         }
         if icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, false, BUTTON_SIZE).clicked() {
             moved = Some(Moved::Removed);
         }
+        chooser
     });
     let modes = LayerMode::ALL.map(|mode| (mode, text::layer_mode(mode)));
     layer.mode = controls::segmented_about(ui, text::LAYER_MODE, Some(layer.mode), &modes).unwrap_or(layer.mode);
@@ -94,10 +115,11 @@ fn card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer, ca
     ] {
         *value = controls::slider(ui, label, *value, settings).unwrap_or(*value);
     }
+    controls::hint(ui, text::LAYER_PARTS);
     ui.horizontal_wrapped(|ui| {
         if !model.body().slots.0.is_empty() {
             for (part, _) in BodyPart::ALL {
-                if ui.selectable_label(layer.mask.has(part), text::body_part(part)).clicked() {
+                if controls::choice(ui, layer.mask.has(part), text::body_part(part)).clicked() {
                     layer.mask.toggle(part);
                 }
             }
@@ -109,7 +131,7 @@ fn card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer, ca
         for &joint in layer.mask.joints.iter().chain(&extra) {
             let Some(index) = model.asset.skeleton.joint_of_source(joint) else { continue };
             let name = title(Some(shown.state), &model.asset, index);
-            if ui.selectable_label(extra != Some(joint), text::below_joint(&name)).clicked() {
+            if controls::choice(ui, extra != Some(joint), &text::below_joint(&name)).clicked() {
                 pressed = Some(joint);
             }
         }
@@ -119,7 +141,7 @@ fn card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer, ca
             layer.mask.joints.insert(joint);
         }
     });
-    moved
+    (row.inner, moved)
 }
 
 /// The layers that the model has clips for, with their titles.

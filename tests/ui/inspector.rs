@@ -16,7 +16,7 @@ use gaitway::state::{
     Background, CameraChoice, Command, EnvironmentChoice, Hidden, Inspect, KeyLight, LightSetup, LookTarget, Show,
     ToneMap, UpAxis,
 };
-use gaitway::ui::{FrameTimes, Tab, UiAction, Validation, text};
+use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
 use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, press, sample_bench};
@@ -313,6 +313,42 @@ fn warnings_lead_to_their_nodes_and_have_badges() {
     assert!(harness.query_by_label(&text::node_warnings(1)).is_some(), "the tooltip");
     let harness = sample_bench(WIDE);
     assert_eq!(badge(&harness), None);
+}
+
+#[test]
+fn the_validators_summary_comes_into_sight() {
+    let mut harness = bench([1280.0, 480.0], model_with_clips(3));
+    press(&mut harness, Tab::Info.label());
+    let host = &mut harness.state_mut().panels.host;
+    (host.has_validator, host.has_gltf) = (true, true);
+    harness.run();
+    let id = harness.state().library().active().unwrap().id;
+    let report = Validation::Done(ValidatorReport::default());
+    harness.state_mut().panels.host.validation = Some((id, Validation::Running));
+    harness.run();
+    let below = harness.get_by_label(text::VALIDATING).rect().bottom();
+    assert!(below > harness.get_by_label(text::TIME).rect().top(), "out of sight at {below}");
+    harness.state_mut().panels.host.validation = Some((id, report));
+    harness.run();
+    let (summary, timeline) = (harness.get_by_label(text::NO_FINDINGS).rect(), harness.get_by_label(text::TIME).rect());
+    assert!(summary.top() > 60.0 && summary.bottom() < timeline.top(), "{summary:?} and {timeline:?}");
+}
+
+#[test]
+fn the_focus_returns_to_what_started_a_recording() {
+    let mut harness = sample_bench([1280.0, 1600.0]);
+    press(&mut harness, Tab::Camera.label());
+    harness.get_by_label(text::RECORD).focus();
+    harness.run();
+    let progress = RecordingProgress { frames_done: 1, frame_count: 9 };
+    harness.state_mut().panels.host.recording = Some(progress);
+    harness.run();
+    harness.get_by_label(text::CANCEL).focus();
+    harness.run();
+    assert!(harness.get_by_label(text::CANCEL).accesskit_node().is_focused());
+    harness.state_mut().panels.host.recording = None;
+    harness.run();
+    assert!(harness.get_by_label(text::RECORD).accesskit_node().is_focused());
 }
 
 #[test]

@@ -5,9 +5,9 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::Export;
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
 use gaitway::state::Command;
-use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, WIDE, motion_bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, sample_bench};
 use crate::header::choose;
 
 fn scrolled_to(harness: &mut Harness<'_, Bench>, label: &str) {
@@ -57,6 +57,28 @@ fn a_layer_is_added_masked_raised_and_removed() {
     }
     assert!(layers(&harness).is_empty());
     assert!(harness.query_by_label(&text::layer_track("Idle")).is_none());
+}
+
+#[test]
+fn a_new_layer_is_in_sight_and_has_the_focus() {
+    for size in [WIDE, NARROW] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        harness.state_mut().panels.layout.tab = Tab::Display;
+        harness.run();
+        for count in 1..=2 {
+            scrolled_to(&mut harness, text::ADD_LAYER);
+            press(&mut harness, text::ADD_LAYER);
+            let chooser = harness.get_all_by_label(text::LAYER_CLIP).last().expect("a card");
+            assert!(chooser.accesskit_node().is_focused(), "layer {count} on {size:?}");
+            let (rect, timeline) = (chooser.rect(), harness.get_by_label(text::TIME).rect());
+            assert!(rect.top() > 40.0 && rect.bottom() < timeline.top(), "layer {count} on {size:?}: {rect:?}");
+            if size == WIDE {
+                let last = harness.get_all_by_label(text::body_part(BodyPart::RightLeg)).last().expect("in the card");
+                assert!(last.rect().bottom() < timeline.top(), "layer {count}: {:?}", last.rect());
+            }
+        }
+    }
 }
 
 #[test]

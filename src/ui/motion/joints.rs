@@ -37,6 +37,9 @@ pub(super) struct TableView {
     scrolled_to: Option<usize>,
     /// Number and top of the row that was just pressed: it stays there while the details of another one close above it.
     pressed: Option<(usize, f32)>,
+    /// Number of the row whose details are to be scrolled into view, and the passes until then: the press scrolls
+    /// first.
+    revealed: Option<(usize, u8)>,
 }
 
 /// Whether the table can be ordered by parts of the body.
@@ -63,7 +66,7 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, t
         let text = counted().find(|(filter, _)| *filter == table.filter).map_or("", |(_, text)| text);
         let response = combo.selected_text(text).show_ui(ui, |ui| {
             for (filter, text) in counted() {
-                if ui.selectable_label(filter == table.filter, text).clicked() {
+                if controls::choice(ui, filter == table.filter, text).clicked() {
                     table.filter = filter;
                 }
             }
@@ -236,9 +239,15 @@ impl Table<'_, '_> {
         let indents = if *by_body || !search.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
         let many = lines.len() > MANY_ROWS;
         let top = ui.cursor().top();
+        let revealed = tab.table.revealed.take_if(|(number, _)| *number == row.number && is_chosen);
+        if let Some((number, passes @ 1..)) = revealed {
+            tab.table.revealed = Some((number, passes - 1));
+            ui.ctx().request_repaint();
+        }
         if let Some((_, pressed_top)) = tab.table.pressed.take_if(|(number, _)| *number == row.number && is_chosen) {
             ui.scroll_with_delta_animation(vec2(0.0, pressed_top - top), egui::style::ScrollAnimation::none());
             ui.ctx().request_repaint();
+            tab.table.revealed = Some((row.number, 1));
         }
         match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
@@ -253,7 +262,13 @@ impl Table<'_, '_> {
         }
         if let Some(texts) = detail.as_ref().filter(|_| is_chosen) {
             let about = detail::About { shown: self.shown, pairing: self.pairing, map: self.map, row, texts };
-            ui.scope(|ui| detail::show(ui, &about, tab, self.out));
+            let details = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response.rect;
+            if revealed.is_some_and(|(_, passes)| passes == 0) {
+                let whole = details.with_min_y(top);
+                // The row stays in sight too.
+                let is_high = whole.height() > ui.clip_rect().height();
+                ui.scroll_to_rect(whole, is_high.then_some(egui::Align::TOP));
+            }
         }
     }
 }

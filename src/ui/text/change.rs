@@ -52,6 +52,8 @@ pub const RAISE_LAYER: &str = "Raise";
 pub const REMOVE_LAYER: &str = "Remove layer";
 /// Topic of the choice of modes.
 pub const LAYER_MODE: &str = "Layer";
+/// Heading of the parts of the body that a layer moves.
+pub const LAYER_PARTS: &str = "Body parts";
 /// Slider: the weight.
 pub const LAYER_WEIGHT: &str = "Layer weight";
 /// Slider: the speed.

@@ -5,8 +5,17 @@ use egui::{Align, Context, Key, Layout, Modifiers};
 use super::overlays;
 use crate::ui::{Output, UiAction, UiState, style, text};
 
-pub fn show(context: &Context, local: &UiState, out: &mut Output) {
-    let Some(progress) = local.host.recording else { return };
+pub fn show(context: &Context, local: &mut UiState, out: &mut Output) {
+    let before = &mut local.focus_before_recording;
+    let Some(progress) = local.host.recording else {
+        // The button that vanishes had the focus.
+        if let Some(id) = before.take().flatten() {
+            context.memory_mut(|memory| memory.request_focus(id));
+        }
+        return;
+    };
+    // The first pass is the last one in which what started the recording has the focus.
+    before.get_or_insert_with(|| context.memory(egui::Memory::focused));
     overlays::modal("recording", context).show(context, |ui| {
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(320.0));
         ui.heading(text::RECORDING);
