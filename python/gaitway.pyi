@@ -89,6 +89,7 @@ class RetargetOptions(TypedDict, total=False):
     offset: tuple[float, float] | None
     turn: float | None
     layer: list[str] | None
+    pin: list[str] | None
     loops: int | None
 
 def load_model(*paths: _Path) -> Model: ...
