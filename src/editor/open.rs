@@ -214,7 +214,6 @@ impl Editor {
         self.report(problems);
         self.choose_retargeted(new.first().map(ClipIdentity::first_of));
         let clips = self.clips_of_last(new.len());
-        self.events.extend((clips > 0).then_some(Event::MotionsAdded));
         let sentences = [(clips > 0).then(|| added_from(clips, &new)), dropped];
         let sentences: Vec<String> = sentences.into_iter().flatten().collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
