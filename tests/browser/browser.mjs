@@ -114,7 +114,7 @@ async function openPage(browser, address, { renderer, link = "model=sample:walke
   return page;
 }
 
-// What a page may be, simulated by scripts that run in it.
+// Conditions that scripts simulate in a page.
 
 /** Without HTTPS, nothing is compared with the hash in its name. */
 export function withoutHashes() {
@@ -357,6 +357,18 @@ const STILL_FRAMES = 45;
  */
 export async function untilStill(page) {
   await eventually(async () => (await framesDrawnDuring(page, STILL_FRAMES)) === 0, "the app should come to rest");
+}
+
+/**
+ * Resizes the page and waits until the app has laid itself out: a press before that would be lost with the control it meant.
+ * @param {Page} page
+ * @param {number} width
+ * @param {number} height
+ */
+export async function resize(page, width, height) {
+  await page.setViewportSize({ width, height });
+  await until(page, (width) => [...document.querySelectorAll("canvas")].some((canvas) => canvas.width === width * devicePixelRatio), width);
+  await untilStill(page);
 }
 
 /**

@@ -7,7 +7,7 @@ import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
-import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
@@ -68,11 +68,11 @@ for (const renderer of BACK_ENDS)
       await page.goto(`${site.address}?renderer=${renderer}`);
       await whenReady(page);
       for (const ending of [".wasm", ".glb"]) assert.equal(page.requests.filter((url) => url.endsWith(ending)).length, 1, ending);
-      const [program, sample, shell] = await page.evaluate(() =>
+      const [program, sample, style] = await page.evaluate(() =>
         [".wasm", ".glb", ".css"].map((ending) => performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(ending)).map((entry) => /** @type {PerformanceResourceTiming} */ (entry))[0]),
       );
       assert.equal(program.initiatorType, "fetch", "a script requests it");
-      assert.ok(program.startTime < shell.responseEnd, "it doesn't wait for the shell");
+      assert.ok(program.startTime < style.responseEnd, "it doesn't wait for the style sheet");
       assert.equal(sample.initiatorType, "link", "the page itself requests it");
       assert.ok(sample.startTime < program.responseEnd && program.startTime < sample.responseEnd, "side by side");
       assert.deepEqual(page.troubles, []);
@@ -94,8 +94,7 @@ for (const renderer of BACK_ENDS)
         const calm = await site.page({ renderer, link: `${linkOf(scene)}&play=0&turntable=0&embed=1`, viewport: { width: STILL.width, height: 700 } });
         try {
           const around = 700 - (await picture(calm)).height;
-          await calm.setViewportSize({ width: STILL.width, height: STILL.height + around });
-          await untilStill(calm);
+          await resize(calm, STILL.width, STILL.height + around);
           const shown = await picture(calm);
           assert.ok(colorsOf(shown) > 64, "something should be drawn");
           const difference = meanDifference(shown, await still(scene.name));

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, control, drop, furthest, meanDifference, open, picture, pose, savedBy, startSite, state, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, control, drop, furthest, meanDifference, open, picture, pose, resize, savedBy, startSite, state, until, whenBorrowed, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -287,8 +287,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
  * @param {TestPage} page
  */
 async function showFiles(page) {
-  await page.setViewportSize({ width: 1280, height: 800 });
+  await resize(page, 1280, 800);
   await control(page, "tab", "Motion").press("Enter");
   await control(page, "radio", "Files").press("Enter");
-  await untilStill(page);
 }

@@ -4,7 +4,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { loadScene } from "../three/scene.mjs";
-import { BACK_ENDS, VIEWPORT, apply, colorsOf, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, startSite, state, stats, until, untilStill, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, VIEWPORT, apply, colorsOf, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, resize, startSite, state, stats, until, untilStill, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -185,14 +185,10 @@ for (const renderer of BACK_ENDS) {
     onPage("follows a resize", {}, async (page) => {
       await apply(page, { play: 0 });
       const before = await picture(page);
-      await page.setViewportSize({ width: 1000, height: 500 });
-      await until(page, () => [...document.querySelectorAll("canvas")].some(({ width }) => width === 1000 * devicePixelRatio));
-      await untilStill(page);
+      await resize(page, 1000, 500);
       const wide = await picture(page);
       assert.ok(wide.width / wide.height > before.width / before.height, `${before.width}×${before.height} → ${wide.width}×${wide.height}`);
-      await page.setViewportSize({ width: 390, height: 700 });
-      await until(page, () => [...document.querySelectorAll("canvas")].some(({ width }) => width === 390 * devicePixelRatio));
-      await untilStill(page);
+      await resize(page, 390, 700);
       const narrow = await picture(page);
       assert.ok(narrow.width < wide.width, `${wide.width}×${wide.height} → ${narrow.width}×${narrow.height}`);
       assert.ok(colorsOf(narrow) > 16, "something should be drawn");

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { unzipSync } from "fflate";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, control, eventually, furthest, toggleInspector, pose, savedBy, startSite, state, stats } from "./browser.mjs";
+import { BACK_ENDS, apply, control, eventually, furthest, resize, toggleInspector, pose, savedBy, startSite, state, stats } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
@@ -110,7 +110,7 @@ for (const renderer of BACK_ENDS)
 
     /** @param {import("./browser.mjs").TestPage} page */
     async function openCameraTab(page) {
-      await page.setViewportSize({ width: 1280, height: 800 });
+      await resize(page, 1280, 800);
       await toggleInspector(page);
       await control(page, "tab", "Camera").press("Enter");
       await control(page, "button", RECORD).waitFor({ state: "attached" });
