@@ -3,7 +3,4 @@
 import { likelyBackend } from "./shell/capabilities.js";
 import { request } from "./shell/request.js";
 
-if (typeof WebAssembly === "object") {
-  const backend = likelyBackend();
-  window.earlyRequest = { backend, ...request(backend) };
-}
+if (typeof WebAssembly === "object") window.earlyRequest = request(likelyBackend());

@@ -14,10 +14,10 @@ import gaitway
 
 
 class Retarget:
-    """Retargets one motion after the other, in a worker of its own."""
+    """Retargets one motion after another, in a worker of its own."""
 
     def __init__(self, model: str, out: str) -> None:
-        """Load the model, which cannot be sent from one process to another."""
+        """Loads the model, which can't be sent from one process to another."""
         self.model = gaitway.load_model(model)
         self.out = Path(out)
 
@@ -36,10 +36,10 @@ class Retarget:
 
 
 def retarget_folder(model: Path, folder: Path, out: Path, workers: int = 2) -> "ray.data.Dataset":
-    """Returns a data set with a row for each motion, computed when it is read."""
+    """Returns a data set with a row for each motion. Rows are computed when they are read."""
     out.mkdir(parents=True, exist_ok=True)
     motions = ray.data.from_items([{"motion": str(path)} for path in sorted(folder.glob("*.bvh"))])
-    # An actor retargets on one core; without a GPU, a cluster has as many as it has cores.
+    # Each actor retargets on one core.
     actors = ray.data.ActorPoolStrategy(size=workers)
     return motions.map(Retarget, fn_constructor_args=(str(model), str(out)), compute=actors, num_cpus=1)
 

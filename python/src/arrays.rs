@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use crate::error::argument_error;
 
 /// Any sequence of numbers.
-pub type TimesLike<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+pub type TimesLike<'py> = PyArrayLike1<'py, f32, AllowTypeChange>;
 /// Numbers by frame, joint and component.
 pub type KeysLike<'py> = PyArrayLike3<'py, f32, AllowTypeChange>;
 
@@ -45,6 +45,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
+    /// Appends the joints of a pose.
     pub fn push(&mut self, skeleton: &Skeleton, pose: &Pose, space: Space, scratch: &mut Scratch) {
         match space {
             Space::Parent => pose.locals().for_each(|local| self.push_joint(local.translation, local.rotation)),
@@ -76,7 +77,7 @@ pub struct Scratch {
 }
 
 /// Samples a clip at each time.
-pub fn sample(skeleton: &Skeleton, clip: &Clip, times_secs: &[f64], space: Space) -> Sampled {
+pub fn sample(skeleton: &Skeleton, clip: &Clip, times_secs: &[f32], space: Space) -> Sampled {
     let mut sampled = Sampled {
         positions: Vec::with_capacity(times_secs.len() * skeleton.len() * 3),
         rotations: Vec::with_capacity(times_secs.len() * skeleton.len() * 4),
@@ -86,8 +87,8 @@ pub fn sample(skeleton: &Skeleton, clip: &Clip, times_secs: &[f64], space: Space
     sampled
 }
 
-/// Samples a clip at each time: 16 numbers per joint, row by row.
-pub fn sample_matrices(skeleton: &Skeleton, clip: &Clip, times_secs: &[f64]) -> Vec<f32> {
+/// Samples the model-space matrices of a clip at each time: 16 numbers per joint, row by row.
+pub fn sample_matrices(skeleton: &Skeleton, clip: &Clip, times_secs: &[f32]) -> Vec<f32> {
     let mut matrices = Vec::with_capacity(times_secs.len() * skeleton.len() * 16);
     let mut model = Vec::new();
     for_each_pose(skeleton, clip, times_secs, |pose| {
@@ -97,10 +98,10 @@ pub fn sample_matrices(skeleton: &Skeleton, clip: &Clip, times_secs: &[f64]) -> 
     matrices
 }
 
-fn for_each_pose(skeleton: &Skeleton, clip: &Clip, times_secs: &[f64], mut each: impl FnMut(&Pose)) {
+fn for_each_pose(skeleton: &Skeleton, clip: &Clip, times_secs: &[f32], mut each: impl FnMut(&Pose)) {
     let (mut pose, mut cursor) = (skeleton.rest().clone(), SampleCursor::default());
     for &time_secs in times_secs {
-        clip.sample(skeleton, time_secs as f32, &mut cursor, &mut pose);
+        clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
         each(&pose);
     }
 }
@@ -115,8 +116,8 @@ pub fn array<'py, D: Dimension>(
     Ok(PyArray::from_owned_array(py, array.map_err(|problem| argument_error(problem.to_string()))?))
 }
 
-/// Times that can be sampled.
-pub fn read_times(times: &TimesLike) -> PyResult<Vec<f64>> {
+/// Reads times; an error names the first one that isn't finite.
+pub fn read_times(times: &TimesLike) -> PyResult<Vec<f32>> {
     let times = times.as_array().to_vec();
     match times.iter().find(|time| !time.is_finite()) {
         Some(time) => Err(argument_error(format!("times: expected finite numbers of seconds, found {time}"))),
@@ -124,20 +125,19 @@ pub fn read_times(times: &TimesLike) -> PyResult<Vec<f64>> {
     }
 }
 
-/// Builds a clip from the rotations and translations of all joints, relative to their parents. What stays at its rest gets no
-/// channel, but the first joint is always turned, so that the clip has its length.
+/// Builds a clip from the rotations and translations of all joints, relative to their parents. What stays at rest gets no
+/// channel, except the first joint's rotation, which gives the clip its length.
 pub fn clip_of(
     skeleton: &Skeleton,
     name: &str,
-    times: &[f64],
+    times_secs: &[f32],
     rotations: ArrayView3<f32>,
     translations: Option<ArrayView3<f32>>,
 ) -> PyResult<Clip> {
-    check_shape("rotations", &rotations, [times.len(), skeleton.len(), 4])?;
+    check_shape("rotations", &rotations, [times_secs.len(), skeleton.len(), 4])?;
     if let Some(translations) = &translations {
-        check_shape("translations", translations, [times.len(), skeleton.len(), 3])?;
+        check_shape("translations", translations, [times_secs.len(), skeleton.len(), 3])?;
     }
-    let times_secs: Vec<f32> = times.iter().map(|&time| time as f32).collect();
     let mut builder = ClipBuilder::new(name, skeleton);
     for joint in skeleton.joints() {
         let rest = skeleton.rest().local(joint);
@@ -146,7 +146,7 @@ pub fn clip_of(
         let moved = translations.map(|translations| translation_keys(translations, joint)).transpose()?;
         let moved = moved.filter(|keys| keys.iter().any(|&key| key != rest.translation));
         for keys in turned.map(Keys::Rotation).into_iter().chain(moved.map(Keys::Translation)) {
-            let added = builder.channel(joint, Interpolation::Linear, &times_secs, keys);
+            let added = builder.channel(joint, Interpolation::Linear, times_secs, keys);
             added.map_err(|problem| argument_error(format!("times: {problem}")))?;
         }
     }

@@ -130,7 +130,7 @@ impl Model {
     #[pyo3(signature = (path, clips = Vec::new()))]
     fn write(&self, py: Python<'_>, path: PathBuf, clips: Vec<PyRef<'_, Clip>>) -> PyResult<()> {
         let skeleton = &self.0.content.model.asset.skeleton;
-        if let Some(other) = clips.iter().find(|clip| !is_same(skeleton, clip.source.skeleton())) {
+        if let Some(other) = clips.iter().find(|clip| !have_same_joints(skeleton, clip.source.skeleton())) {
             let (clip, model) = (other.core().name(), &self.0.content.model.source);
             return Err(argument_error(format!(
                 "clip “{clip}” is for other joints than those of {model}; retarget it first"
@@ -144,10 +144,8 @@ impl Model {
     }
 }
 
-fn is_same(first: &Skeleton, second: &Skeleton) -> bool {
-    let names =
-        |skeleton: &Skeleton| skeleton.joints().map(|joint| skeleton.name(joint).to_owned()).collect::<Vec<_>>();
-    first.parents() == second.parents() && names(first) == names(second)
+fn have_same_joints(first: &Skeleton, second: &Skeleton) -> bool {
+    first.parents() == second.parents() && first.joints().all(|joint| first.name(joint) == second.name(joint))
 }
 
 /// A file with clips to retarget.

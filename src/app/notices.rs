@@ -5,7 +5,7 @@ use crate::editor::Event;
 use crate::ui::Toast;
 
 impl App {
-    /// Shows an error, replacing earlier ones. The page's shell knows of it and announces it itself.
+    /// Shows an error, replacing earlier ones. The page's shell has it already and announces it itself.
     pub(super) fn replace_error(&mut self, error: String) {
         self.panels.messages.clear_error();
         self.panels.messages.error = Some(error);

@@ -10,7 +10,7 @@ use crate::editor::{ClipFormat, Export, write_clip};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
 use crate::formats::{LoadOptions, convert_named, load_named, write_model};
 use crate::library::Model;
-use crate::retarget::{ChangedClip, Symmetry, recognize};
+use crate::retarget::{ChangedClip, recognize};
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
     let (bytes, extensions) = match &arguments.view {
@@ -35,7 +35,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
     let Ok([(name, asset)]) = <[_; 1]>::try_from(models) else { return Err(SortError::SeveralModels { found }.into()) };
     let options = LoadOptions { bvh_unit_metres: arguments.unit.map(Unit::metres), ..LoadOptions::default() };
     let format = clip_format_of(&arguments.out).filter(|&format| {
-        let is_copy = asset.format == "vrma" && arguments.clip.is_none() && !changes_clip(arguments);
+        let is_copy = asset.format == "vrma" && arguments.clip.is_none() && arguments.edits.is_none();
         format == ClipFormat::Bvh || (format == ClipFormat::Vrma && !is_copy)
     });
     if let Some(format) = format {
@@ -44,7 +44,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         let extensions = vec![format.extension()];
         return Ok((clip_alone(name, asset, arguments, format)?, extensions));
     }
-    if changes_clip(arguments) {
+    if !arguments.edits.is_none() {
         if arguments.unit.is_some() {
             let failure = Failure::expected("a .bvh or .vrma to change a clip of a .bvh with a unit", "a .glb");
             return Err(failure.at("--unit"));
@@ -67,11 +67,6 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
     Ok((bytes, model_extensions(&asset)))
 }
 
-/// Whether the arguments ask for another clip than the file's.
-fn changes_clip(arguments: &ConvertArguments) -> bool {
-    !arguments.changes.changes().is_none() || !arguments.layers.layers.is_empty() || !arguments.pins.is_empty()
-}
-
 /// Writes one clip with its skeleton.
 fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: ClipFormat) -> Outcome<Vec<u8>> {
     let clip = changed_clip(&name, &asset, arguments)?.clip;
@@ -83,16 +78,13 @@ fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: 
 fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
     let clip = &asset.clips[choose_clip(name, asset, arguments.clip.as_deref())?];
     let mut warnings = Vec::new();
-    let symmetry = || Symmetry::of(asset, &recognize(asset));
-    let ChangedClip { clip, seam } = arguments.changes.change(asset, clip.clone(), symmetry, &mut warnings)?;
-    let period_secs = f64::from(clip.duration_secs());
-    let clip = arguments.layers.bake(asset, clip, || recognize(asset), false, &mut warnings)?;
-    let clip = arguments.pins.bake(asset, || recognize(asset), clip, period_secs)?;
+    let recognized = || recognize(asset);
+    let changed = arguments.edits.bake(asset, clip.clone(), &recognized, false, &mut warnings)?;
     warnings.iter().for_each(|(_, message)| warn(message));
-    if let Some(seam) = seam {
+    if let Some(seam) = &changed.seam {
         print_error(&format!("seam: {seam}; blended"));
     }
-    Ok(ChangedClip { clip, seam })
+    Ok(changed)
 }
 
 /// Writes a model of another format in the pose of a link.

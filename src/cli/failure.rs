@@ -63,7 +63,7 @@ impl Failure {
         self
     }
 
-    /// The message for people.
+    /// Returns the message for people.
     pub fn message(&self) -> &str {
         &self.message
     }

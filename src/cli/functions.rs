@@ -1,5 +1,5 @@
-//! Subcommands as functions of loaded files, for the Python package. They fail with the messages of the command line, print
-//! nothing, and give standard input and output no name.
+//! Subcommands as functions of loaded files, for the Python package. They fail with the messages of the command line and print
+//! nothing. `-` is a file like any other, not standard input or output.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::RetargetChoices;
 pub use super::failure::{Failure, Outcome};
 use super::map::Proposed;
-use super::motion::read_motion;
+use super::motion::{open_map, read_motion};
 use super::output::save_output;
 pub use super::retarget::Made;
 use super::retarget::{clip_format_of, make, model_extensions, model_file};
@@ -22,7 +22,7 @@ use crate::library::{Model, Motion};
 /// A loaded file and the paths of all files that were read for it, none of which is overwritten.
 #[derive(Debug)]
 pub struct Loaded<T> {
-    /// The content.
+    /// The model or the motion.
     pub content: T,
     /// Includes the files that others refer to.
     pub files_read: Vec<PathBuf>,
@@ -59,7 +59,7 @@ pub fn parse_map(name: &str, json: &str) -> Outcome<OpenedMap> {
 /// # Errors
 /// If it cannot be read or is not a joint map.
 pub fn load_map(path: &Path) -> Outcome<OpenedMap> {
-    super::motion::open_map(path, &Disk::default())
+    open_map(path, &Disk::default())
 }
 
 /// Proposes a joint map: the document of `gaitway map --json`, which can be used as a map.
@@ -70,8 +70,8 @@ pub fn propose_map(model: &Model, motion: &Motion) -> Outcome<Value> {
     Proposed::new(model, motion)?.document()
 }
 
-/// Retargets a clip. `options` are those of `gaitway retarget` that don't name files, such as `--feet=plant`; without a map, it
-/// is proposed.
+/// Retargets a clip. `options` are those of `gaitway retarget` that don't name files, such as `--feet=plant`. If no map is given,
+/// one is proposed.
 ///
 /// # Errors
 /// If an option, the map or the motion doesn't fit.
@@ -86,8 +86,8 @@ pub fn retarget(model: &Model, motion: &Motion, map: Option<&OpenedMap>, options
     make(&options.choices, model, motion, map)
 }
 
-/// Writes a clip alone, in the format that the extension asks for, a .glb without one. `inputs` are files that must not be
-/// overwritten.
+/// Writes a clip alone, in the format that the extension asks for; without an extension, as a .glb. `inputs` are files that must
+/// not be overwritten.
 ///
 /// # Errors
 /// If the format cannot hold the clip, or the file cannot be written.
@@ -103,7 +103,7 @@ pub fn save_clip(out: &Path, model: &Model, clip: &Clip, frames_per_sec: f64, in
 /// If the model has no file or the output cannot be written.
 pub fn save_model(out: &Path, opened: &Opened, clips: &[&Clip], inputs: &[PathBuf]) -> Outcome {
     let bytes = model_file(opened, clips, "write the clip alone")?;
-    let extensions = model_extensions(&opened.model.asset);
-    let extensions: Vec<&str> = extensions.into_iter().filter(|extension| ["glb", "vrm"].contains(extension)).collect();
+    let mut extensions = model_extensions(&opened.model.asset);
+    extensions.retain(|extension| ["glb", "vrm"].contains(extension));
     save_output(out, &bytes, &extensions, inputs)
 }

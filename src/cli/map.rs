@@ -68,7 +68,7 @@ impl<'a> Proposed<'a> {
         }
     }
 
-    /// The map for scripts, which can be used as one.
+    /// Returns the document of `--json`: the map with what is known about its joints. It can be used as a map.
     pub fn document(&self) -> Outcome<Value> {
         let (target, source) = (&self.model.skeleton, &self.motion.skeleton);
         let mut document =
@@ -134,7 +134,7 @@ fn doubtful_rests(model: Body, motion: Body, map: &ResolvedMap) -> Vec<(String, 
 }
 
 /// Adds slot, reason and confidence to each joint of a map's document.
-fn explain(proposal: &Proposal, document: &mut Value, skeleton: &crate::anim::Skeleton) {
+fn explain(proposal: &Proposal, document: &mut Value, skeleton: &Skeleton) {
     for pair in &proposal.pairs {
         let entry = &mut document["joints"][skeleton.label(pair.target)];
         if entry.is_object() {

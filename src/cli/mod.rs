@@ -3,6 +3,7 @@
 mod batch;
 mod change;
 mod convert;
+mod edit;
 mod failure;
 pub mod functions;
 mod inputs;
@@ -38,7 +39,7 @@ use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
-use change::ChangeOptions;
+use edit::EditOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;
 use motion::{MotionArguments, Overrides};
@@ -182,11 +183,7 @@ struct RetargetChoices {
     #[command(flatten)]
     options: RetargetOptions,
     #[command(flatten)]
-    changes: ChangeOptions,
-    #[command(flatten)]
-    layers: LayerOptions,
-    #[command(flatten)]
-    pins: PinOptions,
+    edits: EditOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
@@ -265,11 +262,7 @@ struct ConvertArguments {
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
     #[command(flatten)]
-    changes: ChangeOptions,
-    #[command(flatten)]
-    layers: LayerOptions,
-    #[command(flatten)]
-    pins: PinOptions,
+    edits: EditOptions,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,

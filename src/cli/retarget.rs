@@ -15,8 +15,8 @@ use crate::files::{Disk, Opened};
 use crate::formats::write_model;
 use crate::library::{Model, Motion, map_for, warning_documents, with_expressions};
 use crate::retarget::{
-    ChangedClip, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Symmetry, Unmapped,
-    bake_layers, baking, layer_clips,
+    ChangedClip, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers,
+    baking, layer_clips,
 };
 use crate::state::{NameKind, UnknownName};
 
@@ -79,16 +79,13 @@ pub(super) fn make(
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_layers(&model.asset, &resolved, &retargeted, choices.loops.map(usize::from), &mut warnings);
     let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
-    let symmetry = || Symmetry::of(&model.asset, model.recognition());
-    let ChangedClip { clip, seam } = choices.changes.change(&model.asset, clip, symmetry, &mut warnings)?;
     let recognized = || model.recognition().clone();
-    let period_secs = f64::from(clip.duration_secs());
-    let clip = choices.layers.bake(&model.asset, clip, recognized, choices.loops.is_some(), &mut warnings)?;
-    let clip = choices.pins.bake(&model.asset, recognized, clip, period_secs)?;
+    let is_looped = choices.loops.is_some();
+    let ChangedClip { clip, seam } = choices.edits.bake(&model.asset, clip, &recognized, is_looped, &mut warnings)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);
-    document["changed"] = change::document(&choices.changes, seam.as_ref());
+    document["changed"] = change::document(&choices.edits.changes, seam.as_ref());
     let mut text = text(&resolved, &retargeted, &figures);
     if let Some(seam) = seam {
         text += &format!("seam              {seam}; blended\n");

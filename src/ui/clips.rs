@@ -220,10 +220,9 @@ pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
         // The button and its spacing: a row that is too wide would widen the panel in every pass.
         let clear_width = if filled { icon_size(ui, CLEAR_SIZE).x + ui.spacing().item_spacing.x } else { 0.0 };
         let field = ui.add(
-            egui::TextEdit::singleline(text)
+            controls::text_field(text)
                 .hint_text(hint)
                 .margin(egui::Margin::symmetric(10, 6))
-                .align(egui::Align2::LEFT_CENTER)
                 .desired_width(ui.available_width() - clear_width),
         );
         if field.changed() {

@@ -48,7 +48,8 @@ pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
 
 /// Returns the width of a gutter for the names of tracks.
 pub(super) fn widest(ui: &Ui, names: &mut dyn Iterator<Item = String>) -> f32 {
-    let widths = names.map(|name| controls::text_width(ui, &name, style::SMALL));
+    // Laid out, since a name may have letters that our font lacks.
+    let widths = names.map(|name| ui.painter().layout_no_wrap(name, style::SMALL, egui::Color32::PLACEHOLDER).size().x);
     widths.fold(0.0, f32::max).ceil().min(MAX_GUTTER * ui.available_width())
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
-use super::icons::{Icon, icon_button};
+use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
 use crate::editor::{ClipFormat, Export, is_derived};
 use crate::state::active_clip;
@@ -16,7 +16,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 5, bottom: 3 });
     egui::Panel::top("header").frame(frame).resizable(false).show_separator_line(false).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.set_height(controls::row_height(ui, 32.0));
+            ui.set_height(icon_size(ui, ICON_SIZE).y);
             ui.spacing_mut().item_spacing.x = gap;
             left(ui, local, out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));

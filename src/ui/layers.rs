@@ -25,7 +25,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut layers = before.clone();
     let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
-    // The layer that was just added gets the focus, and then its card is scrolled to.
+    // A layer that was just added gets the focus. That scrolls to its chooser, so the whole card scrolls into view afterwards.
     let added_id = ui.scope_id().with("added layer");
     let added: Option<usize> = ui.data(|data| data.get_temp(added_id));
     for (index, layer) in layers.iter_mut().enumerate() {
@@ -74,7 +74,7 @@ fn name_of(model: &Model, clip: usize) -> String {
     }
 }
 
-/// Returns the chooser of the clip, and how the layer is moved.
+/// Returns the chooser of the clip, and whether the layer is moved.
 fn card(
     ui: &mut Ui,
     shown: &Shown<'_>,
@@ -115,9 +115,18 @@ fn card(
     ] {
         *value = controls::slider(ui, label, *value, settings).unwrap_or(*value);
     }
-    controls::hint(ui, text::LAYER_PARTS);
+    mask(ui, shown, model, layer);
+    (row.inner, moved)
+}
+
+/// Shows which parts of the body the layer moves.
+fn mask(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer) {
+    let has_parts = !model.body().slots.0.is_empty();
+    if has_parts {
+        controls::hint(ui, text::LAYER_PARTS);
+    }
     ui.horizontal_wrapped(|ui| {
-        if !model.body().slots.0.is_empty() {
+        if has_parts {
             for (part, _) in BodyPart::ALL {
                 if controls::choice(ui, layer.mask.has(part), text::body_part(part)).clicked() {
                     layer.mask.toggle(part);
@@ -141,7 +150,6 @@ fn card(
             layer.mask.joints.insert(joint);
         }
     });
-    (row.inner, moved)
 }
 
 /// The layers that the model has clips for, with their titles.

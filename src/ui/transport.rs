@@ -72,12 +72,12 @@ fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// The width of what stands to the right of the times on a narrow screen.
+/// Returns the width of what is to the right of the times on a narrow screen, with a gap between.
 fn narrow_width(ui: &Ui, shown: &Shown<'_>) -> f32 {
     icon_size(ui, ICON_SIZE).x + controls::button_width(ui, &speed_text(shown)) + 4.0
 }
 
-/// Shows time and frame, in this width if there is a limit.
+/// Shows time and frame, within the width `room` if there is a limit.
 fn times(ui: &mut Ui, shown: &Shown<'_>, room: Option<f32>) {
     let palette = style::palette(ui);
     let Some(clip) = shown.clip() else {

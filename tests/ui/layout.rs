@@ -210,7 +210,7 @@ fn embedded_there_is_only_picture_and_transport() {
     assert_eq!(harness.state().actions, [UiAction::OpenPage]);
 }
 
-/// The first screens, with the height that the samples take below the canvas, and the viewport's least share of the screen.
+/// Sizes of the first screen, each with the height of the samples below the canvas and the viewport's minimum share.
 const FIRST_SCREENS: [([f32; 2], f32, f32); 2] = [(WIDE, 120.0, 0.5), (NARROW, 150.0, 0.6)];
 
 #[test]

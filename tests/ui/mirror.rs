@@ -57,7 +57,7 @@ fn everything_that_takes_the_focus_has_a_name() {
     }
 }
 
-/// Height and width of a control that fingers can hit, as in web/theme.css.
+/// Minimum height of a control for fingers, as in web/theme.css.
 const TOUCH: f64 = 44.0;
 
 fn check_touch_sizes(update: &TreeUpdate, place: &str) {
@@ -69,9 +69,9 @@ fn check_touch_sizes(update: &TreeUpdate, place: &str) {
     for (_, node) in update.nodes.iter().filter(|(id, node)| is_control(id, node)) {
         let rect = node.bounds().expect("bounds");
         let name = node.label().unwrap_or_default();
-        // The markers lie above the timeline, which needs its own height, and are as wide as others are high.
-        let is_marker = [text::IN_POINT, text::OUT_POINT].contains(&name);
-        let (width, height) = if is_marker { (TOUCH, 30.0) } else { (0.0, TOUCH) };
+        // The handles of the range share their height with the timeline, and are as wide as other controls are high.
+        let is_handle = [text::IN_POINT, text::OUT_POINT].contains(&name);
+        let (width, height) = if is_handle { (TOUCH, 30.0) } else { (0.0, TOUCH) };
         assert!(rect.height() >= height && rect.width() >= width, "{name} in {place}: {rect:?} {:?}", node.role());
         count += 1;
     }

@@ -73,7 +73,7 @@ function download(backend) {
 
 /**
  * Compiles the program while it downloads, and shows the progress.
- * @param {Promise<Response>} requested
+ * @param {Promise<Response>} requested The server's answer.
  * @param {number} bytes Its length.
  */
 async function compile(requested, bytes) {
@@ -93,5 +93,5 @@ async function compile(requested, bytes) {
   return await WebAssembly.compileStreaming(new Response(response.body.pipeThrough(counter), { headers }));
 }
 
-// The likely one, before anything else.
+// The likely one, before anything else; usually the page's head has requested it already.
 if (typeof WebAssembly === "object") download(likelyBackend());

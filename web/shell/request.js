@@ -1,11 +1,7 @@
-// Requests the program of a back end. The page's head does it before the shell has arrived; see start.js.
+// Requests the program of a back end. A script in the page's head (start.js) does so before the shell has arrived.
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
-
-/**
- * A download that may be given up.
- * @typedef {{ response: Promise<Response>, abort: () => void }} Request
- */
+/** @typedef {import("./types.d.ts").ProgramRequest} ProgramRequest */
 
 const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-programs"]'));
 /**
@@ -16,12 +12,12 @@ export const programs = JSON.parse(meta.content);
 
 /**
  * @param {Backend} backend
- * @returns {Request}
+ * @returns {ProgramRequest}
  */
 export function request(backend) {
   const controller = new AbortController();
   const response = fetch(new URL(programs[backend].wasm, document.baseURI), { signal: controller.signal });
   // Avoids an unhandled rejection if nobody waits for it.
   response.catch(() => {});
-  return { response, abort: () => controller.abort() };
+  return { backend, response, abort: () => controller.abort() };
 }

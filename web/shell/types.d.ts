@@ -202,11 +202,18 @@ export interface Gaitway {
   benchRetarget?(model: Uint8Array, motion: Uint8Array, clip: string, rounds: number): number;
 }
 
+/** A program's download, which can be cancelled. */
+export interface ProgramRequest {
+  backend: Backend;
+  response: Promise<Response>;
+  abort: () => void;
+}
+
 declare global {
   interface Window {
     gaitway: Gaitway;
     /** The program that the page's head has requested, until the shell takes it over. */
-    earlyRequest?: { backend: Backend; response: Promise<Response>; abort: () => void };
+    earlyRequest?: ProgramRequest;
     /** Files that the system opens with the installed page. */
     launchQueue?: { setConsumer(consumer: (launch: { files: FileSystemFileHandle[] }) => void): void };
   }

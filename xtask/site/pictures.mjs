@@ -37,8 +37,9 @@ export function renderScenes(wanted, samples) {
     return { scene, link, file: path.join(folder, `${hash.digest("hex").slice(0, 32)}.png`) };
   });
   const missing = images.filter(({ file }) => !fs.existsSync(file));
-  const program = process.env.GAITWAY_CLI ?? path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
-  if (missing.length > 0 && process.env.GAITWAY_CLI === undefined) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
+  const given = process.env.GAITWAY_CLI;
+  if (missing.length > 0 && given === undefined) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
+  const program = given ?? path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
   for (const { scene, link, file } of missing)
     run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
   return images.map(({ file }) => file);

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use wasm_bindgen_cli_support::Bindgen;
 
-use crate::process::{Step, repository, run, run_with, target_folder};
+use crate::process::{Step, repository, run, run_with, target_folder, text};
 use crate::setup;
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
@@ -144,10 +144,6 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
 
 fn compiled(program: &str) -> PathBuf {
     target_folder().join(format!("wasm32-unknown-unknown/web/{program}.wasm"))
-}
-
-fn text(path: &Path) -> anyhow::Result<&str> {
-    path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
 }
 
 #[cfg(test)]

@@ -108,6 +108,11 @@ fn format_times(times: &[(String, Duration)]) -> String {
     table
 }
 
+/// Returns a path as an argument.
+pub fn text(path: &Path) -> anyhow::Result<&str> {
+    path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
+}
+
 /// Returns a program's output; none if it is missing or fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = command(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;

@@ -1,13 +1,13 @@
-//! The Python package: a virtual environment for its tests in the target folder, its lints, and building and testing it.
+//! The Python package: sets up a virtual environment in the target folder, and lints, builds and tests the package there.
 
 use std::fs;
 use std::path::PathBuf;
 
 use anyhow::Context;
 
-use crate::process::{output, repository, run, run_with, target_folder};
+use crate::process::{output, repository, run, run_with, target_folder, text};
 
-/// What the environment has: a list of packages in `python`, and a copy of it once they are installed.
+/// The environment's packages: a list in `python`, copied into the environment once they are installed.
 const REQUIREMENTS: &str = "requirements.txt";
 /// A large package for one test.
 const RAY: &str = "requirements-ray.txt";
@@ -21,9 +21,8 @@ pub fn is_present() -> bool {
 
 /// Makes the environment. Without Ray, its test is skipped, and the next call tries again.
 pub fn setup() -> anyhow::Result<()> {
-    let environment = path(&environment())?;
     if output(&program("python")?, &["--version"]).is_none() || !is_installed(REQUIREMENTS) {
-        run(PYTHON, &["-m", "venv", "--clear", &environment])?;
+        run(PYTHON, &["-m", "venv", "--clear", text(&environment())?])?;
         install(REQUIREMENTS)?;
     }
     if !is_installed(RAY)
@@ -34,7 +33,7 @@ pub fn setup() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Style and lints of the Python code.
+/// Format and lints of the Python code.
 pub fn check() -> anyhow::Result<()> {
     let ruff = program("ruff")?;
     run(&ruff, &["format", "--check", "python"])?;
@@ -43,9 +42,8 @@ pub fn check() -> anyhow::Result<()> {
 
 /// Builds the package like the other programs, installs it in the environment and runs its tests, which compare it with `cli`.
 pub fn test(cli: &str) -> anyhow::Result<()> {
-    let environment = path(&environment())?;
     let build = ["develop", "--locked", "--quiet", "--manifest-path", "python/Cargo.toml"];
-    run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", environment.as_str())])?;
+    run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", text(&environment())?)])?;
     run_with(&program("python")?, &["-m", "pytest", "--quiet", "python"], &[("GAITWAY_CLI", cli)])
 }
 
@@ -56,11 +54,7 @@ fn environment() -> PathBuf {
 /// Returns the path of one of the environment's programs.
 fn program(name: &str) -> anyhow::Result<String> {
     let folder = environment().join(if cfg!(windows) { "Scripts" } else { "bin" });
-    path(&folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
-}
-
-fn path(path: &std::path::Path) -> anyhow::Result<String> {
-    Ok(path.to_str().context("the target folder's path is not UTF-8")?.to_owned())
+    Ok(text(&folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))?.to_owned())
 }
 
 fn is_installed(requirements: &str) -> bool {
@@ -70,10 +64,9 @@ fn is_installed(requirements: &str) -> bool {
 
 fn install(requirements: &str) -> anyhow::Result<()> {
     let wanted = repository().join("python").join(requirements);
-    let wanted = path(&wanted)?;
     let pip =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:", "--requirement"];
-    run(&program("python")?, &[&pip[..], &[wanted.as_str()]].concat())?;
+    run(&program("python")?, &[&pip[..], &[text(&wanted)?]].concat())?;
     fs::copy(&wanted, environment().join(requirements)).with_context(|| requirements.to_owned())?;
     Ok(())
 }

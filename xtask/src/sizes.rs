@@ -1,9 +1,7 @@
 //! Measures the page's download and leaves compressed copies beside the files.
 
-use anyhow::Context;
-
 use crate::page::dist;
-use crate::process::run;
+use crate::process::{run, text};
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
 const MAX_BYTES: [(&str, u32); 11] = [
@@ -23,8 +21,7 @@ const MAX_BYTES: [(&str, u32); 11] = [
 /// If `limited`, fails when anything exceeds [`MAX_BYTES`].
 pub fn compress_and_print(limited: bool) -> anyhow::Result<()> {
     let dist = dist();
-    let folder = dist.to_str().context("the repository's path is not UTF-8")?;
     let limit = |bytes: u32| if limited { bytes.to_string() } else { "Infinity".to_owned() };
     let limits = MAX_BYTES.map(|(name, bytes)| format!("{name}={}", limit(bytes)));
-    run("node", &[&["xtask/site/sizes.mjs", folder], &limits.each_ref().map(String::as_str)[..]].concat())
+    run("node", &[&["xtask/site/sizes.mjs", text(&dist)?], &limits.each_ref().map(String::as_str)[..]].concat())
 }

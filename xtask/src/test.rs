@@ -2,11 +2,12 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, IsTerminal, Read};
+use std::path::PathBuf;
 use std::process::Stdio;
 
 use anyhow::Context;
 
-use crate::process::{self, Step, command, repository, run_with, succeeded, target_folder, time_table};
+use crate::process::{self, Step, command, repository, run_with, succeeded, target_folder, text, time_table};
 use crate::{page, python, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
@@ -15,11 +16,12 @@ pub fn run() -> anyhow::Result<()> {
     check_scripts()?;
     python::check()?;
     cargo_checks()?;
-    let cli = cli()?;
-    python::test(&cli)?;
-    page::build(&[], None, Some(&cli))?;
+    let cli = cli();
+    let cli = text(&cli)?;
+    python::test(cli)?;
+    page::build(&[], None, Some(cli))?;
     sizes::compress_and_print(true)?;
-    node_tests(&cli)
+    node_tests(cli)
 }
 
 /// Types and lints of the page's, the build's and the tests' scripts.
@@ -41,15 +43,14 @@ fn cargo_checks() -> anyhow::Result<()> {
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    // Other tests run the programs, and the page's pictures are drawn with one: `cargo test` doesn't build all of them. With the
-    // tests, so that their dependencies' features, and everything compiled for them, stay the same.
+    // The other tests run the programs, and one draws the page's pictures: `cargo test` doesn't build all of them. With `--tests`,
+    // dependencies keep the features that the tests gave them, so nothing is compiled twice.
     process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
 }
 
 /// Returns the path of the command line.
-fn cli() -> anyhow::Result<String> {
-    let program = target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
-    Ok(program.to_str().context("the target folder's path is not UTF-8")?.to_owned())
+fn cli() -> PathBuf {
+    target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX))
 }
 
 /// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
@@ -57,10 +58,9 @@ fn node_tests(cli: &str) -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
-    let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
     // One file at a time, since each drives a browser that renders on the CPU. A file takes minutes; one that hangs is killed.
     let mut arguments = vec!["--test", "--test-concurrency=1", "--test-timeout=1200000"];
-    let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", chromium)];
+    let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", text(&chromium)?)];
     // Node sees a pipe and would choose the form for programs.
     if std::io::stdout().is_terminal() {
         arguments.push("--test-reporter=spec");

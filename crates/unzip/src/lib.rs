@@ -7,10 +7,10 @@ use std::borrow::Cow;
 /// The archive ends with a record of this size and a comment of up to 65,535 bytes.
 const END_BYTES: usize = 22;
 const END: &[u8] = b"PK\x05\x06";
-/// Precedes that record if its numbers don't fit, and leads to the record with numbers of 64 bits.
+/// Precedes that record if its numbers don't fit, and points to the record with 64-bit numbers.
 const LOCATOR_BYTES: usize = 20;
 const LOCATOR: &[u8] = b"PK\x06\x07";
-/// Without the data that may be appended to it.
+/// Size without the data that may be appended to the record.
 const LONG_END_BYTES: usize = 56;
 const LONG_END: &[u8] = b"PK\x06\x06";
 
@@ -19,7 +19,7 @@ const LISTED_BYTES: usize = 46;
 const MEMBER: &[u8] = b"PK\x03\x04";
 const MEMBER_BYTES: usize = 30;
 
-/// Id of the extra field with numbers of 64 bits, and the number that refers to it.
+/// Id of the extra field with 64-bit numbers, and the value that refers to it.
 const ZIP64: u16 = 1;
 const IN_ZIP64: u32 = u32::MAX;
 /// Id of the extra field with the name in UTF-8: its version, the checksum of the other name, and the name.
@@ -35,14 +35,14 @@ const CP437: &str = "ÇüéâäàåçêëèïîìÄÅÉæÆôöòûùÿÖÜ¢£�
 
 /// Ends messages about damage.
 const AGAIN: &str = "; download or save it again";
-/// Ends messages about what is not supported.
+/// Ends messages about unsupported archives.
 const ELSEWHERE: &str = "; unpack it with another program and open its files";
 
 /// The list of an archive's files.
 #[derive(Debug, Clone, Copy)]
 pub struct Directory<'a> {
     file: &'a [u8],
-    /// Number of members it should have.
+    /// Number of members, according to the archive's end.
     pub count: u64,
     start: usize,
     /// Bytes before the archive's own, which its offsets don't count. Wraps around if there are too few.
@@ -156,7 +156,7 @@ impl<'a> Member<'a> {
         unicode_path(self.raw_name, self.extra).unwrap_or_else(|| decoded(self.raw_name))
     }
 
-    /// Whether it is a folder. Old programs for Windows write backslashes.
+    /// Returns whether it is a folder. Old programs for Windows write backslashes.
     pub fn is_folder(&self) -> bool {
         self.raw_name.ends_with(b"/") || self.raw_name.ends_with(b"\\")
     }
@@ -166,33 +166,34 @@ impl<'a> Member<'a> {
     /// # Errors
     /// If the data is missing, encrypted or compressed by another method than Deflate.
     pub fn data<'f>(&self, file: &'f [u8]) -> Result<Data<'f>, String> {
-        let unsupported = |found: String| format!("expected stored or deflated data, found {found}{ELSEWHERE}");
-        let data = match self.method {
-            _ if self.is_encrypted => Err("encrypted data"),
-            STORED => Ok(Data::Stored as fn(&'f [u8]) -> Data<'f>),
-            DEFLATED => Ok(Data::Deflated as _),
-            9 => Err("Deflate64"),
-            12 => Err("bzip2"),
-            14 => Err("LZMA"),
-            93 => Err("Zstandard"),
-            95 => Err("XZ"),
-            98 => Err("PPMd"),
-            method => return Err(unsupported(format!("compression method {method}"))),
+        let found = match self.method {
+            _ if self.is_encrypted => "encrypted data",
+            STORED => return self.packed(file).map(Data::Stored),
+            DEFLATED => return self.packed(file).map(Data::Deflated),
+            9 => "Deflate64",
+            12 => "bzip2",
+            14 => "LZMA",
+            93 => "Zstandard",
+            95 => "XZ",
+            98 => "PPMd",
+            method => &format!("compression method {method}"),
         };
-        let (data, offset, bytes) =
-            (data.map_err(|found| unsupported(found.to_owned()))?, self.offset, self.packed_bytes);
-        let missing =
-            || format!("expected {bytes} bytes of data at byte {offset} of the archive, found no such data{AGAIN}");
-        self.packed(file).map(data).ok_or_else(missing)
+        Err(format!("expected stored or deflated data, found {found}{ELSEWHERE}"))
     }
 
-    fn packed<'f>(&self, file: &'f [u8]) -> Option<&'f [u8]> {
-        let own = file.get(usize::try_from(self.offset).ok()?..).filter(|own| own.starts_with(MEMBER))?;
-        let start = MEMBER_BYTES + usize::from(u16_at(own, 26)?) + usize::from(u16_at(own, 28)?);
-        own.get(start..)?.get(..usize::try_from(self.packed_bytes).ok()?)
+    fn packed<'f>(&self, file: &'f [u8]) -> Result<&'f [u8], String> {
+        let (offset, bytes) = (self.offset, self.packed_bytes);
+        let find = || {
+            let own = file.get(usize::try_from(offset).ok()?..).filter(|own| own.starts_with(MEMBER))?;
+            let start = MEMBER_BYTES + usize::from(u16_at(own, 26)?) + usize::from(u16_at(own, 28)?);
+            own.get(start..)?.get(..usize::try_from(bytes).ok()?)
+        };
+        find().ok_or_else(|| {
+            format!("expected {bytes} bytes of data at byte {offset} of the archive, found no such data{AGAIN}")
+        })
     }
 
-    /// Whether its unpacked data has the size and the checksum that the directory lists.
+    /// Returns whether unpacked data has the size and the checksum that the directory lists.
     pub fn is_sound(&self, bytes: usize, crc: u32) -> bool {
         // A fuzzer can't be expected to get checksums right.
         bytes as u64 == self.bytes && (cfg!(fuzzing) || crc == self.crc)
@@ -204,7 +205,7 @@ impl<'a> Member<'a> {
     }
 }
 
-/// Returns where the end record with 64 bits is, and its numbers: members, bytes of the directory, and its start.
+/// Returns where the end record with 64-bit numbers is, and these: members, bytes of the directory, and its start.
 fn long_end(file: &[u8], end: usize) -> Option<(usize, [u64; 3])> {
     let locator = end.checked_sub(LOCATOR_BYTES)?;
     let listed = file[locator..].starts_with(LOCATOR).then(|| u64_at(file, locator + 8))??;
@@ -244,13 +245,13 @@ fn unicode_path<'a>(name: &[u8], extra: &'a [u8]) -> Option<Cow<'a, str>> {
     str::from_utf8(path).ok().map(Cow::Borrowed)
 }
 
-/// CRC-32 of a few bytes.
+/// Returns the CRC-32 of a few bytes.
 fn checksum(bytes: &[u8]) -> u32 {
     let bit = |crc: u32| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
     !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| bit(crc)))
 }
 
-/// Decodes a name. The archive's own word on the encoding is ignored: many names are UTF-8 and aren't marked.
+/// Decodes a name. The flag for UTF-8 is ignored, since many programs write UTF-8 without setting it.
 fn decoded(name: &[u8]) -> Cow<'_, str> {
     let character = |&byte: &u8| match byte {
         0..128 => char::from(byte),
@@ -259,7 +260,7 @@ fn decoded(name: &[u8]) -> Cow<'_, str> {
     str::from_utf8(name).map_or_else(|_| name.iter().map(character).collect(), Cow::Borrowed)
 }
 
-/// Whether `file` has `mark` at a place.
+/// Returns whether `file` has `mark` at a place.
 fn has(file: &[u8], at: u64, mark: &[u8]) -> bool {
     usize::try_from(at).ok().and_then(|at| file.get(at..)).is_some_and(|there| there.starts_with(mark))
 }

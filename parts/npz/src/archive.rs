@@ -57,18 +57,18 @@ impl<'a> Archive<'a> {
                 member.bytes
             ));
         }
-        let about = |problem: String| format!("array \"{name}\": {problem}.");
-        let bytes = match member.data(self.file).map_err(about)? {
-            Data::Stored(bytes) => Cow::Borrowed(bytes),
-            Data::Deflated(packed) => {
-                decompress_to_vec_with_limit(packed, member.bytes as usize).map_err(|_| about(member.damaged()))?.into()
-            }
-        };
-        if !member.is_sound(bytes.len(), crc32fast::hash(&bytes)) {
-            return Err(about(member.damaged()));
-        }
-        Ok(bytes)
+        unpacked(self.file, member).map_err(|problem| format!("array \"{name}\": {problem}."))
     }
+}
+
+fn unpacked<'a>(file: &'a [u8], member: &Member) -> Result<Cow<'a, [u8]>, String> {
+    let bytes = match member.data(file)? {
+        Data::Stored(bytes) => Cow::Borrowed(bytes),
+        Data::Deflated(packed) => {
+            decompress_to_vec_with_limit(packed, member.bytes as usize).map_err(|_| member.damaged())?.into()
+        }
+    };
+    if member.is_sound(bytes.len(), crc32fast::hash(&bytes)) { Ok(bytes) } else { Err(member.damaged()) }
 }
 
 /// Returns a message about a damaged array.

@@ -3,14 +3,14 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Area, Context, Galley, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Area, Context, Galley, Id, Order, Painter, Pos2, Rect, Stroke, pos2, vec2};
 
 use super::Pairing;
 use super::picker::Picking;
 use crate::anim::JointIndex;
 use crate::frame::Character;
 use crate::state::{Command, title};
-use crate::ui::viewport::panes;
+use crate::ui::viewport::{Canvas, panes};
 use crate::ui::{Output, Sheet, Shown, Tab, UiState, style, text};
 
 /// What the next click in the viewport picks.
@@ -41,14 +41,8 @@ pub(in crate::ui) fn stop(local: &mut UiState) -> bool {
 }
 
 /// While picking, handles the pointer, paints a dot on every joint that can be picked, and returns true.
-pub(in crate::ui) fn show(
-    ui: &Ui,
-    painter: &Painter,
-    response: &Response,
-    shown: &Shown<'_>,
-    local: &mut UiState,
-    out: &mut Output,
-) -> bool {
+pub(in crate::ui) fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
+    let Canvas { ui, painter, response, shown } = canvas;
     let Some(clicking) = local.motion.clicking else { return false };
     let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
     let Some(pairing) = Pairing::of(shown, motion) else {

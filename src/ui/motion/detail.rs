@@ -125,10 +125,9 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
     let field = ui
         .horizontal(|ui| {
             let label = ui.label("Source");
-            let field = egui::TextEdit::singleline(&mut typed.text)
+            let field = controls::text_field(&mut typed.text)
                 .hint_text("Name or number; empty: none")
                 .margin(egui::Margin::symmetric(8, 5))
-                .align(egui::Align2::LEFT_CENTER)
                 .desired_width(ui.available_width());
             ui.add(field).labelled_by(label.id)
         })

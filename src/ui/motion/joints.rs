@@ -37,8 +37,8 @@ pub(super) struct TableView {
     scrolled_to: Option<usize>,
     /// Number and top of the row that was just pressed: it stays there while the details of another one close above it.
     pressed: Option<(usize, f32)>,
-    /// Number of the row whose details are to be scrolled into view, and the passes until then: the press scrolls
-    /// first.
+    /// Number of the row whose details scroll into view, and the number of passes until then: the scrolling for `pressed` has to
+    /// take effect first.
     revealed: Option<(usize, u8)>,
 }
 
@@ -264,10 +264,10 @@ impl Table<'_, '_> {
             let about = detail::About { shown: self.shown, pairing: self.pairing, map: self.map, row, texts };
             let details = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response.rect;
             if revealed.is_some_and(|(_, passes)| passes == 0) {
+                // If not all of it fits, the row itself stays in view.
                 let whole = details.with_min_y(top);
-                // The row stays in sight too.
-                let is_high = whole.height() > ui.clip_rect().height();
-                ui.scroll_to_rect(whole, is_high.then_some(egui::Align::TOP));
+                let is_too_high = whole.height() > ui.clip_rect().height();
+                ui.scroll_to_rect(whole, is_too_high.then_some(egui::Align::TOP));
             }
         }
     }

@@ -47,10 +47,9 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
             let mut presses = |key| input.count_and_consume_key(egui::Modifiers::NONE, key) as isize;
             presses(Key::ArrowDown) - presses(Key::ArrowUp)
         });
-        let field = egui::TextEdit::singleline(&mut picking.search)
+        let field = controls::text_field(&mut picking.search)
             .hint_text("Name or number")
             .margin(egui::Margin::symmetric(10, 6))
-            .align(egui::Align2::LEFT_CENTER)
             .desired_width(f32::INFINITY);
         let field = ui.add(field).accessible_name(text::SEARCH_SOURCES);
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));

@@ -147,10 +147,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: 
         return;
     };
     let in_file = asset.skeleton.name(joint);
-    let field = egui::TextEdit::singleline(typed)
-        .hint_text(in_file)
-        .align(egui::Align2::LEFT_CENTER)
-        .desired_width(f32::INFINITY);
+    let field = controls::text_field(typed).hint_text(in_file).desired_width(f32::INFINITY);
     let field = ui.add(field).accessible_name(text::JOINT_NAME);
     let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
     if field.lost_focus() {

@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, lists: &Lists, out: &
 fn row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, material: &MaterialText, out: &mut Output) {
     let hidden = &shown.state.edits.hidden;
     let is_shown = !hidden.materials.contains(&material.index);
-    // As high as the eye.
+    // As high as the button that hides the material.
     let name_height = controls::row_height(ui, 22.0);
     let height = name_height + material.lines.len() as f32 * LINE_HEIGHT;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());

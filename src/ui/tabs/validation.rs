@@ -29,20 +29,17 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, 
     if ui.add(egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0))).clicked() {
         out.actions.push(UiAction::Validate);
     }
-    let awaited_id = ui.scope_id().with("awaited validation");
+    let is_running = matches!(validation, Some(Validation::Running));
+    let was_running = std::mem::replace(&mut local.is_validating, is_running);
     let summary = match validation {
-        None => return,
-        Some(Validation::Running) => {
-            ui.data_mut(|data| data.insert_temp(awaited_id, 0_usize));
-            return;
+        None | Some(Validation::Running) => return,
+        Some(Validation::Failed(error)) => {
+            let failure = RichText::new(text::validator_failed(error)).color(style::palette(ui).error);
+            ui.add(egui::Label::new(failure).wrap())
         }
-        Some(Validation::Failed(error)) => RichText::new(text::validator_failed(error)).color(style::palette(ui).error),
-        Some(Validation::Done(report)) => {
-            RichText::new(text::validator_summary(report)).small().color(style::palette(ui).weak_text)
-        }
+        Some(Validation::Done(report)) => ui.scope(|ui| controls::hint(ui, text::validator_summary(report))).response,
     };
-    let summary = ui.add(egui::Label::new(summary).wrap());
-    if ui.data_mut(|data| data.remove_temp::<usize>(awaited_id)).is_some() {
+    if was_running {
         summary.scroll_to_me(None);
     }
     if let Some(Validation::Done(report)) = validation {

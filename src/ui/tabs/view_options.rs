@@ -32,16 +32,16 @@ impl PictureSettings {
         Saved::Picture { size: self.size, transparent: self.transparent }
     }
 
-    /// The recordings with these settings, a video and images, each with the label of its button and an explanation.
+    /// Returns the label, the tooltip and the action of the two buttons that record with these settings: a video, or images.
     pub fn recordings(&self) -> [(&'static str, &'static str, UiAction); 2] {
         let Self { size, transparent, frames_per_sec } = *self;
         [
             (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
             (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
         ]
-        .map(|(as_images, label, explanation)| {
+        .map(|(as_images, label, tooltip)| {
             let settings = VideoSettings { size, frames_per_sec, transparent, as_images };
-            (label, explanation, UiAction::Record(settings))
+            (label, tooltip, UiAction::Record(settings))
         })
     }
 }
@@ -103,8 +103,8 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     if let Some(rate) = controls::segmented_about(ui, text::FRAME_RATE, Some(settings.frames_per_sec), &choices) {
         settings.frames_per_sec = rate;
     }
-    for (label, explanation, action) in settings.recordings() {
-        if wide(ui, shown.is_animated(), label).on_hover_text(explanation).clicked() {
+    for (label, tooltip, action) in settings.recordings() {
+        if wide(ui, shown.is_animated(), label).on_hover_text(tooltip).clicked() {
             out.actions.push(action);
         }
     }

@@ -3,7 +3,7 @@
 use egui::{Align, Layout, Rect, RichText, Ui, vec2};
 
 use crate::state::Command;
-use crate::ui::icons::{Icon, icon_button};
+use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 
 pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -11,10 +11,8 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
     if is_embedded && !local.host.has_gallery {
         return;
     }
-    let strip = Rect::from_min_size(
-        rect.min + vec2(10.0, 10.0),
-        vec2(rect.width() - 20.0, controls::row_height(ui, 32.0) + 4.0),
-    );
+    let height = icon_size(ui, ICON_SIZE).y + 4.0;
+    let strip = Rect::from_min_size(rect.min + vec2(10.0, 10.0), vec2(rect.width() - 20.0, height));
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     // Translucent, legible over any scene.
     let fill = style::palette(ui).panel.gamma_multiply(0.86);

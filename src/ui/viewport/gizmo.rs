@@ -3,6 +3,7 @@
 use egui::{Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
 use glam::{Quat, Vec3};
 
+use super::Canvas;
 use super::panes::{pane_at, to_screen};
 use crate::anim::Transform;
 use crate::state::{Command, manual_degrees};
@@ -39,14 +40,8 @@ struct Gizmo {
 }
 
 /// Shows the gizmo while posing manually; returns whether it has captured the pointer.
-pub fn show(
-    ui: &Ui,
-    painter: &Painter,
-    response: &Response,
-    shown: &Shown<'_>,
-    local: &mut UiState,
-    out: &mut Output,
-) -> bool {
+pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
+    let Canvas { ui, painter, response, shown } = canvas;
     let wanted = local.joint_card.is_posing && !shown.state.page.embed;
     let Some(gizmo) = wanted.then(|| gizmo(response, shown)).flatten() else {
         local.viewport.grab = None;

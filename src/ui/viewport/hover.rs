@@ -1,7 +1,8 @@
 //! Hovering and selecting joints in the viewport.
 
-use egui::{Painter, Pos2, Rect, Response, Ui};
+use egui::{Pos2, Rect};
 
+use super::Canvas;
 use super::panes::{pane_at, to_ndc};
 use crate::frame::{PickedJoint, pick_joint};
 use crate::state::{Command, source_on_stage};
@@ -12,10 +13,11 @@ const PICK_POINTS: f32 = 10.0;
 
 /// Hovering labels a joint, a click selects it, and a click beside all joints deselects. While the source is on the stage,
 /// the hovered joint is labelled on both skeletons, and a click on a source joint selects the joint mapped to it.
-pub fn show(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if motion::clicking(ui, painter, response, shown, local, out) {
+pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
+    if motion::clicking(canvas, local, out) {
         return;
     }
+    let Canvas { response, shown, .. } = canvas;
     let at = |position: Pos2| joint_at(shown, response.rect, position);
     let hovered = response.hover_pos().filter(|_| !response.dragged()).and_then(at);
     let of_model = |picked| match picked {

@@ -18,7 +18,7 @@ mod recording;
 pub mod sheet;
 
 use egui::layers::ShapeIdx;
-use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
+use egui::{PaintCallback, Painter, Rect, Response, Sense, Shape, Ui, vec2};
 
 use super::tabs::formula;
 use super::{Output, Shown, UiState, keys, style, text};
@@ -78,6 +78,15 @@ pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, 
     ViewportSlot { painter, index, rect }
 }
 
+/// The viewport as one control: what its handles are drawn with and react to.
+#[derive(Clone, Copy)]
+pub(super) struct Canvas<'a> {
+    pub ui: &'a Ui,
+    pub painter: &'a Painter,
+    pub response: &'a Response,
+    pub shown: &'a Shown<'a>,
+}
+
 fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     local.viewport.aspect = rect.width() / rect.height().max(1.0);
     let response = ui.interact(rect, ui.scope_id().with("viewport"), Sense::click_and_drag());
@@ -88,12 +97,13 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     }
-    let is_grabbed = pins::show(ui, painter, &response, shown, local, out);
-    if !is_grabbed && !gizmo::show(ui, painter, &response, shown, local, out) {
+    let canvas = Canvas { ui, painter, response: &response, shown };
+    let is_grabbed = pins::show(canvas, local, out);
+    if !is_grabbed && !gizmo::show(canvas, local, out) {
         camera::show(ui, &response, shown, out);
     }
     if !formula::point_at_vertex(&response, shown, local, out) {
-        hover::show(ui, painter, &response, shown, local, out);
+        hover::show(canvas, local, out);
     }
     keys::listen(ui.ctx(), shown, local, out);
     buttons::show(ui, rect, shown, local, out);

@@ -1,8 +1,9 @@
 //! Handles of pins: each is dragged in the plane of the viewport.
 
-use egui::{Painter, Response, Stroke, Ui};
+use egui::Stroke;
 use glam::Vec3;
 
+use super::Canvas;
 use super::panes::{pane_at, to_screen};
 use crate::retarget::{Pin, PinGoal};
 use crate::state::Command;
@@ -14,14 +15,8 @@ const RADIUS_POINTS: f32 = 8.0;
 const GRAB_POINTS: f32 = 12.0;
 
 /// Shows the handles; returns whether one has captured the pointer.
-pub fn show(
-    ui: &Ui,
-    painter: &Painter,
-    response: &Response,
-    shown: &Shown<'_>,
-    local: &mut UiState,
-    out: &mut Output,
-) -> bool {
+pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
+    let Canvas { ui, painter, response, shown } = canvas;
     let pins = &shown.state.edits.pins;
     if pins.is_empty() || shown.state.page.embed {
         return false;

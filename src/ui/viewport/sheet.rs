@@ -2,7 +2,7 @@
 
 use egui::{Area, Id, Order, Rect, Stroke, Ui, pos2, vec2};
 
-use crate::ui::icons::{Icon, icon_button};
+use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
 
 /// The rectangle of a sheet, at the bottom of what the panels leave free. It leaves a strip of the viewport visible.
@@ -27,18 +27,18 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         if handle.total_drag_delta().is_some_and(|dragged| dragged.y > 48.0) {
             local.layout.sheet = None;
         }
+        let size = icon_size(ui, ICON_SIZE);
+        let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + 4.0), size);
         let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
         let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
         content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
         match sheet {
             Sheet::Clips => clips::show(&mut content, shown, local, out),
             Sheet::Inspector => {
-                content.add_space(34.0);
+                content.add_space(close.bottom() + 2.0 - inner.top());
                 tabs::show(&mut content, shown, local, out);
             }
         }
-        let size = ui.spacing().interact_size;
-        let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + 4.0), size);
         let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
         if icon_button(&mut corner, Icon::Close, text::CLOSE_SHEET, false).clicked() {
             local.layout.sheet = None;

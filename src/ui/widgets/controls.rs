@@ -52,18 +52,19 @@ pub fn hint(ui: &mut Ui, text: impl Into<RichText>) {
 /// Height of a row in lists and of tabs.
 pub const ROW_HEIGHT: f32 = 30.0;
 
-/// The height of a row that reacts to the pointer: `height`, or more for fingers.
+/// Returns the height of a row that can be pressed: `height`, or more for fingers.
 pub fn row_height(ui: &Ui, height: f32) -> f32 {
     style::press_size(ui, vec2(0.0, height)).y
 }
 
-/// Adds a control of this width and height, or as high as controls are at least: those of a row would otherwise be stepped.
+/// Adds a control of this width and height, but no lower than egui draws it: each control of a row would otherwise sit below the
+/// one before.
 pub fn sized(ui: &mut Ui, [width, height]: [f32; 2], control: impl egui::Widget) -> Response {
     let height = height.max(ui.spacing().interact_size.y);
     ui.add_sized([width, height], control)
 }
 
-/// A low button beside a title, as high as others for fingers.
+/// A small button beside a title, enlarged for fingers.
 pub fn small_button(ui: &mut Ui, label: &str) -> Response {
     let height = row_height(ui, 0.0);
     ui.add(egui::Button::new(label).small().min_size(vec2(0.0, height)))
@@ -71,7 +72,7 @@ pub fn small_button(ui: &mut Ui, label: &str) -> Response {
 
 /// A button that is on or off, in lists and groups.
 pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
-    // Pale like rows and segments. egui also fills sliders with this colour.
+    // Pale like rows and segments. Set only here, since egui fills sliders with the same colour.
     let before = ui.visuals().selection;
     let palette = style::palette(ui);
     let selection = &mut ui.visuals_mut().selection;
@@ -81,13 +82,17 @@ pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
     response
 }
 
-/// The width of a line of text.
+/// A text field of one line, in the middle of its height: a field for fingers is higher than its text.
+pub fn text_field(text: &mut String) -> egui::TextEdit<'_> {
+    egui::TextEdit::singleline(text).align(egui::Align2::LEFT_CENTER)
+}
+
+/// Returns the width of a line of text in letters of our font; others count as nothing. Unlike a layout, it allocates nothing.
 pub fn text_width(ui: &Ui, text: &str, font: egui::FontId) -> f32 {
-    // Doesn't allocate, as a layout would.
     ui.fonts_mut(|fonts| text.chars().map(|letter| fonts.glyph_width(&font, letter)).sum())
 }
 
-/// The width of a button with this text.
+/// Returns the width of a button with this text.
 pub fn button_width(ui: &Ui, text: &str) -> f32 {
     text_width(ui, text, style::BODY) + 2.0 * ui.spacing().button_padding.x
 }
@@ -143,8 +148,17 @@ pub fn tabs<T: Copy + PartialEq>(
     segments(ui, Some(open), tabs, Segments::Tabs { badge: &badge })
 }
 
-/// Between the texts of neighbouring segments.
+/// Minimum gap between the texts of neighbouring segments.
 const SEGMENT_GAP: f32 = 8.0;
+
+/// Returns how many segments with these texts go into a row of this width, if all rows are about equally full.
+fn columns(ui: &Ui, width: f32, texts: &mut dyn ExactSizeIterator<Item = &str>) -> usize {
+    let count = texts.len().max(1);
+    let widest = texts.map(|text| text_width(ui, text, style::SMALL)).fold(0.0, f32::max);
+    let max = ((width / (widest + SEGMENT_GAP)) as usize).clamp(1, count);
+    let rows = count.div_ceil(max);
+    count.div_ceil(rows)
+}
 
 /// What a row of segments is.
 #[derive(Clone, Copy)]
@@ -163,21 +177,16 @@ fn segments<T: Copy + PartialEq>(
 ) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
-    let (role, about, font) = match row {
-        Segments::Choice { about } => (Role::RadioButton, about, style::SMALL),
-        Segments::Tabs { .. } => (Role::Tab, "", style::BODY),
+    let (width, height) = (ui.available_width(), row_height(ui, ROW_HEIGHT));
+    let (role, about, font, columns) = match row {
+        Segments::Choice { about } => {
+            let columns = columns(ui, width, &mut choices.iter().map(|(_, label)| *label));
+            (Role::RadioButton, about, style::SMALL, columns)
+        }
+        Segments::Tabs { .. } => (Role::Tab, "", style::BODY, choices.len().max(1)),
     };
-    let (room, height) = (ui.available_width(), row_height(ui, ROW_HEIGHT));
-    // Texts too long for a single row share several.
-    let widths = choices.iter().map(|(_, label)| text_width(ui, label, font.clone()));
-    let widest = widths.fold(1.0, f32::max) + SEGMENT_GAP;
-    let count = choices.len().max(1);
-    let rows = match row {
-        Segments::Choice { .. } => count.div_ceil(((room / widest) as usize).clamp(1, count)),
-        Segments::Tabs { .. } => 1,
-    };
-    let columns = count.div_ceil(rows);
-    let (bar, whole) = ui.allocate_exact_size(vec2(room, rows as f32 * height), Sense::hover());
+    let rows = choices.len().div_ceil(columns).max(1);
+    let (bar, whole) = ui.allocate_exact_size(vec2(width, rows as f32 * height), Sense::hover());
     match row {
         Segments::Choice { .. } => drop(ui.painter().rect_filled(bar, style::CORNER, palette.surface)),
         Segments::Tabs { .. } => {
@@ -243,7 +252,7 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
     if response.changed() {
         new = bar;
     }
-    // Its knob is as high as the slider, but what a finger presses is as high as the row.
+    // The knob is as high as the slider, but fingers can press anywhere in the row.
     if ui.interact(row, response.id, Sense::click()).double_clicked() {
         new = settings.default;
     }

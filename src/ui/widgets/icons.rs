@@ -60,7 +60,7 @@ pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, siz
     response.on_hover_text(label)
 }
 
-/// The size of such a button: what is beside it leaves it room.
+/// Returns the size of such a button, for the layout of what is beside it.
 pub fn icon_size(ui: &Ui, size: f32) -> Vec2 {
     style::press_size(ui, Vec2::splat(size))
 }

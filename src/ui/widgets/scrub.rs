@@ -2,7 +2,7 @@
 
 use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{accessible, controls, style};
+use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
 use crate::library::ModelId;
 use crate::ui::text;
@@ -90,7 +90,7 @@ fn times(duration_secs: f64, width: f64) -> Vec<(f32, String)> {
 
 /// Height of the bar: handles, rail, marks and times.
 const HEIGHT: f32 = 52.0;
-/// Lower screens have no room to spare.
+/// Screens lower than this have no room to spare.
 const ROOMY_HEIGHT: f32 = 400.0;
 /// Space for the handles at either end of the rail.
 pub const MARGIN: f32 = 9.0;
@@ -99,7 +99,7 @@ pub const MARGIN: f32 = 9.0;
 struct Bar {
     rect: Rect,
     rail: Rect,
-    /// Space above for fingers.
+    /// Extra space above the handles, for fingers.
     above: f32,
     duration_secs: f64,
 }
@@ -121,8 +121,8 @@ pub fn show(
     clip_id: (ModelId, usize),
     marks: &mut KeyMarks,
 ) -> (Option<Scrubbed>, bool) {
-    // Fingers get room above the handles and below the rail, where the screen has it.
-    let is_roomy = controls::row_height(ui, 0.0) > 0.0 && ui.ctx().content_rect().height() >= ROOMY_HEIGHT;
+    // Fingers get more room above the handles and below the rail, if the screen has it.
+    let is_roomy = style::is_for_fingers(ui) && ui.ctx().content_rect().height() >= ROOMY_HEIGHT;
     let (above, below) = if is_roomy { (14.0, 5.0) } else { (0.0, 0.0) };
     let height = above + HEIGHT + below;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
@@ -168,7 +168,7 @@ pub fn show(
 fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
     let x = bar.x_of(secs);
-    // Fingers reach further, to the sides and up, where nothing else is.
+    // Larger for fingers, to the sides and upwards, where nothing else is.
     let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 8.0), vec2(18.0, 18.0));
     let grab = grab.expand2(vec2(bar.above, 0.0)).with_min_y(grab.top() - bar.above);
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());

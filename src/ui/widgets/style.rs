@@ -37,11 +37,9 @@ pub const CORNER: u8 = length("corner");
 pub const WINDOW_CORNER: u8 = length("window-corner");
 /// Between the edge of a window and its contents.
 pub const WINDOW_MARGIN: i8 = length("window-margin") as i8;
-/// Minimum height of what a finger presses.
-pub const TOUCH: f32 = length("touch") as f32;
-/// Minimum size of what a finger presses. Not a square: a narrow header has room for six buttons, the name and the menu.
-const FINGER_SIZE: Vec2 = Vec2::new(38.0, TOUCH);
-/// Minimum size of what a pointer presses.
+/// Minimum size of controls for fingers. Not square: a narrow header has to hold six buttons, the name and the menu.
+const FINGER_SIZE: Vec2 = Vec2::new(38.0, length("touch") as f32);
+/// Minimum size of controls for a pointer.
 const POINTER_SIZE: Vec2 = Vec2::splat(28.0);
 
 /// The three sizes of text: titles, what controls and lists say, and notes, headings of groups and numbers.
@@ -128,10 +126,14 @@ pub fn size_controls(ui: &mut Ui, for_fingers: bool) {
     }
 }
 
-/// The size of something to press: `size`, or more for fingers.
+/// Returns whether [`size_controls`] made the controls large enough for fingers.
+pub fn is_for_fingers(ui: &Ui) -> bool {
+    ui.spacing().interact_size.y >= FINGER_SIZE.y
+}
+
+/// Returns the size of a control: `size`, enlarged for fingers if need be.
 pub fn press_size(ui: &Ui, size: Vec2) -> Vec2 {
-    let least = ui.spacing().interact_size;
-    if least.y < TOUCH { size } else { size.max(least) }
+    if is_for_fingers(ui) { size.max(FINGER_SIZE) } else { size }
 }
 
 /// The font of all text, TrueType; see assets/font/README.md. The browser draws the letters that it lacks, with the system's

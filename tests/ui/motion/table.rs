@@ -129,7 +129,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     assert!(harness.query_by_label(&text::source_of("Neck")).is_some());
     assert_eq!(press(&mut harness, &text::edit_joint("Neck")), [Command::SelectJoint(None)]);
     assert!(harness.query_by_label(&text::source_of("Neck")).is_none());
-    // The row that is pressed stays where it is, also while details close above it, or makes just enough room for its
+    // The row that is pressed stays where it is, even while details close above it, or moves up just enough to show its
     // own.
     let top = |harness: &Harness<'_, Bench>| harness.get_by_label(&text::edit_joint("LeftHand")).rect().top();
     press(&mut harness, &text::edit_joint("Neck"));
