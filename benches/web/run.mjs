@@ -6,7 +6,7 @@ import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { FLAGS, until, whenReady } from "../../tests/browser/browser.mjs";
+import { FLAGS, until, untilStill, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
 import { dataFile, dist, hasData, repository } from "../../tests/three/data.mjs";
 import { serve } from "../../xtask/site/server.mjs";
@@ -210,6 +210,8 @@ async function measureLoad([theirs, ours], name, figures) {
   figures.parse.push(await theirs.evaluate((url) => window.bench.load(url), url));
   if (figures.render) figures.render.push(await theirs.evaluate((url) => window.bench.open(url), url));
   await ours.bringToFront();
+  // The previous file's picture may still be being refined, which three.js doesn't do.
+  await untilStill(ours);
   figures.load.push(await ours.evaluate(timed, { url, work: "load" }));
   if (figures.open) figures.open.push(await ours.evaluate(timed, { url, work: "open" }));
 }
