@@ -27,6 +27,9 @@ struct Face {
     groups: [u32; 3],
 }
 
+/// Lower and higher vertex, face, and the corner at which the edge starts.
+type Edge = (u64, u32, u8);
+
 /// Faces around a vertex that share a tangent: a range in the list of group members.
 struct Group {
     vertex: u32,
@@ -50,7 +53,7 @@ pub(super) fn corner_tangents(
         .iter()
         .map(|triangle| Face::new(triangle.map(|vertex| welded[vertex as usize]), positions, uvs))
         .collect();
-    find_neighbors(&mut faces);
+    find_neighbors(&mut faces, positions.len());
     let (groups, members) = find_groups(&mut faces);
     let mut tangents = vec![None; 3 * faces.len()];
     for group in &groups {
@@ -140,16 +143,15 @@ impl Face {
 }
 
 /// Pairs up faces that traverse an edge in opposite directions; if more than two share it, each pairs with the next.
-fn find_neighbors(faces: &mut [Face]) {
-    // Lower and higher vertex, face, and the corner at which the edge starts.
-    let mut edges: Vec<(u64, u32, u8)> = Vec::with_capacity(3 * faces.len());
+fn find_neighbors(faces: &mut [Face], vertices: usize) {
+    let mut edges: Vec<Edge> = Vec::with_capacity(3 * faces.len());
     for (index, face) in faces.iter().enumerate().filter(|(_, face)| !face.degenerate) {
         for corner in 0..3 {
             let (from, to) = (face.vertices[corner], face.vertices[(corner + 1) % 3]);
             edges.push((u64::from(from.min(to)) << 32 | u64::from(from.max(to)), index as u32, corner as u8));
         }
     }
-    edges.sort_unstable();
+    let edges = sorted(&edges, vertices);
     for (at, &(edge, face, corner)) in edges.iter().enumerate() {
         let from = faces[face as usize].vertices[corner as usize];
         if faces[face as usize].neighbors[corner as usize] != NONE {
@@ -168,6 +170,25 @@ fn find_neighbors(faces: &mut [Face]) {
             }
         }
     }
+}
+
+/// Sorts edges by their vertices, keeping the order of equal ones. Buckets by lower vertex come first: few edges share one, so
+/// that this takes a fraction of the time.
+fn sorted(edges: &[Edge], vertices: usize) -> Vec<Edge> {
+    let lower = |(edge, ..): &Edge| (edge >> 32) as usize;
+    let mut places = vec![0; vertices + 1];
+    edges.iter().for_each(|edge| places[lower(edge) + 1] += 1);
+    for vertex in 1..=vertices {
+        places[vertex] += places[vertex - 1];
+    }
+    let mut sorted = vec![Edge::default(); edges.len()];
+    for edge in edges {
+        let place = &mut places[lower(edge)];
+        sorted[*place] = *edge;
+        *place += 1;
+    }
+    sorted.chunk_by_mut(|a, b| lower(a) == lower(b)).for_each(|edges| edges.sort_by_key(|&(edge, ..)| edge));
+    sorted
 }
 
 /// Flood-fills faces around each vertex, stopping where the texture mapping flips orientation.
