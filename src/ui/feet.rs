@@ -36,7 +36,7 @@ impl<'a> Tracks<'a> {
 }
 
 /// A name without its namespace, such as `mixamorig:`.
-fn short(name: &str) -> &str {
+pub(super) fn short(name: &str) -> &str {
     name.rsplit_once(':').map_or(name, |(_, name)| name)
 }
 

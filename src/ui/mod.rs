@@ -10,6 +10,7 @@ mod keys;
 mod layers;
 mod motion;
 mod output;
+mod pins;
 mod tabs;
 pub mod text;
 mod transport;

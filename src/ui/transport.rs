@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
-use super::{Output, Shown, UiState, controls, feet, layers, style, text};
+use super::{Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
@@ -12,10 +12,11 @@ use crate::state::Command;
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: bool, out: &mut Output) {
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
-    let has_tracks = shown.state.display.show.source && !shown.state.page.embed;
-    let has_layers = !shown.state.edits.layers.is_empty() && !shown.state.page.embed;
-    let feet_gutter = if has_tracks { feet::gutter(ui, shown) } else { 0.0 };
-    let gutter = if has_layers { feet_gutter.max(layers::gutter(ui, shown)) } else { feet_gutter };
+    let has_tracks = !shown.state.page.embed;
+    let has_feet = shown.state.display.show.source && has_tracks;
+    let feet_gutter = if has_feet { feet::gutter(ui, shown) } else { 0.0 };
+    let gutters = if has_tracks { [layers::gutter(ui, shown), pins::gutter(ui, shown)] } else { [0.0; 2] };
+    let gutter = gutters.into_iter().fold(feet_gutter, f32::max);
     let range = shown.state.playhead.range;
     let bar = Scrub {
         clip: shown.clip(),
@@ -31,10 +32,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
     }
-    if has_layers {
-        layers::show(ui, shown, gutter);
-    }
     if has_tracks {
+        layers::show(ui, shown, gutter);
+        pins::show(ui, shown, gutter);
+    }
+    if has_feet {
         feet::show(ui, shown, gutter);
     }
     ui.horizontal(|ui| {

@@ -10,7 +10,7 @@ use gaitway::state::Command;
 use gaitway::ui::{Saved, UiAction, text};
 use glam::Vec3;
 
-use crate::bench::{Bench, NARROW, WIDE, drag, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, drag, painted, press, sample_bench};
 use crate::motion::{choose, reach};
 
 /// Joints of the walker, by index in the file.
@@ -140,6 +140,7 @@ fn a_pin_holds_in_the_range_with_a_blend() {
     let blended = pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times).expect("is limited");
     assert_eq!(blended, PinTimes { blend_secs: 0.5, ..times });
     assert!(harness.query_by_label(&text::pin_times(blended)).is_some());
+    assert!(harness.query_by_label(&track_of(&harness, blended)).is_some());
     assert!(harness.query_by_label(text::PIN_TO_RANGE).is_none(), "it has the range");
     harness.state_mut().editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.1, end_secs: 0.5 })));
     harness.run();
@@ -149,6 +150,36 @@ fn a_pin_holds_in_the_range_with_a_blend() {
     assert_eq!(moved, Some(PinTimes { start_secs: 0.1, end_secs: 0.5, blend_secs: 0.5 }));
     reach(&mut harness, text::PIN_IN_RANGE);
     assert_eq!(pin_of(&harness, LEFT_HAND).and_then(|pin| pin.times), None);
+}
+
+fn track_of(harness: &Harness<'_, Bench>, times: PinTimes) -> String {
+    let skeleton = &harness.state().library().active().expect("a model").asset.skeleton;
+    let name = skeleton.name(skeleton.joint_of_source(LEFT_HAND).expect("a joint"));
+    text::pin_track(name, &text::pin_times(times))
+}
+
+#[test]
+fn a_pin_with_times_has_a_track_under_the_timeline() {
+    for size in [WIDE, NARROW] {
+        let mut harness = sample_bench(size);
+        let goal = PinGoal::Point(place(harness.state(), LEFT_HAND));
+        let times = PinTimes { start_secs: 0.25, end_secs: 0.75, blend_secs: 0.1 };
+        let pin = |times| Command::SetPin { joint: LEFT_HAND, pin: Some(Pin { goal, times }) };
+        let track = track_of(&harness, times);
+        harness.state_mut().editor.apply(pin(None));
+        harness.run();
+        assert!(harness.query_by_label(&track).is_none(), "it always holds");
+        harness.state_mut().editor.apply(pin(Some(times)));
+        harness.run();
+        let (row, timeline) = (harness.get_by_label(&track).rect(), harness.get_by_label(text::TIME).rect());
+        assert!(row.top() >= timeline.bottom() && row.bottom() <= size[1], "{row:?} below {timeline:?}");
+        let name = painted(&harness).into_iter().find(|(_, _, rect)| row.contains(rect.center()));
+        let (_, is_cut, rect) = name.expect("the joint's name");
+        assert!(!is_cut && rect.right() <= timeline.left() + 8.0, "{rect:?} left of {timeline:?}");
+        harness.state_mut().change(|state| state.page.embed = true);
+        harness.run();
+        assert!(harness.query_by_label(&track).is_none(), "an embedded view has none");
+    }
 }
 
 /// The model's own clip is exported with its pins, as one more clip.

@@ -23,6 +23,11 @@ pub const PIN_IN_RANGE: &str = "Only in the range";
 /// Button that moves a pin's times to the in and out points.
 pub const PIN_TO_RANGE: &str = "Use the current range";
 
+/// Returns the accessible name of a pin's track under the timeline. `when` is that of [`pin_times`].
+pub fn pin_track(joint: &str, when: &str) -> String {
+    format!("Pin {joint}: {when}")
+}
+
 /// Returns when a pin holds.
 pub fn pin_times(PinTimes { start_secs, end_secs, .. }: PinTimes) -> String {
     format!("Holds from {start_secs:.2} s to {end_secs:.2} s.")
