@@ -52,7 +52,7 @@ impl Editor {
         let view = if self.can_undo_retargeting() { self.automatic_view() } else { None };
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, playing, "Ctrl+Y");
+            self.finish_step(before, playing, "Redo");
             self.hold_view(view);
         }
         done
@@ -64,7 +64,7 @@ impl Editor {
         let view = if self.can_redo_retargeting() { self.automatic_view() } else { None };
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, playing, "Ctrl+Z");
+            self.finish_step(before, playing, "Undo");
             self.hold_view(view);
         }
         done

@@ -71,7 +71,7 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) {
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
     let button = ui.add_enabled(range.is_some(), egui::Button::new(text::TRIM_TO_RANGE));
-    let hint = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
+    let hint = controls::with_key(ui, if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE });
     if button.on_disabled_hover_text(hint).clicked() {
         changes.trim = range;
     }

@@ -3,7 +3,8 @@
 use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
-use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text};
+use super::widgets::controls::{self, capitals};
+use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, text};
 use crate::editor::{ClipFormat, Export, is_derived};
 use crate::state::active_clip;
 
@@ -25,8 +26,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 }
 
 /// Whether there is room for the button that shows the samples; otherwise the menu has it.
-fn has_samples(ui: &Ui) -> bool {
-    ui.ctx().content_rect().width() >= 800.0
+fn has_samples(ui: &Ui, local: &UiState) -> bool {
+    !local.layout.is_narrow && ui.ctx().content_rect().width() >= 800.0
 }
 
 fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
@@ -46,14 +47,18 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
         out.actions.push(UiAction::OpenFiles);
     }
     borrow(ui, out);
-    if has_samples(ui) && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
+    if has_samples(ui, local) && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
         out.actions.push(UiAction::ShowGallery);
     }
 }
 
 fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Inspector, local);
-    ui.menu_button(text::MENU, |ui| menu(ui, shown, local, out));
+    ui.menu_button(text::MENU, |ui| {
+        // All of it is higher than the screen of a phone.
+        let max_height = ui.ctx().content_rect().height() - 80.0;
+        egui::ScrollArea::vertical().max_height(max_height).show(ui, |ui| menu(ui, shown, local, out));
+    });
     let share = match local.layout.is_narrow {
         true => icon_button(ui, Icon::Share, text::SHARE, false),
         false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),
@@ -69,6 +74,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
         (Icon::Undo, text::UNDO_STEP, local.host.can_undo, UiAction::Undo),
     ];
     for (icon, label, enabled, action) in steps {
+        let label = controls::with_key(ui, label);
         if ui.add_enabled_ui(enabled, |ui| icon_button(ui, icon, label, false)).inner.clicked() {
             out.actions.push(action);
         }
@@ -103,10 +109,13 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     ui.set_width(MENU_WIDTH);
     if local.layout.is_narrow {
         borrow(ui, out);
-        ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
+        // No menu of its own: it would cover this one, without a way back.
+        controls::section(ui, capitals!(text::EXPORT));
+        export(ui, shown, local, out);
+        ui.separator();
     }
     let items = [
-        (text::SAMPLES, local.host.has_gallery && !has_samples(ui), UiAction::ShowGallery),
+        (text::SAMPLES, local.host.has_gallery && !has_samples(ui, local), UiAction::ShowGallery),
         (text::FULL_SCREEN, local.host.has_fullscreen, UiAction::ToggleFullscreen),
     ];
     for (label, is_there, action) in items {
@@ -114,7 +123,7 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
             out.actions.push(action);
         }
     }
-    if ui.button(text::HELP).clicked() {
+    if ui.button(if local.layout.is_narrow { text::GESTURES } else { text::HELP }).clicked() {
         local.help.is_open = true;
     }
     if ui.button(text::ABOUT).clicked() {

@@ -330,6 +330,9 @@ impl UiState {
 
 /// Screens narrower than this get sheets instead of side panels.
 const NARROW_WIDTH: f32 = 700.0;
+/// The same for screens lower than [`LOW_HEIGHT`]: phones held sideways, where side panels would leave no viewport.
+const NARROW_WIDTH_IF_LOW: f32 = 1000.0;
+const LOW_HEIGHT: f32 = 450.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
@@ -355,6 +358,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     local.layout.sheet_rect = has_sheet.then(|| sheet::rect(free));
     match local.layout.sheet_rect {
         // The viewport ends where the sheet begins, so that the character is not behind it.
+        Some(rect) if rect.left() > free.left() => free.with_max_x(rect.left() + f32::from(style::WINDOW_CORNER)),
         Some(rect) => free.with_max_y(rect.top() + f32::from(style::WINDOW_CORNER)),
         None => free,
     }
@@ -383,5 +387,6 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
 }
 
 fn is_narrow(ui: &Ui) -> bool {
-    ui.ctx().content_rect().width() < NARROW_WIDTH
+    let size = ui.ctx().content_rect().size();
+    size.x < if size.y < LOW_HEIGHT { NARROW_WIDTH_IF_LOW } else { NARROW_WIDTH }
 }

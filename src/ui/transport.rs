@@ -62,14 +62,15 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
 }
 
 fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    if icon_button(ui, Icon::StepBack, text::PREVIOUS_FRAME, false).clicked() {
+    let (previous, next) = (controls::with_key(ui, text::PREVIOUS_FRAME), controls::with_key(ui, text::NEXT_FRAME));
+    if icon_button(ui, Icon::StepBack, previous, false).clicked() {
         out.commands.push(Command::StepFrames(-1));
     }
     let size = controls::row_height(ui, 40.0);
     if play_button(ui, shown.state.playback.playing && shown.is_animated(), size).clicked() {
         out.commands.push(Command::TogglePlaying);
     }
-    if icon_button(ui, Icon::StepForward, text::NEXT_FRAME, false).clicked() {
+    if icon_button(ui, Icon::StepForward, next, false).clicked() {
         out.commands.push(Command::StepFrames(1));
     }
 }

@@ -30,7 +30,7 @@ fn opening_can_be_undone() {
     desk.open(&["sample:creature".into()]);
     desk.press(text::UNDO);
     assert_eq!((desk.active(), desk.state()), ("sample:pilot", &before));
-    assert!(desk.shows("Back to Pilot. Ctrl+Y returns to Fox."));
+    assert!(desk.shows("Back to Pilot. Redo returns to Fox."));
     desk.redo();
     assert_eq!(desk.active(), "sample:creature");
 }
@@ -73,7 +73,7 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     assert_ne!(clip, ClipChoice::First, "the new clip plays");
     desk.undo();
     assert_eq!((desk.retargeted_clips(), desk.library().motions().len()), (0, 0));
-    assert!(desk.shows("Removed motion Walk. Ctrl+Y brings it back."));
+    assert!(desk.shows("Removed motion Walk. Redo brings it back."));
     desk.redo();
     assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.shows("Added motion Walk again."));

@@ -62,18 +62,45 @@ fn a_sheet_does_not_hide_the_picture() {
     }
 }
 
+/// A phone held sideways.
+const ON_ITS_SIDE: [f32; 2] = [844.0, 390.0];
+
+#[test]
+fn a_phone_on_its_side_is_mostly_viewport() {
+    for size in [ON_ITS_SIDE, [667.0, 375.0], [932.0, 430.0]] {
+        let mut harness = motion_bench(size, &["walk.bvh"]);
+        let whole = harness.state().viewport;
+        assert!(whole.area() >= 0.5 * size[0] * size[1], "{whole:?} of {size:?}");
+        for label in [text::CLIPS, text::INSPECTOR] {
+            press(&mut harness, label);
+            let beside = harness.state().viewport;
+            assert!(beside.height() == whole.height() && beside.width() >= 0.5 * size[0], "{beside:?} of {size:?}");
+            let close = harness.get_by_label(text::CLOSE_SHEET).rect();
+            assert!(close.left() >= beside.right() && close.top() >= whole.top(), "{close:?} beside {beside:?}");
+        }
+        harness.state_mut().change(|state| state.page.embed = true);
+        harness.run();
+        assert!(harness.state().viewport.area() >= 0.5 * size[0] * size[1], "embedded, {size:?}");
+    }
+}
+
 #[test]
 fn the_help_fits_small_screens() {
-    for size in [[320.0, 240.0], NARROW, WIDE] {
+    for size in [[320.0, 240.0], NARROW, ON_ITS_SIDE, WIDE] {
         let mut harness = sample_bench(size);
         harness.state_mut().panels.help.is_open = true;
         harness.run();
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for label in [text::HELP_TITLE, text::CLOSE_HELP] {
+        let (title, lines) = match size == WIDE {
+            true => (text::HELP_TITLE, [text::STEP_KEYS, text::STEP_FRAMES, text::HELP_RING]),
+            false => (text::GESTURES, [text::PINCH, text::HELP_HANDLE, text::HELP_RING]),
+        };
+        assert_eq!(harness.query_by_label(text::STEP_KEYS).is_some(), size == WIDE, "keys on {size:?}");
+        for label in [title, text::CLOSE_HELP] {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }
-        for label in [text::STEP_KEYS, text::STEP_FRAMES] {
+        for label in lines {
             let rect = harness.get_by_label(label).rect();
             assert!(
                 screen.x_range().contains(rect.left()) && screen.x_range().contains(rect.right()),
@@ -86,13 +113,16 @@ fn the_help_fits_small_screens() {
 /// The transport is never cut off, and no tab makes a side panel wider.
 #[test]
 fn everything_stays_on_the_screen() {
-    for size in [NARROW, [360.0, 640.0], [700.0, 500.0], WIDE, [1920.0, 1080.0]] {
+    for size in [NARROW, [360.0, 640.0], ON_ITS_SIDE, [667.0, 375.0], [700.0, 500.0], WIDE, [1920.0, 1080.0]] {
         let mut harness = bench(size, model_with_clips(30));
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let normal_speed = text::speed(1.0);
-        let narrow = size[0] < 700.0;
-        for label in [text::PLAY, text::NEXT_FRAME, text::TIME, if narrow { &normal_speed } else { text::SPEED_VALUE }]
-        {
+        let narrow = size[0] < 700.0 || size[1] < 450.0;
+        let (next, speed) = match narrow {
+            true => (text::without_key(text::NEXT_FRAME), normal_speed.as_str()),
+            false => (text::NEXT_FRAME, text::SPEED_VALUE),
+        };
+        for label in [text::PLAY, next, text::TIME, speed] {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }

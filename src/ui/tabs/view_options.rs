@@ -122,7 +122,8 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
                 out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));
             }
         }
-        if controls::sized(ui, [width, 30.0], egui::Button::new("Fit")).on_hover_text(text::FRAME_ALL_KEY).clicked() {
+        let about_fit = controls::with_key(ui, text::FRAME_ALL_KEY);
+        if controls::sized(ui, [width, 30.0], egui::Button::new("Fit")).on_hover_text(about_fit).clicked() {
             out.commands.push(Command::FrameAll);
         }
     });

@@ -46,6 +46,10 @@ pub fn from_motion(name: &str) -> String {
 pub const PLAY: &str = "Play";
 /// Accessible name of the play button while playing.
 pub const PAUSE: &str = "Pause";
+/// Tooltip of the play button while stopped, with its key.
+pub const PLAY_KEY: &str = "Play (Space)";
+/// Tooltip of the play button while playing, with its key.
+pub const PAUSE_KEY: &str = "Pause (Space)";
 /// Button that steps back one frame, with its key.
 pub const PREVIOUS_FRAME: &str = "Previous frame (,)";
 /// Button that steps forward one frame, with its key.

@@ -24,6 +24,8 @@ pub const FULL_SCREEN: &str = "Full screen";
 pub const THEME: &str = "Theme";
 /// Entry of the menu that opens the help, with its key.
 pub const HELP: &str = "Keys and gestures (?)";
+/// The same on screens for fingers, and the title of the help there.
+pub const GESTURES: &str = "Gestures";
 /// Entry of the menu that opens the box about the program.
 pub const ABOUT: &str = "About Gaitway";
 /// The version, in that box.

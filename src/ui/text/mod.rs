@@ -28,6 +28,11 @@ pub fn counted(what: &str, count: usize) -> String {
     format!("{what} ({count})")
 }
 
+/// Returns a label without the key that it ends with.
+pub fn without_key(label: &str) -> &str {
+    label.rsplit_once(" (").map_or(label, |(label, _)| label)
+}
+
 /// Formats a number with thin spaces between thousands.
 pub fn grouped(number: usize) -> String {
     let digits = number.to_string();

@@ -36,6 +36,9 @@ pub const STEP_KEYS: &str = "Comma, period";
 /// What [`STEP_KEYS`] do, in the help.
 pub const STEP_FRAMES: &str = "Previous frame, next frame";
 
+/// The gesture that zooms, in the help.
+pub const PINCH: &str = "Pinch";
+
 // Messages
 /// Title of an error without a more specific one.
 pub const ERROR_TITLE: &str = "Something went wrong";

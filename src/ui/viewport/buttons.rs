@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
             if ui.button(text::OPEN_PAGE).clicked() {
                 out.actions.push(UiAction::OpenPage);
             }
-        } else if icon_button(ui, Icon::Frame, text::FRAME_ALL_KEY, false).clicked() {
+        } else if icon_button(ui, Icon::Frame, controls::with_key(ui, text::FRAME_ALL_KEY), false).clicked() {
             out.commands.push(Command::FrameAll);
         }
     });

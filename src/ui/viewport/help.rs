@@ -14,16 +14,17 @@ pub struct Help {
     was_open: bool,
 }
 
-const GESTURES: [(&str, &str); 9] = [
-    ("Drop files", "Open a model, borrow motion for it, or apply a joint map"),
-    ("Drag", "Orbit"),
-    ("Right drag, shift drag", "Pan"),
-    ("Wheel, pinch", "Zoom to the pointer"),
-    ("Two-finger drag", "Pan"),
-    ("Drag a ring", text::HELP_RING),
-    ("Drag a handle", text::HELP_HANDLE),
-    ("Click a joint", "Select it; in the Motion tab, choose its source"),
-    ("Double-click", text::FRAME_ALL),
+/// What a pointer does, the same with fingers, and what it is for. What one of them lacks is empty.
+const GESTURES: [(&str, &str, &str); 9] = [
+    ("Drop files", "", "Open a model, borrow motion for it, or apply a joint map"),
+    ("Drag", "Drag", "Orbit"),
+    ("Right drag, shift drag", "", "Pan"),
+    ("Wheel, pinch", text::PINCH, "Zoom to the pointer"),
+    ("Two-finger drag", "Two-finger drag", "Pan"),
+    ("Drag a ring", "Drag a ring", text::HELP_RING),
+    ("Drag a handle", "Drag a handle", text::HELP_HANDLE),
+    ("Click a joint", "Tap a joint", "Select it; in the Motion tab, choose its source"),
+    ("Double-click", "Double tap", text::FRAME_ALL),
 ];
 
 impl Help {
@@ -54,7 +55,7 @@ impl Help {
 fn title_bar(ui: &mut Ui) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
     ui.horizontal(|ui| {
-        ui.heading(text::HELP_TITLE);
+        ui.heading(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE });
         ui.with_layout(Layout::right_to_left(Align::Center), close).inner
     })
     .inner
@@ -62,7 +63,10 @@ fn title_bar(ui: &mut Ui) -> bool {
 
 fn list(ui: &mut Ui, width: f32) {
     let accent = style::palette(ui).accent;
-    let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(GESTURES);
+    let for_fingers = style::is_for_fingers(ui);
+    let keys = KEY_TABLE.iter().filter(|_| !for_fingers).map(|line| (line.keys, line.does));
+    let gestures = GESTURES.map(|(pointer, fingers, does)| (if for_fingers { fingers } else { pointer }, does));
+    let lines = keys.chain(gestures).filter(|(how, _)| !how.is_empty());
     let max_height = (ui.ctx().content_rect().height() - 160.0).max(120.0);
     // A scroll bar that is always visible: nothing else would show that the list goes on.
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();

@@ -169,7 +169,8 @@ impl Messages {
                 ui.set_max_width(width - 32.0 - BUTTON_WIDTH);
                 ui.add(egui::Label::new(&toast.text).wrap());
             });
-            ui.button(text::UNDO).on_hover_text("Ctrl+Z").clicked()
+            let undo = ui.button(text::UNDO);
+            if style::is_for_fingers(ui) { undo } else { undo.on_hover_text("Ctrl+Z") }.clicked()
         };
         if notice(ui, line, |ui| ui.horizontal(row).inner) {
             out.actions.push(UiAction::Undo);

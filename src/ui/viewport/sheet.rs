@@ -5,8 +5,15 @@ use egui::{Area, Id, Order, Rect, Stroke, Ui, pos2, vec2};
 use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
 
-/// The rectangle of a sheet, at the bottom of what the panels leave free. It leaves a strip of the viewport visible.
+/// A sheet at the side isn't narrower, nor much wider.
+const SIDE_WIDTH: f32 = 280.0;
+
+/// The rectangle of a sheet: at the right of what the panels leave free if half of that is wide enough, else at the bottom, where
+/// it leaves a strip of the viewport visible.
 pub fn rect(free: Rect) -> Rect {
+    if free.width() > free.height() && free.width() >= 2.0 * SIDE_WIDTH {
+        return free.with_min_x(free.right() - (0.5 * free.width()).min(1.25 * SIDE_WIDTH));
+    }
     let height = (free.height() * 0.66).max(240.0).min(free.height() - 56.0).max(0.0);
     Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
 }

@@ -35,6 +35,11 @@ pub fn named(response: &Response, name: impl FnOnce() -> String) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name()));
 }
 
+/// Returns a label that ends with its key; without the key where the layout is for fingers.
+pub fn with_key<'a>(ui: &Ui, label: &'a str) -> &'a str {
+    if style::is_for_fingers(ui) { text::without_key(label) } else { label }
+}
+
 /// The title of a group of settings.
 pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(10.0);

@@ -3,7 +3,7 @@
 use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use self::Mark::{Arc, Arrow, Bar, Dot, Fill, Line, Outline};
-use super::style;
+use super::{controls, style};
 use crate::ui::text;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,7 +84,8 @@ pub fn play_button(ui: &mut Ui, playing: bool, size: f32) -> Response {
     }
     let icon = if playing { Icon::Pause } else { Icon::Play };
     paint(ui.painter(), icon, Rect::from_center_size(rect.center(), Vec2::splat(size * 0.42)), palette.on_accent);
-    response.on_hover_text(format!("{label} (Space)"))
+    let about = if playing { text::PAUSE_KEY } else { text::PLAY_KEY };
+    response.on_hover_text(controls::with_key(ui, about))
 }
 
 /// A shape of an icon, in a square with corners (0, 0) and (1, 1), Y down.

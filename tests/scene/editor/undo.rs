@@ -11,7 +11,7 @@ fn notices_say_how_to_go_back() {
     assert_eq!(notices(&open(&mut editor, "sample:creature")), ["Opened Fox."]);
     assert_eq!(notices(&open(&mut editor, "sample:pilot")), ["Reopened Pilot."]);
     editor.undo();
-    assert_eq!(notices(&editor.take_events()), ["Back to Fox. Ctrl+Y returns to Pilot."]);
+    assert_eq!(notices(&editor.take_events()), ["Back to Fox. Redo returns to Pilot."]);
     editor.redo();
     editor.take_events();
     let added = open(&mut editor, "sample:walk");
@@ -19,7 +19,7 @@ fn notices_say_how_to_go_back() {
     assert!(matches!(added.last(), Some(Event::Notice { undoable: true, .. })));
     editor.undo();
     let undone = editor.take_events();
-    assert_eq!(notices(&undone), ["Removed motion Walk. Ctrl+Y brings it back."]);
+    assert_eq!(notices(&undone), ["Removed motion Walk. Redo brings it back."]);
     assert_eq!(undone[0], Event::Stepped, "earlier notices are outdated");
 }
 
@@ -43,14 +43,14 @@ fn undo_says_which_models_it_brings_back() {
     editor.open_motion_alone(0, &mut any).expect("fits");
     editor.take_events();
     editor.undo();
-    assert_eq!(notices(&editor.take_events()), ["Back to Pilot. Ctrl+Y returns to dance.glb."]);
+    assert_eq!(notices(&editor.take_events()), ["Back to Pilot. Redo returns to dance.glb."]);
     open(&mut editor, "sample:creature");
     editor.close(id_of(&editor, "sample:pilot"), &mut any).expect("is not active");
     editor.take_events();
     editor.undo();
-    assert_eq!(notices(&editor.take_events()), ["Reopened Pilot. Ctrl+Y closes it."]);
+    assert_eq!(notices(&editor.take_events()), ["Reopened Pilot. Redo closes it."]);
     editor.redo();
-    assert_eq!(notices(&editor.take_events()), ["Closed Pilot. Ctrl+Z reopens it."]);
+    assert_eq!(notices(&editor.take_events()), ["Closed Pilot. Undo reopens it."]);
 }
 
 #[test]
