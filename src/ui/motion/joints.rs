@@ -275,12 +275,13 @@ impl Table<'_, '_> {
 
 /// The namespace of all joints that have one, such as `mixamorig:`; omitted from rows to save room. Empty if names would be the
 /// same without it.
-pub(super) fn namespace(asset: &Asset) -> &str {
+pub(in crate::ui) fn namespace(asset: &Asset) -> &str {
     let names = || asset.skeleton.joints().map(|joint| asset.skeleton.name(joint));
+    let all: HashSet<&str> = names().collect();
     let Some(first) = names().find(|name| name.contains(':')) else { return "" };
     let namespace = &first[..=first.rfind(':').unwrap_or(0)];
     let is_clear = |name: &str| match name.strip_prefix(namespace) {
-        Some(rest) => !rest.contains(':') && names().all(|other| other != rest),
+        Some(rest) => !rest.contains(':') && !all.contains(rest),
         None => !name.contains(':'),
     };
     if names().all(is_clear) { namespace } else { "" }

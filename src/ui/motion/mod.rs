@@ -26,6 +26,7 @@ use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, t
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
+pub(super) use joints::namespace;
 pub(super) use picker::show as picker;
 
 /// The state of the tab.
@@ -148,7 +149,7 @@ impl Contents {
         Self {
             rows,
             filters,
-            namespace: joints::namespace(&pairing.model.asset).to_owned(),
+            namespace: namespace(&pairing.model.asset).to_owned(),
             motions: if several { clips::names_of(motions.iter().map(|motion| &*motion.source)) } else { Vec::new() },
             mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
             remarks: remarks(pairing),

@@ -9,6 +9,7 @@ use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
 use crate::state::{Command, ViewerState, joints_with_content, title};
+use crate::ui::motion::namespace;
 use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
@@ -21,6 +22,8 @@ const TREE_SHARE: f32 = 0.4;
 pub struct SceneTree {
     model: Option<ModelId>,
     search: String,
+    /// See [`namespace`].
+    namespace: String,
     /// Joints whose children are hidden.
     collapsed: HashSet<usize>,
     /// The joint that the tree last scrolled to.
@@ -48,7 +51,8 @@ fn row_height(ui: &Ui) -> f32 {
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     if local.scene_tree.model != Some(model.id) {
-        local.scene_tree = SceneTree { model: Some(model.id), nodes: nodes(model), ..SceneTree::default() };
+        let namespace = namespace(&model.asset).to_owned();
+        local.scene_tree = SceneTree { model: Some(model.id), namespace, nodes: nodes(model), ..SceneTree::default() };
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
@@ -151,8 +155,10 @@ impl SceneTree {
             for row in rows.get(visible).unwrap_or_default() {
                 let number = asset.skeleton.source_index(row.joint);
                 let Some(&Node { kind, has_content, warnings }) = self.nodes.get(row.joint.get()) else { continue };
+                let name = &*title(Some(shown.state), asset, row.joint);
                 let line = Line {
-                    name: &title(Some(shown.state), asset, row.joint),
+                    name,
+                    short_name: name.strip_prefix(&*self.namespace).unwrap_or(name),
                     kind,
                     is_selected: shown.state.selection.joint == Some(number),
                     is_collapsed: self.collapsed.contains(&number),
@@ -272,6 +278,8 @@ enum Kind {
 /// What a row shows.
 struct Line<'a> {
     name: &'a str,
+    /// The name without the tree's [`namespace`].
+    short_name: &'a str,
     kind: Kind,
     is_selected: bool,
     is_collapsed: bool,
@@ -335,7 +343,7 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     } else {
         palette.text
     };
-    let is_cut = controls::elided(ui, text, name, color);
+    let is_cut = controls::elided(ui, text, line.short_name, color) || line.short_name != name;
     if is_cut || warnings.is_some() {
         response.on_hover_ui(|ui| {
             if is_cut {

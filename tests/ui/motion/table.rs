@@ -209,6 +209,12 @@ fn names_are_shown_without_their_common_namespace() {
         library.add(Model::new("rig.glb".to_owned(), asset.clone(), Vec::new()));
         library.set_motions(vec![Motion::new("dance.fbx".to_owned(), asset.clone())]);
         let mut harness = bench_of(size, library);
+        assert!(
+            harness.query_by_label("mixamorig:ChestJoint").is_some(),
+            "the tree has whole names for screen readers"
+        );
+        let tree: Vec<_> = painted(&harness).into_iter().filter(|(text, ..)| text.contains("ChestJoint")).collect();
+        assert!(matches!(&tree[..], [(text, false, _)] if text == "ChestJoint"), "{tree:?}");
         press(&mut harness, Tab::Motion.label());
         reach(&mut harness, &text::edit_joint("mixamorig:LeftUpperLegJoint"));
         let panel = harness.state().viewport.right();
