@@ -54,11 +54,16 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
 
 fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Inspector, local);
-    ui.menu_button(text::MENU, |ui| {
+    let were_open = (local.help.is_open, local.about_open);
+    let button = ui.menu_button(text::MENU, |ui| {
         // All of it is higher than the screen of a phone.
         let max_height = ui.ctx().content_rect().height() - 80.0;
         egui::ScrollArea::vertical().max_height(max_height).show(ui, |ui| menu(ui, shown, local, out));
     });
+    // The entry that was pressed is gone when what it opened is closed.
+    if were_open != (local.help.is_open, local.about_open) && ui.memory(|memory| memory.focused().is_some()) {
+        button.response.request_focus();
+    }
     let share = match local.layout.is_narrow {
         true => icon_button(ui, Icon::Share, text::SHARE, false),
         false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),

@@ -172,13 +172,13 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
         return;
     }
     shortcuts(context, out);
+    // While the modal help is open, only the keys that close it work. The help has the focus.
+    let modal = local.help.is_open;
+    let is_taken = context.egui_wants_keyboard_input() && !local.viewport.has_focus && !modal;
     // An open menu has the arrow keys and Esc.
-    let is_taken = context.egui_wants_keyboard_input() && !local.viewport.has_focus;
     if is_taken || egui::Popup::is_any_open(context) {
         return;
     }
-    // While the modal help is open, only the keys that close it work.
-    let modal = local.help.is_open;
     for line in KEY_TABLE {
         if modal && !line.pressed.iter().any(|key| matches!(key, Key::Escape | Key::Questionmark)) {
             continue;

@@ -112,8 +112,8 @@ pub struct UiState {
     pub holds_time: bool,
     /// The model in the open Info tab, which needs its thumbnails and the GPU memory; taken by the app in each frame.
     pub info_model: Option<ModelId>,
-    /// While recording: the control that had the focus when it began, if any. It gets the focus back.
-    focus_before_recording: Option<Option<egui::Id>>,
+    /// While a modal is open: the control that had the focus when it opened, if any. It gets the focus back.
+    focus_before_modal: Option<Option<egui::Id>>,
     /// The Info tab last showed the Khronos validator running; its summary then scrolls into view.
     is_validating: bool,
     lists: tabs::Lists,

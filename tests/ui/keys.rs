@@ -2,7 +2,7 @@
 
 use egui::{Event, Key};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
 use gaitway::ui::{KEY_TABLE, UiAction, text};
 
@@ -137,6 +137,30 @@ fn a_name_typed_in_the_frame_of_its_click_is_no_shortcut() {
     let events = [click(at), name, typed(Key::Escape, "")].concat();
     assert!(in_one_frame(&mut harness, events).is_empty());
     assert_eq!(harness.state().state().selection.joint, Some(1));
+}
+
+#[test]
+fn the_help_takes_the_focus_and_gives_it_back() {
+    let is_focused = |harness: &Harness<'_, Bench>, label: &str| {
+        let node = harness.query_by_label(label);
+        node.is_some_and(|node| node.accesskit_node().is_focused())
+    };
+    let mut harness = sample_bench(WIDE);
+    harness.get_by_label(text::VIEWPORT).focus();
+    harness.run();
+    for closing in [&[Key::Escape][..], &[Key::Questionmark], &[Key::Tab, Key::Enter]] {
+        press_key(&mut harness, Key::Questionmark);
+        assert!(is_focused(&harness, text::HELP_TITLE));
+        closing.iter().for_each(|&key| drop(press_key(&mut harness, key)));
+        assert!(!harness.state().panels.help.is_open && is_focused(&harness, text::VIEWPORT), "{closing:?}");
+    }
+    harness.get_by_label(text::MENU).focus();
+    press_key(&mut harness, Key::Enter);
+    harness.get_by_label(text::HELP).focus();
+    press_key(&mut harness, Key::Enter);
+    assert!(is_focused(&harness, text::HELP_TITLE));
+    press_key(&mut harness, Key::Escape);
+    assert!(is_focused(&harness, text::MENU));
 }
 
 #[test]

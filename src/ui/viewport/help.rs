@@ -1,6 +1,6 @@
 //! The list of keys and gestures.
 
-use egui::{Align, Context, Layout, RichText, Ui};
+use egui::{Align, Context, Layout, RichText, Sense, Ui};
 
 use super::overlays;
 use crate::ui::icons::{Icon, icon_button};
@@ -11,7 +11,8 @@ use crate::ui::{KEY_TABLE, style, text};
 pub struct Help {
     /// Set by the help button and its key. The help appears in the pass after that.
     pub is_open: bool,
-    was_open: bool,
+    /// Number of passes that it has been open for; 2 means more.
+    passes: u8,
 }
 
 /// What a pointer does, the same with fingers, and what it is for. What one of them lacks is empty.
@@ -31,19 +32,21 @@ impl Help {
     /// Shows the help if it has been open since the last pass; clears `is_open` when the user closes it.
     pub(super) fn show(&mut self, context: &Context) {
         // Not in the pass that opens it: that click would count as one outside the modal and close it again.
-        if self.is_open && self.was_open {
-            self.modal(context);
-        } else if self.is_open {
-            context.request_repaint();
+        match (self.is_open, self.passes) {
+            (false, _) => self.passes = 0,
+            (true, 0) => {
+                self.passes = 1;
+                context.request_repaint();
+            }
+            (true, _) => self.modal(context),
         }
-        self.was_open = self.is_open;
     }
 
     fn modal(&mut self, context: &Context) {
         let modal = overlays::modal("help", context).show(context, |ui| {
             let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
             ui.set_width(width);
-            let is_closed = title_bar(ui);
+            let is_closed = title_bar(ui, std::mem::replace(&mut self.passes, 2) == 1);
             list(ui, width);
             is_closed
         });
@@ -51,11 +54,15 @@ impl Help {
     }
 }
 
-/// Returns whether its close button was clicked.
-fn title_bar(ui: &mut Ui) -> bool {
+/// Returns whether its close button was clicked. Its title can have the focus: unlike a button, it leaves Space alone.
+fn title_bar(ui: &mut Ui, takes_focus: bool) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
     ui.horizontal(|ui| {
-        ui.heading(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE });
+        let title = RichText::new(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE }).heading();
+        let title = ui.add(egui::Label::new(title).sense(Sense::FOCUSABLE));
+        if takes_focus {
+            title.request_focus();
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), close).inner
     })
     .inner

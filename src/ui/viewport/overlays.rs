@@ -12,6 +12,7 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
     } else {
         local.layout.sheet = None;
     }
+    keep_focus(ui.ctx(), local);
     awaited::show(ui, viewport, &shown, out);
     local.messages.show(ui, viewport, &shown, out);
     local.help.show(ui.ctx());
@@ -21,6 +22,17 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
     motion::picker(ui.ctx(), &shown, local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {
         drop_target(ui);
+    }
+}
+
+/// Notes what has the focus when a modal opens, and gives it back when the modal and its controls are gone.
+fn keep_focus(context: &Context, local: &mut UiState) {
+    let before = &mut local.focus_before_modal;
+    if local.help.is_open || local.about_open || local.host.recording.is_some() {
+        // Only in the first pass does whatever opened the modal still have the focus.
+        before.get_or_insert_with(|| context.memory(egui::Memory::focused));
+    } else if let Some(id) = before.take().flatten() {
+        context.memory_mut(|memory| memory.request_focus(id));
     }
 }
 

@@ -6,16 +6,7 @@ use super::overlays;
 use crate::ui::{Output, UiAction, UiState, style, text};
 
 pub fn show(context: &Context, local: &mut UiState, out: &mut Output) {
-    let before = &mut local.focus_before_recording;
-    let Some(progress) = local.host.recording else {
-        // The focus was on the Cancel button, which is gone.
-        if let Some(id) = before.take().flatten() {
-            context.memory_mut(|memory| memory.request_focus(id));
-        }
-        return;
-    };
-    // Only in the first pass does whatever started the recording still have the focus.
-    before.get_or_insert_with(|| context.memory(egui::Memory::focused));
+    let Some(progress) = local.host.recording else { return };
     overlays::modal("recording", context).show(context, |ui| {
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(320.0));
         ui.heading(text::RECORDING);
