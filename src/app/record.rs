@@ -13,6 +13,7 @@ pub(super) struct Recording {
     model: ModelId,
     size: [u32; 2],
     transparent: bool,
+    as_images: bool,
     /// Says if the size differs from the requested one.
     remark: Option<String>,
 }
@@ -33,7 +34,7 @@ impl App {
         match self.host.record(video, &self.inbox) {
             Ok(()) => {
                 let remark = (size != settings.size).then(|| format!("It is {} × {} pixels.", size[0], size[1]));
-                self.recording = Some(Recording { frames, model, size, transparent, remark });
+                self.recording = Some(Recording { frames, model, size, transparent, as_images, remark });
                 self.panels.host.recording = Some(RecordingProgress { frames_done: 0, frame_count });
             }
             Err(error) => self.add_error(&error),
@@ -70,7 +71,10 @@ impl App {
         match saved_name {
             Ok(Some(name)) => self.toast(saved(&name, recording.remark.as_deref())),
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
-            Err(error) => self.add_error(&format!("Couldn't record the video: {error}")),
+            Err(error) => {
+                let what = if recording.as_images { "images" } else { "video" };
+                self.add_error(&format!("Couldn't record the {what}: {error}"));
+            }
         }
     }
 }

@@ -51,6 +51,9 @@ fn a_recording_that_fails_or_is_cancelled_says_so() {
     desk.send(Message::Recorded(Err("the encoder stopped".to_owned())));
     assert_eq!(desk.problem(), Some("Couldn't record the video: the encoder stopped"));
     assert!(!desk.shows("Saved"));
+    desk.scroll_and_press(text::RECORD_IMAGES);
+    desk.send(Message::Recorded(Err("the disk is full".to_owned())));
+    assert!(desk.problem().expect("an error").ends_with("Couldn't record the images: the disk is full"));
     record(&mut desk, "720p");
     desk.send(Message::Recorded(Ok(None)));
     assert!(desk.shows("Recording cancelled."));

@@ -266,6 +266,14 @@ fn an_error_stays_until_dismissed() {
 }
 
 #[test]
+fn messages_begin_with_a_capital_and_files_keep_their_names() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.messages.error = Some("this is a folder, not a file\nwalk.bvh: no joints".to_owned());
+    harness.run();
+    assert!(harness.query_by_label("This is a folder, not a file\nwalk.bvh: no joints").is_some());
+}
+
+#[test]
 fn a_load_shows_how_far_it_is() {
     let mut harness = sample_bench(WIDE);
     let name = "large.glb".to_owned();

@@ -25,12 +25,23 @@ pub fn labelled(name: &str, value: &str) -> String {
 
 /// Returns an option or a heading with the number of things it stands for.
 pub fn counted(what: &str, count: usize) -> String {
-    format!("{what} ({count})")
+    format!("{what} ({})", grouped(count))
 }
 
 /// Returns a label without the key that it ends with.
 pub fn without_key(label: &str) -> &str {
     label.rsplit_once(" (").map_or(label, |(label, _)| label)
+}
+
+/// Returns a message that begins with a capital, unless it begins with the name of a file.
+pub fn sentence(message: &str) -> String {
+    let first = message.split(' ').next().unwrap_or_default();
+    let is_word = first.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'\'') && first != message;
+    let mut message = message.to_owned();
+    if let Some(letter) = message.get_mut(..1).filter(|_| is_word) {
+        letter.make_ascii_uppercase();
+    }
+    message
 }
 
 /// Formats a number with thin spaces between thousands.

@@ -108,7 +108,8 @@ impl Messages {
     }
 
     fn show_error(&mut self, ui: &mut Ui, out: &mut Output) {
-        let Some(error) = self.error.clone() else { return };
+        let Some(error) = &self.error else { return };
+        let error = error.lines().map(text::sentence).collect::<Vec<_>>().join("\n");
         let color = style::palette(ui).error;
         notice(ui, color, |ui| {
             ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
@@ -160,14 +161,15 @@ impl Messages {
         const BUTTON_WIDTH: f32 = 70.0;
         let Some(toast) = &self.toast else { return };
         let line = style::palette(ui).line;
+        let text = text::sentence(&toast.text);
         if !toast.undoable {
-            notice(ui, line, |ui| ui.label(&toast.text));
+            notice(ui, line, |ui| ui.label(text));
             return;
         }
         let row = |ui: &mut Ui| {
             ui.scope(|ui| {
                 ui.set_max_width(width - 32.0 - BUTTON_WIDTH);
-                ui.add(egui::Label::new(&toast.text).wrap());
+                ui.add(egui::Label::new(text).wrap());
             });
             let undo = ui.button(text::UNDO);
             if style::is_for_fingers(ui) { undo } else { undo.on_hover_text("Ctrl+Z") }.clicked()
