@@ -1,12 +1,12 @@
 //! The left panel: the open models, and the clips of the active one.
 
-use egui::{RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui, vec2};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
 use crate::editor::{name_and_place, short_name};
 use crate::library::{Model, ModelId, Motion};
-use crate::state::{ClipChoice, Command, choice_of_clip};
+use crate::state::{ClipChoice, Command, changes_of, choice_of_clip, is_to_bring};
 
 /// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;
@@ -118,6 +118,13 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
         if row.clicked() {
             out.commands.push(Command::SetClip(choice_of_clip(model, index)));
         }
+        let changes = changes_of(model, shown.state, index);
+        if !changes.is_none() {
+            ui.painter().circle_filled(row.rect.left_center() + vec2(5.0, 0.0), 2.5, style::palette(ui).accent);
+            let changes = text::changes(&changes);
+            ui.ctx().accesskit_node_builder(row.id, |node| node.set_description(changes.clone()));
+            row.on_hover_text(changes);
+        }
     }
     if !found {
         controls::hint(ui, text::no_clip_found(search));
@@ -197,7 +204,10 @@ fn motion_heading(ui: &mut Ui, name: &str) {
 
 fn header(ui: &mut Ui, model: &Model) {
     let palette = style::palette(ui);
-    let (name, place) = name_and_place(&model.source);
+    let (name, mut place) = name_and_place(&model.source);
+    if model.is_placeholder() && is_to_bring(&model.origin) {
+        place = text::NOT_OPENED.to_owned();
+    }
     ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
     ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
 }

@@ -129,6 +129,7 @@ for (const renderer of BACK_ENDS)
       try {
         await whenAsked(other);
         assert.deepEqual(await other.locator("#bring-files li").allInnerTexts(), ["Soldier.glb (model)", "cmu_01_01.bvh (motion)"]);
+        assert.equal(await other.locator("#bring-sender").isVisible(), true);
         await other.locator("#bring-later").click();
         assert.equal((await state(other)).model.join(), "file:Soldier.glb", "an empty stage awaits it");
         // The files may arrive one at a time.
@@ -144,6 +145,7 @@ for (const renderer of BACK_ENDS)
         await other.reload();
         await whenReady(other);
         await whenAsked(other);
+        assert.deepEqual(await Promise.all(["#bring-sender", "#bring-again"].map((id) => other.locator(id).isVisible())), [false, true]);
         await other.locator("#bring-later").click();
         await drop(other, files);
         await until(other, async () => (await window.gaitway.state()).t === 1.5);

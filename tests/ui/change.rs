@@ -27,11 +27,19 @@ fn the_current_clip_is_changed_and_undone() {
     assert_ne!(pose(&harness), before);
     let clips = &harness.state().state().edits.clips;
     assert_eq!(clips.values().collect::<Vec<_>>(), [&mirrored]);
+    let mark = |harness: &Harness<'_, Bench>| {
+        let row = harness.get_by_label("Walk");
+        row.accesskit_node().description()
+    };
+    let trimmed = ClipChanges { trim: Some(TimeRange { start_secs: 0.0, end_secs: 0.5 }), ..mirrored.clone() };
+    assert_eq!(text::changes(&trimmed), "Changed: mirrored, trimmed");
+    assert_eq!(mark(&harness), Some(text::changes(&mirrored)));
     choose(&mut harness, text::EXPORT, text::SAVE_GLB);
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
     press(&mut harness, text::UNDO_STEP);
     assert!(harness.state().state().edits.clips.is_empty());
     assert_eq!(pose(&harness), before);
+    assert_eq!(mark(&harness), None);
 }
 
 /// A link may change a clip by more than the sliders span.

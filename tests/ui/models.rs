@@ -5,7 +5,7 @@ use gaitway::library::{Library, Model};
 use gaitway::samples;
 use gaitway::ui::{Tab, Toast, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench, bench_of, press, sample_bench};
+use crate::bench::{NARROW, WIDE, bench, bench_of, painted, press, sample_bench};
 
 fn two_models() -> Library {
     let mut library = Library::default();
@@ -88,6 +88,8 @@ fn an_empty_stage_says_what_it_waits_for_and_keeps_the_offer() {
     for size in [WIDE, NARROW] {
         let mut harness = bench(size, Model::placeholder("file:in/Soldier.glb"));
         assert!(harness.query_by_label(&text::waiting_for("Soldier.glb")).is_some());
+        let opened = painted(&harness).into_iter().find(|(text, ..)| text.contains("Opened from"));
+        assert_eq!(opened, None, "it isn't yet");
         press(&mut harness, text::BRING);
         assert_eq!(harness.state().actions, [UiAction::OpenFiles]);
         assert!(harness.query_by_label(text::NO_SKELETON).is_none());

@@ -1,6 +1,6 @@
 // Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a
 // model that couldn't be loaded, without asking for it.
-import { button, dialog, showList } from "./dom.js";
+import { button, byId, dialog, showList } from "./dom.js";
 import { companionWords } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
@@ -60,6 +60,10 @@ export function showAwaited() {
     return `${name} (${role})${companions === undefined ? "" : `, with ${companions}`}`;
   });
   showList("bring-files", lines);
+  // They were open in this entry of the history before the page was reloaded.
+  const isOwn = history.state?.own === true;
+  byId("bring-again").hidden = !isOwn;
+  byId("bring-sender").hidden = isOwn;
   dialog("bring").showModal();
   button("bring-choose").focus();
 }

@@ -1,6 +1,6 @@
 //! Changes to the current clip, and layers over it.
 
-use crate::retarget::{BodyPart, LayerMode, Seam};
+use crate::retarget::{BodyPart, ClipChanges, LayerMode, Seam};
 
 /// Heading.
 pub const CHANGE_CLIP: &str = "Edit clip";
@@ -34,6 +34,22 @@ pub const RESET_CHANGES: &str = "Reset clip";
 /// Returns how far apart the ends of the clip were.
 pub fn seam(seam: Seam) -> String {
     format!("The ends were {seam}.")
+}
+
+/// Returns what was changed about a clip.
+pub fn changes(changes: &ClipChanges) -> String {
+    let ClipChanges { mirror, trim, reverse, speed, loop_secs, offset, turn_degrees } = *changes;
+    let kinds = [
+        (mirror, "mirrored"),
+        (trim.is_some(), "trimmed"),
+        (reverse, "reversed"),
+        (speed != 1.0, "other speed"),
+        (loop_secs.is_some(), "made loopable"),
+        (offset != [0.0; 2], "moved"),
+        (turn_degrees != 0.0, "turned"),
+    ];
+    let kinds: Vec<&str> = kinds.into_iter().filter_map(|(is_changed, kind)| is_changed.then_some(kind)).collect();
+    format!("Changed: {}", kinds.join(", "))
 }
 
 // Layers

@@ -13,6 +13,8 @@ pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so 
     again; for an .obj of the exercise, open its .skel and .attach as well.";
 /// Button that opens the awaited model.
 pub const BRING: &str = "Choose files…";
+/// Stands below the awaited model's name, where others have their place.
+pub const NOT_OPENED: &str = "Not opened yet";
 /// What to do if a link's model couldn't be loaded.
 pub const NOT_LOADED: &str =
     "Try the link again later, or drop a copy of the file: the rest of the link is applied to it.";
