@@ -397,7 +397,7 @@ fn the_validator_reports_beside_the_warnings_and_leads_to_nodes() {
     show(&mut harness, id, Validation::Done(report.clone()));
     let summary = "2 kinds of error in 1\u{2009}316 places, 1 hint";
     let title = "Error: It is bad (1\u{2009}315 places)\nBAD";
-    for label in [summary, title, "/nodes/1: bad", "/asset: worse", "and 1313 more", "Hint: BAD"] {
+    for label in [summary, title, "/nodes/1: bad", "/asset: worse", "and 1\u{2009}313 more", "Hint: BAD"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label("/nodes/0: hint").is_none(), "hints are collapsed");

@@ -394,7 +394,7 @@ pub fn validator_failed(error: &str) -> String {
 
 /// Returns how many findings are not listed.
 pub fn more_findings(count: u64) -> String {
-    format!("and {count} more")
+    format!("and {} more", grouped(count as usize))
 }
 
 /// Section with counts and times of drawing.
@@ -445,7 +445,7 @@ pub fn influences(max: usize, over_four: usize) -> String {
     match over_four {
         0 => format!("up to {max}"),
         1 => format!("up to {max}, 1 vertex over 4"),
-        count => format!("up to {max}, {count} vertices over 4"),
+        count => format!("up to {max}, {} vertices over 4", grouped(count)),
     }
 }
 
