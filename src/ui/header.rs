@@ -58,7 +58,8 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     let button = ui.menu_button(text::MENU, |ui| {
         // All of it is higher than the screen of a phone.
         let max_height = ui.ctx().content_rect().height() - 80.0;
-        egui::ScrollArea::vertical().max_height(max_height).show(ui, |ui| menu(ui, shown, local, out));
+        let area = egui::ScrollArea::vertical().max_height(max_height).min_scrolled_height(max_height);
+        area.show(ui, |ui| menu(ui, shown, local, out));
     });
     // The entry that was pressed is gone when what it opened is closed.
     if were_open != (local.help.is_open, local.about_open) && ui.memory(|memory| memory.focused().is_some()) {

@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
-use super::{Output, Shown, UiState, controls, feet, layers, pins, style, text};
+use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
@@ -12,7 +12,8 @@ use crate::state::Command;
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: bool, out: &mut Output) {
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
-    let has_tracks = !shown.state.page.embed;
+    // A low screen has no room for them.
+    let has_tracks = !shown.state.page.embed && ui.ctx().content_rect().height() >= LOW_HEIGHT;
     let has_feet = shown.state.display.show.source && has_tracks;
     let feet_gutter = if has_feet { feet::gutter(ui, shown) } else { 0.0 };
     let gutters = if has_tracks { [layers::gutter(ui, shown), pins::gutter(ui, shown)] } else { [0.0; 2] };
