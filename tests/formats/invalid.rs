@@ -32,7 +32,8 @@ fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
 
 #[test]
 fn foreign_formats() {
-    check_bytes("model.dae", b"<COLLADA/>".to_vec(), &["COLLADA", "Blender"]);
+    check_bytes("model.dae", b"<COLLADA/>".to_vec(), &["COLLADA", "File › Import"]);
+    check_bytes("scene.blend", b"BLENDER-v300".to_vec(), &["Blender's own", "File › Open"]);
     check_bytes("sky.exr", b"\x76\x2f\x31\x01".to_vec(), &["OpenEXR", ".hdr"]);
 }
 

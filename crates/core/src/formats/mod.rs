@@ -287,10 +287,14 @@ fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
 
 /// Returns a format that users may expect to be read, and how to convert it.
 fn foreign_format(name: &str) -> Option<(&'static str, &'static str)> {
-    const BLENDER: &str = "open it in Blender (File › Import), then export glTF 2.0 (.glb) and drop that";
     match extension(name).as_str() {
-        "dae" => Some(("COLLADA", BLENDER)),
-        "blend" => Some(("Blender's own", BLENDER)),
+        "dae" => Some((
+            "COLLADA",
+            "import it into Blender (File › Import, up to version 4.5), then export glTF 2.0 (.glb) and drop that",
+        )),
+        "blend" => {
+            Some(("Blender's own", "open it in Blender (File › Open), then export glTF 2.0 (.glb) and drop that"))
+        }
         "exr" => Some(("OpenEXR", "save the image as Radiance HDR (.hdr) and drop that")),
         _ => None,
     }
