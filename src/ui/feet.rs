@@ -1,19 +1,17 @@
 //! Foot-contact tracks under the timeline: when each foot is planted, and how fast it slides meanwhile.
 
-use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use super::{Shown, controls, scrub, style, text};
+use super::tracks::{row, short, widest};
+use super::{Shown, scrub, style, text};
 use crate::library::Model;
 use crate::retarget::FootTrack;
 use crate::state::title;
 
-const TRACK_HEIGHT: f32 = 18.0;
 /// Height of the line that explains colours and scale.
 const LEGEND_HEIGHT: f32 = 16.0;
 /// The slide speed whose bar fills a track.
 const MAX_METRES_PER_SEC: f32 = 0.5;
-/// At most this share of the width is for names.
-const MAX_GUTTER: f32 = 0.25;
 
 /// The tracks of a borrowed clip with the names of the feet.
 struct Tracks<'a> {
@@ -35,43 +33,10 @@ impl<'a> Tracks<'a> {
     }
 }
 
-/// A name without its namespace, such as `mixamorig:`.
-pub(super) fn short(name: &str) -> &str {
-    name.rsplit_once(':').map_or(name, |(_, name)| name)
-}
-
 /// Returns the width that the names of the feet take at the left; 0 if there are no tracks.
 pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
     let Some(tracks) = Tracks::of(shown) else { return 0.0 };
     widest(ui, &mut tracks.tracks.iter().map(|track| short(&tracks.name(shown, track)).to_owned()))
-}
-
-/// Returns the width of a gutter for the names of tracks.
-pub(super) fn widest(ui: &Ui, names: &mut dyn Iterator<Item = String>) -> f32 {
-    // Laid out, since a name may have letters that our font lacks.
-    let widths = names.map(|name| ui.painter().layout_no_wrap(name, style::SMALL, egui::Color32::PLACEHOLDER).size().x);
-    widths.fold(0.0, f32::max).ceil().min(MAX_GUTTER * ui.available_width())
-}
-
-/// Shows a track with its name in the gutter and the playhead over what `paint` draws. Returns its rectangle and response.
-pub(super) fn row(
-    ui: &mut Ui,
-    shown: &Shown<'_>,
-    gutter: f32,
-    name: &str,
-    accessible_name: &str,
-    paint: impl FnOnce(&Ui, Rect),
-) -> (Rect, Response) {
-    let palette = style::palette(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK_HEIGHT), Sense::hover());
-    let lane = rect.with_min_x(rect.left() + gutter).shrink2(vec2(scrub::MARGIN, 1.0));
-    response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, accessible_name));
-    controls::elided_small(ui, rect.with_max_x(rect.left() + gutter), name, palette.weak_text);
-    paint(ui, lane);
-    let duration_secs = shown.clip().map_or(0.0, |clip| f64::from(clip.duration_secs()));
-    let x = lane.left() + (shown.clip_time_secs() / duration_secs).clamp(0.0, 1.0) as f32 * lane.width();
-    ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
-    (lane, response)
 }
 
 /// Shows the tracks of a borrowed clip, with their names in the gutter and their legend below.

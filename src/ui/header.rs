@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use super::widgets::controls::{self, capitals};
-use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, text};
+use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
 use crate::editor::{ClipFormat, Export, is_derived};
 use crate::state::active_clip;
 
@@ -13,7 +13,7 @@ const MENU_WIDTH: f32 = 220.0;
 const NAME_WIDTH: f32 = 350.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let (side, gap) = if local.layout.is_narrow { (6, 0.0) } else { (10, 4.0) };
+    let (side, gap) = if local.layout.is_small { (6, 0.0) } else { (10, 4.0) };
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 5, bottom: 3 });
     egui::Panel::top("header").frame(frame).resizable(false).show_separator_line(false).show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -27,17 +27,17 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 
 /// Whether there is room for the button that shows the samples; otherwise the menu has it.
 fn has_samples(ui: &Ui, local: &UiState) -> bool {
-    !local.layout.is_narrow && ui.ctx().content_rect().width() >= 800.0
+    !local.layout.is_small && ui.ctx().content_rect().width() >= 800.0
 }
 
 fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Clips, local);
     if ui.ctx().content_rect().width() >= NAME_WIDTH {
         let name = RichText::new(text::NAME).strong();
-        ui.label(if local.layout.is_narrow { name } else { name.heading() });
+        ui.label(if local.layout.is_small { name } else { name.heading() });
         ui.add_space(4.0);
     }
-    if local.layout.is_narrow {
+    if local.layout.is_small {
         if icon_button(ui, Icon::Open, text::OPEN, false).clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
@@ -65,14 +65,14 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     if were_open != (local.help.is_open, local.about_open) && ui.memory(|memory| memory.focused().is_some()) {
         button.response.request_focus();
     }
-    let share = match local.layout.is_narrow {
+    let share = match local.layout.is_small {
         true => icon_button(ui, Icon::Share, text::SHARE, false),
         false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),
     };
     if share.clicked() {
         out.actions.push(UiAction::ShareLink);
     }
-    if !local.layout.is_narrow {
+    if !local.layout.is_small {
         ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
     }
     let steps = [
@@ -91,7 +91,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
 fn panel_button(ui: &mut Ui, panel: Sheet, local: &mut UiState) {
     let layout = &mut local.layout;
     let is_open = layout.sheet == Some(panel);
-    let (icon, label) = match (panel, layout.is_narrow) {
+    let (icon, label) = match (panel, layout.is_small) {
         (Sheet::Clips, true) => (Icon::Clips, text::CLIPS),
         (Sheet::Inspector, true) => (Icon::Sliders, text::INSPECTOR),
         (Sheet::Clips, false) => (Icon::PanelLeft, if layout.clips_open { text::HIDE_CLIPS } else { text::SHOW_CLIPS }),
@@ -113,7 +113,7 @@ fn borrow(ui: &mut Ui, out: &mut Output) {
 
 fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     ui.set_width(MENU_WIDTH);
-    if local.layout.is_narrow {
+    if local.layout.is_small {
         borrow(ui, out);
         // No menu of its own: it would cover this one, without a way back.
         controls::section(ui, capitals!(text::EXPORT));
@@ -129,7 +129,7 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
             out.actions.push(action);
         }
     }
-    if ui.button(if local.layout.is_narrow { text::GESTURES } else { text::HELP }).clicked() {
+    if ui.button(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP }).clicked() {
         local.help.is_open = true;
     }
     if ui.button(text::ABOUT).clicked() {

@@ -1,10 +1,10 @@
 //! Layers over the current clip: a section below the clip's edits, and tracks under the timeline.
 
-use egui::{Rect, Response, Ui, vec2};
+use egui::{Response, Ui};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
-use super::{Output, Shown, feet, style, text};
+use super::{Output, Shown, text, tracks};
 use crate::library::Model;
 use crate::retarget::{BodyPart, ClipLayer, LayerMode};
 use crate::state::{ClipChoice, Command, choice_of_clip, clip_of_layer, title};
@@ -74,7 +74,7 @@ fn name_of(model: &Model, clip: usize) -> String {
     }
 }
 
-/// Returns the chooser of the clip, and whether the layer is moved.
+/// Returns the chooser of the clip, and how the layer is moved, if it is.
 fn card(
     ui: &mut Ui,
     shown: &Shown<'_>,
@@ -153,7 +153,7 @@ fn mask(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer) {
 }
 
 /// The layers that the model has clips for, with their titles.
-fn tracks<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a Model, usize)> + use<'a> {
+fn playable<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a Model, usize)> + use<'a> {
     let layers = shown.library.active().map(|model| (model, &shown.state.edits.layers));
     let layers = layers.into_iter().flat_map(|(model, layers)| layers.iter().map(move |layer| (layer, model)));
     layers.filter_map(|(layer, model)| Some((layer, model, clip_of_layer(model, layer)?)))
@@ -161,31 +161,24 @@ fn tracks<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a Mod
 
 /// Returns the width that the names of the layers take at the left of the timeline; 0 if there are none.
 pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
-    feet::widest(ui, &mut tracks(shown).map(|(_, model, clip)| model.clip_titles()[clip].clone()))
+    tracks::widest(ui, &mut playable(shown).map(|(_, model, clip)| model.clip_titles()[clip].clone()))
 }
 
 /// Shows a track for each layer, the top one first, with a bar for each time that its clip plays.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, gutter: f32) {
-    let Some(duration_secs) = shown.clip().map(|clip| f64::from(clip.duration_secs())).filter(|&secs| secs > 0.0)
-    else {
-        return;
-    };
-    let color = style::palette(ui).accent;
-    let rows: Vec<_> = tracks(shown).collect();
+    let Some(duration_secs) = tracks::duration_secs(shown) else { return };
+    let rows: Vec<_> = playable(shown).collect();
     for (layer, model, clip) in rows.into_iter().rev() {
         let name = &model.clip_titles()[clip];
-        feet::row(ui, shown, gutter, name, &text::layer_track(name), |ui, lane| {
+        tracks::row(ui, shown, gutter, name, &text::layer_track(name), |ui, lane| {
             let period = model.clip(clip).and_then(|clip| layer.period_secs(clip)).unwrap_or(f64::INFINITY);
             // Beyond that many, bars would be narrower than the gaps between them.
             let period = period.max(4.0 * duration_secs / f64::from(lane.width().max(1.0)));
-            let painter = ui.painter_at(lane);
             let x_of = |secs: f64| lane.left() + (secs / duration_secs) as f32 * lane.width();
-            let fill = color.gamma_multiply(0.15 + 0.45 * layer.weight as f32);
             let mut start = if period.is_finite() { layer.start_secs.rem_euclid(period) - period } else { 0.0 };
             while start < duration_secs {
                 let end = x_of((start + period).min(duration_secs)) - 1.0;
-                let bar = Rect::from_x_y_ranges(x_of(start)..=end, lane.y_range()).shrink2(vec2(0.0, 3.0));
-                painter.rect_filled(bar, 3.0, fill);
+                tracks::bar(ui, lane, [x_of(start), end], 0.15 + 0.45 * layer.weight as f32);
                 start += period;
             }
         });

@@ -13,6 +13,7 @@ mod output;
 mod pins;
 mod tabs;
 pub mod text;
+mod tracks;
 mod transport;
 mod typing;
 mod viewport;
@@ -229,30 +230,23 @@ pub struct RecordingProgress {
 /// Which panels are open.
 #[derive(Debug)]
 pub struct Layout {
-    /// The clips panel, on the left, is open. Ignored on a narrow screen.
+    /// The clips panel, on the left, is open. Ignored on a small screen.
     pub clips_open: bool,
-    /// The inspector, on the right, is open. Ignored on a narrow screen.
+    /// The inspector, on the right, is open. Ignored on a small screen.
     pub inspector_open: bool,
-    /// On a narrow screen the panels are sheets over the viewport, one at a time. Closed on a wide one.
+    /// On a small screen the panels are sheets over the viewport, one at a time. Closed on a large one.
     pub sheet: Option<Sheet>,
     /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
     pub tab: Tab,
     /// The screen has sheets instead of side panels.
-    is_narrow: bool,
+    is_small: bool,
     /// Where the open sheet is.
     sheet_rect: Option<Rect>,
 }
 
 impl Default for Layout {
     fn default() -> Self {
-        Self {
-            clips_open: true,
-            inspector_open: true,
-            sheet: None,
-            tab: Tab::Scene,
-            is_narrow: false,
-            sheet_rect: None,
-        }
+        Self { clips_open: true, inspector_open: true, sheet: None, tab: Tab::Scene, is_small: false, sheet_rect: None }
     }
 }
 
@@ -260,7 +254,7 @@ impl Layout {
     /// Shows or hides a panel.
     fn toggle(&mut self, panel: Sheet) {
         match panel {
-            _ if self.is_narrow => self.sheet = if self.sheet == Some(panel) { None } else { Some(panel) },
+            _ if self.is_small => self.sheet = if self.sheet == Some(panel) { None } else { Some(panel) },
             Sheet::Clips => self.clips_open = !self.clips_open,
             Sheet::Inspector => self.inspector_open = !self.inspector_open,
         }
@@ -277,7 +271,7 @@ impl Layout {
     }
 }
 
-/// A panel shown as a sheet on a narrow screen.
+/// A panel shown as a sheet on a small screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sheet {
     /// Open models and clips.
@@ -317,7 +311,7 @@ impl UiState {
         self.layout.show_tab(Tab::Motion);
     }
 
-    /// Brings the Motion tab forward. On a narrow screen, the viewport stays in sight.
+    /// Brings the Motion tab forward. On a small screen, the viewport stays in sight.
     pub fn on_motions_added(&mut self) {
         (self.layout.tab, self.layout.inspector_open) = (Tab::Motion, true);
     }
@@ -329,32 +323,32 @@ impl UiState {
 }
 
 /// Screens narrower than this get sheets instead of side panels.
-const NARROW_WIDTH: f32 = 700.0;
+const SMALL_WIDTH: f32 = 700.0;
 /// The same for screens lower than [`LOW_HEIGHT`]: phones held sideways, where side panels would leave no viewport.
-const NARROW_WIDTH_IF_LOW: f32 = 1000.0;
+const SMALL_WIDTH_IF_LOW: f32 = 1000.0;
 const LOW_HEIGHT: f32 = 450.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
     local.holds_time = false;
-    let narrow = is_narrow(ui);
-    local.layout.is_narrow = narrow;
-    style::size_controls(ui, narrow);
+    let small = is_small(ui);
+    local.layout.is_small = small;
+    style::size_controls(ui, small);
     if !shown.state.page.embed {
         header::show(ui, &shown, local, out);
     }
-    let side = if narrow { 6 } else { 12 };
+    let side = if small { 6 } else { 12 };
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")
         .frame(bottom)
         .resizable(false)
         .show_separator_line(false)
-        .show(ui, |ui| transport::show(ui, &shown, local, narrow, out));
-    if !narrow && !shown.state.page.embed {
+        .show(ui, |ui| transport::show(ui, &shown, local, small, out));
+    if !small && !shown.state.page.embed {
         side_panels(ui, &shown, local, out);
     }
     let free = ui.available_rect_before_wrap();
-    let has_sheet = narrow && !shown.state.page.embed && local.layout.sheet.is_some();
+    let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
     local.layout.sheet_rect = has_sheet.then(|| sheet::rect(free));
     match local.layout.sheet_rect {
         // The viewport ends where the sheet begins, so that the character is not behind it.
@@ -386,7 +380,7 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
     }
 }
 
-fn is_narrow(ui: &Ui) -> bool {
+fn is_small(ui: &Ui) -> bool {
     let size = ui.ctx().content_rect().size();
-    size.x < if size.y < LOW_HEIGHT { NARROW_WIDTH_IF_LOW } else { NARROW_WIDTH }
+    size.x < if size.y < LOW_HEIGHT { SMALL_WIDTH_IF_LOW } else { SMALL_WIDTH }
 }

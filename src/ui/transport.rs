@@ -9,7 +9,7 @@ use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: bool, out: &mut Output) {
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: bool, out: &mut Output) {
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
     // A low screen has no room for them.
@@ -42,13 +42,13 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     }
     ui.horizontal(|ui| {
         ui.set_height(44.0);
-        ui.spacing_mut().item_spacing.x = if narrow { 0.0 } else { 4.0 };
+        ui.spacing_mut().item_spacing.x = if small { 0.0 } else { 4.0 };
         ui.add_enabled_ui(shown.is_animated(), |ui| play_buttons(ui, shown, out));
         ui.add_space(8.0);
-        let room = narrow.then(|| ui.available_width() - narrow_width(ui, shown));
+        let room = small.then(|| ui.available_width() - rest_width(ui, shown));
         times(ui, shown, room);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if narrow {
+            if small {
                 speed_menu(ui, shown, out);
                 loop_cycle(ui, shown, out);
             } else {
@@ -76,8 +76,8 @@ fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// Returns the width of what is to the right of the times on a narrow screen, with a gap between.
-fn narrow_width(ui: &Ui, shown: &Shown<'_>) -> f32 {
+/// Returns the width of what is to the right of the times on a small screen, with a gap between.
+fn rest_width(ui: &Ui, shown: &Shown<'_>) -> f32 {
     icon_size(ui, ICON_SIZE).x + controls::button_width(ui, &speed_text(shown)) + 4.0
 }
 

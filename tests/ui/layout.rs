@@ -1,11 +1,12 @@
 //! Layout on wide, narrow and embedded screens, and what lies over the viewport.
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::retarget::ClipLayer;
 use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench, model_with_clips, motion_bench, painted, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, motion_bench, painted, press, sample_bench};
 
 #[test]
 fn panels_fold_away_and_come_back() {
@@ -260,11 +261,16 @@ fn the_first_screen_is_mostly_viewport() {
     }
 }
 
+fn bench_with_error(error: &str) -> Harness<'static, Bench> {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.messages.error = Some(error.to_owned());
+    harness.run();
+    harness
+}
+
 #[test]
 fn an_error_stays_until_dismissed() {
-    let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.messages.error = Some("broken.glb: it is not a GLB file".to_owned());
-    harness.run();
+    let mut harness = bench_with_error("broken.glb: it is not a GLB file");
     assert!(harness.query_by_label("broken.glb: it is not a GLB file").is_some());
     press(&mut harness, text::DISMISS_ERROR);
     assert_eq!(harness.state().panels.messages.error, None);
@@ -272,9 +278,7 @@ fn an_error_stays_until_dismissed() {
 
 #[test]
 fn messages_begin_with_a_capital_and_files_keep_their_names() {
-    let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.messages.error = Some("this is a folder, not a file\nwalk.bvh: no joints".to_owned());
-    harness.run();
+    let harness = bench_with_error("this is a folder, not a file\nwalk.bvh: no joints");
     assert!(harness.query_by_label("This is a folder, not a file\nwalk.bvh: no joints").is_some());
 }
 

@@ -277,8 +277,8 @@ impl Table<'_, '_> {
 /// same without it.
 pub(in crate::ui) fn namespace(asset: &Asset) -> &str {
     let names = || asset.skeleton.joints().map(|joint| asset.skeleton.name(joint));
-    let all: HashSet<&str> = names().collect();
     let Some(first) = names().find(|name| name.contains(':')) else { return "" };
+    let all: HashSet<&str> = names().collect();
     let namespace = &first[..=first.rfind(':').unwrap_or(0)];
     let is_clear = |name: &str| match name.strip_prefix(namespace) {
         Some(rest) => !rest.contains(':') && !all.contains(rest),

@@ -328,7 +328,7 @@ fn edits(
         };
         if button(ui, width, true, text, hover) {
             local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
-            // On a narrow screen the sheet makes room for the viewport.
+            // On a small screen the sheet makes room for the viewport.
             local.layout.sheet = None;
         }
         arrows(ui, &local.host, out);

@@ -74,7 +74,7 @@ pub const PLAY_ONCE: &str = "Play once";
 pub const LOOP: &str = "Loop";
 /// Loop mode: plays forwards and backwards in turn.
 pub const PING_PONG: &str = "Ping-pong";
-/// Name of the speed slider; on narrow screens, tooltip of the speed menu.
+/// Name of the speed slider; on small screens, tooltip of the speed menu.
 pub const SPEED: &str = "Speed";
 /// Accessible name of the number field beside the speed slider.
 pub const SPEED_VALUE: &str = "Speed value";

@@ -28,7 +28,7 @@ pub fn counted(what: &str, count: usize) -> String {
     format!("{what} ({})", grouped(count))
 }
 
-/// Returns a label without the key that it ends with.
+/// Returns a text without the keys in parentheses that it ends with.
 pub fn without_key(label: &str) -> &str {
     label.rsplit_once(" (").map_or(label, |(label, _)| label)
 }

@@ -3,11 +3,11 @@
 use egui::{Align2, Context, Id, Order, Rect, Stroke, Ui, vec2};
 
 use super::{about, awaited, recording, sheet};
-use crate::ui::{Output, Shown, UiState, is_narrow, motion, style};
+use crate::ui::{Output, Shown, UiState, is_small, motion, style};
 
 /// Call last; `viewport` is the viewport's rectangle.
 pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if is_narrow(ui) && !shown.state.page.embed {
+    if is_small(ui) && !shown.state.page.embed {
         sheet::show(ui, &shown, local, out);
     } else {
         local.layout.sheet = None;

@@ -1,4 +1,4 @@
-//! Sheets: the panels of narrow screens.
+//! Sheets: the panels of small screens.
 
 use egui::{Area, Id, Order, Rect, Stroke, Ui, pos2, vec2};
 

@@ -35,7 +35,7 @@ pub fn named(response: &Response, name: impl FnOnce() -> String) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name()));
 }
 
-/// Returns a label that ends with its key; without the key where the layout is for fingers.
+/// Returns a text that ends with keys in parentheses; without them where the layout is for fingers.
 pub fn with_key<'a>(ui: &Ui, label: &'a str) -> &'a str {
     if style::is_for_fingers(ui) { text::without_key(label) } else { label }
 }
