@@ -3,7 +3,7 @@
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
 
-use crate::anim::{ClipQuery, Pose, SampleCursor, find_clip, model_from_joint};
+use crate::anim::{ClipQuery, SampleCursor, find_clip, model_from_joint};
 use crate::asset::Asset;
 use crate::files::{Item, Role, open_items};
 use crate::formats::{FileSet, load};
@@ -13,7 +13,6 @@ use crate::retarget::{Body, Retargeting, propose, recognize};
 struct Character {
     phase_secs: f64,
     cursor: SampleCursor,
-    pose: Pose,
 }
 
 #[wasm_bindgen]
@@ -51,17 +50,19 @@ pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) 
         .map(|index| Character {
             phase_secs: duration_secs * f64::from(index) / f64::from(characters.max(1)),
             cursor: SampleCursor::default(),
-            pose: skeleton.rest().clone(),
         })
         .collect();
+    // As in a frame of the page, the pose is a means to the palette, and none is kept.
+    let mut pose = skeleton.rest().clone();
     let mut world_from_joint: Vec<Affine3A> = Vec::with_capacity(skeleton.len());
     let mut palette: Vec<PaletteEntry> = Vec::new();
     let start_ms = now();
     for frame in 0..frames {
         for character in &mut crowd {
             let time_secs = (character.phase_secs + f64::from(frame) / 60.0) % duration_secs;
-            clip.sample(skeleton, time_secs as f32, &mut character.cursor, &mut character.pose);
-            model_from_joint(skeleton, &character.pose, Affine3A::IDENTITY, &mut world_from_joint);
+            pose.copy_from(skeleton.rest());
+            clip.sample(skeleton, time_secs as f32, &mut character.cursor, &mut pose);
+            model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
             palette.clear();
             for skin in &asset.skins {
                 write_palette(skin, &world_from_joint, SkinningMode::Linear, &mut palette);
