@@ -1,4 +1,4 @@
-//! Edits of the current clip: a section of the Motion tab or, if no motion is borrowed, of the Display tab.
+//! Edits of the current clip: a section of the Motion tab.
 
 use egui::Ui;
 

@@ -236,7 +236,7 @@ pub struct Layout {
     pub inspector_open: bool,
     /// On a small screen the panels are sheets over the viewport, one at a time. Closed on a large one.
     pub sheet: Option<Sheet>,
-    /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
+    /// The chosen inspector tab. The Scene tab stands in for Motion while that has nothing to show.
     pub tab: Tab,
     /// The screen has sheets instead of side panels.
     is_small: bool,
@@ -265,9 +265,9 @@ impl Layout {
         (self.tab, self.inspector_open, self.sheet) = (tab, true, Some(Sheet::Inspector));
     }
 
-    /// The tab that is shown. The Motion tab waits while there are no motions.
+    /// The tab that is shown. The Motion tab waits while there is nothing in it.
     fn open_tab(&self, library: &Library) -> Tab {
-        if self.tab == Tab::Motion && library.motions().is_empty() { Tab::Scene } else { self.tab }
+        if self.tab == Tab::Motion && !tabs::has_motion_tab(library) { Tab::Scene } else { self.tab }
     }
 }
 

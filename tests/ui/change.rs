@@ -1,4 +1,4 @@
-//! The section of changes to a clip, in the Motion tab and without a motion in the Display tab.
+//! The part of the Motion tab that edits the clip.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -14,7 +14,7 @@ use crate::header::choose;
 #[test]
 fn the_current_clip_is_changed_and_undone() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::Display.label());
+    press(&mut harness, Tab::Motion.label());
     harness.get_by_label(text::MIRROR).scroll_to_me();
     harness.run();
     let pose = |harness: &Harness<'_, Bench>| harness.state().frame.pose().clone();
@@ -48,7 +48,7 @@ fn changes_beyond_the_sliders_stay() {
     let mut harness = sample_bench(WIDE);
     let far = ClipChanges { turn_degrees: 270.0, offset: [20.0, -7.0], loop_secs: Some(3.0), ..ClipChanges::NONE };
     harness.state_mut().editor.apply(Command::ChangeClip { clip: 0, changes: Box::new(far.clone()) });
-    press(&mut harness, Tab::Display.label());
+    press(&mut harness, Tab::Motion.label());
     harness.get_by_label(text::MIRROR).scroll_to_me();
     harness.run();
     // Nor does the keyboard change them on its way through the fields.
@@ -64,7 +64,7 @@ fn changes_beyond_the_sliders_stay() {
 #[test]
 fn the_range_becomes_the_clip() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::Display.label());
+    press(&mut harness, Tab::Motion.label());
     harness.get_by_label(text::TRIM_TO_RANGE).scroll_to_me();
     harness.run();
     assert!(harness.get_by_label(text::TRIM_TO_RANGE).accesskit_node().is_disabled());
@@ -88,7 +88,7 @@ fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
     harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Named("3".to_owned())));
     harness.run();
     press(&mut harness, Tab::Motion.label());
-    press(&mut harness, text::OPTIONS);
+    press(&mut harness, text::CLIP);
     harness.get_by_label(text::MAKE_LOOP).scroll_to_me();
     harness.run();
     press(&mut harness, text::MAKE_LOOP);

@@ -22,7 +22,7 @@ fn layers(harness: &Harness<'_, Bench>) -> Vec<ClipLayer> {
 #[test]
 fn a_layer_is_added_masked_raised_and_removed() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::Display.label());
+    press(&mut harness, Tab::Motion.label());
     scrolled_to(&mut harness, text::ADD_LAYER);
     // The first clip plays, so the layer gets the second.
     let idle = ClipLayer { clip: "Idle".to_owned(), ..ClipLayer::default() };
@@ -64,7 +64,7 @@ fn a_new_layer_is_in_sight_and_has_the_focus() {
     for size in [WIDE, NARROW] {
         let mut harness = sample_bench(size);
         harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
-        harness.state_mut().panels.layout.tab = Tab::Display;
+        harness.state_mut().panels.layout.tab = Tab::Motion;
         harness.run();
         for count in 1..=2 {
             scrolled_to(&mut harness, text::ADD_LAYER);
@@ -89,7 +89,7 @@ fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
     harness.state_mut().editor.apply(Command::SetLayers(vec![wave.clone()]));
     harness.run();
     press(&mut harness, Tab::Motion.label());
-    press(&mut harness, text::OPTIONS);
+    press(&mut harness, text::CLIP);
     let model = harness.state().library().active().expect("a model");
     let skeleton = &model.asset.skeleton;
     let below = text::below_joint(skeleton.name(skeleton.joint_of_source(5).expect("a joint")));

@@ -1,4 +1,4 @@
-//! The Motion tab: which joint follows which and why, and how the motion is retargeted.
+//! The Motion tab: which joint follows which and why, how the motion is retargeted, and how the clip is edited.
 
 mod clicking;
 mod detail;
@@ -17,7 +17,7 @@ use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized, icon_size};
-use super::{HostState, Output, Shown, UiAction, UiState, clips, controls, style};
+use super::{HostState, Output, Shown, UiAction, UiState, change, clips, controls, layers, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
@@ -81,6 +81,7 @@ enum Section {
     #[default]
     Joints,
     Options,
+    Clip,
     Figures,
     Files,
 }
@@ -217,7 +218,13 @@ impl<'a> Pairing<'a> {
 const ROOMY_HEIGHT: f32 = 480.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let Some(pairing) = Pairing::shown(shown, local.motion.motion) else { return };
+    let Some(pairing) = Pairing::shown(shown, local.motion.motion) else {
+        return controls::scrolled(ui, ("motion", Section::Clip), |ui| {
+            clip(ui, shown, out);
+            ui.add_space(8.0);
+            controls::hint(ui, text::WHAT_A_MOTION_ADDS);
+        });
+    };
     let map = pairing.map;
     local.motion.motion = pairing.index;
     let part = local.motion.part;
@@ -248,6 +255,7 @@ fn head(
     let parts = [
         (Section::Joints, text::JOINTS),
         (Section::Options, text::OPTIONS),
+        (Section::Clip, text::CLIP),
         (Section::Figures, text::FIT),
         (Section::Files, text::FILES),
     ];
@@ -275,9 +283,16 @@ fn body(
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
         Section::Options => options::show(ui, shown, pairing, map, contents, out),
+        Section::Clip => clip(ui, shown, out),
         Section::Figures => figures::show(ui, shown, pairing, contents, tab),
         Section::Files => options::files(ui, shown, pairing, out),
     }
+}
+
+/// Edits of the clip that plays, and what is laid over it.
+fn clip(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    change::section(ui, shown, out);
+    layers::section(ui, shown, out);
 }
 
 /// Height of the buttons that edit the whole map.

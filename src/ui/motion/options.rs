@@ -9,7 +9,7 @@ use crate::editor::{ClipFormat, Export, is_derived};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
-use crate::ui::{Output, Saved, Shown, UiAction, change, layers, style, text};
+use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
@@ -79,8 +79,6 @@ pub(super) fn show(
             }
         }
     }
-    change::section(ui, shown, out);
-    layers::section(ui, shown, out);
 }
 
 /// The choices for each part of the root motion.

@@ -7,7 +7,7 @@ use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{Channel, Command, Inspect, Show, active_clip, active_variant};
 use crate::ui::controls::{self, SliderSettings};
-use crate::ui::{Output, Shown, change, layers, text};
+use crate::ui::{Output, Shown, text};
 
 const MODES: [(SkinningMode, &str); 3] = [
     (SkinningMode::Linear, "Linear"),
@@ -53,11 +53,6 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     overlays(ui, shown, out);
     special_overlays(ui, shown, out);
     source(ui, shown, out);
-    // Otherwise the Motion tab has it among its options.
-    if shown.library.motions().is_empty() {
-        change::section(ui, shown, out);
-        layers::section(ui, shown, out);
-    }
     if let Some(model) = model.filter(|_| !morphs_first) {
         avatar::controls(ui, shown, model, out);
         morphs(ui, shown, model, out);

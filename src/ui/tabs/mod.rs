@@ -18,6 +18,7 @@ mod view_options;
 use egui::Ui;
 
 use super::{Output, Shown, UiState, controls, motion, text};
+use crate::library::Library;
 
 pub use formula::VertexProbe;
 pub use joint_card::JointCard;
@@ -37,7 +38,7 @@ pub enum Tab {
     Info,
     /// Camera, light, background, up axis, images and videos.
     Camera,
-    /// Joint map and retargeting options. Hidden while there are no motions.
+    /// Edits of the clip and layers; with a motion, its joint map and retargeting options. Hidden if the model has no clips.
     Motion,
 }
 
@@ -54,10 +55,15 @@ impl Tab {
     }
 }
 
+/// Whether there is a clip to edit or a motion to map.
+pub(super) fn has_motion_tab(library: &Library) -> bool {
+    !library.motions().is_empty() || library.active().is_some_and(|model| model.clip_count() > 0)
+}
+
 /// Shows the tab bar and the open tab.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
-    let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
+    let count = if has_motion_tab(shown.library) { tabs.len() } else { tabs.len() - 1 };
     let findings = shown.library.active().map_or(0, |model| model.findings().len());
     let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::file_warnings(findings));
     if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {

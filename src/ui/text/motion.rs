@@ -9,6 +9,11 @@ use crate::retarget::{RestChoice, Verdict};
 pub const JOINTS: &str = "Joints";
 /// Part of the tab: the retargeting options.
 pub const OPTIONS: &str = "Options";
+/// Part of the tab: edits of the clip, and layers over it.
+pub const CLIP: &str = "Clip";
+/// Shown below the edits of a model's own clip.
+pub const WHAT_A_MOTION_ADDS: &str =
+    "A borrowed motion also shows here which joint follows which, and how well it fits.";
 /// Part of the tab: how well the clip fits.
 pub const FIT: &str = "Fit";
 /// Part of the tab: opening, saving and removing files.

@@ -6,7 +6,7 @@ use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use super::{motion_tab, reach};
-use crate::bench::{WIDE, motion_bench, press, sample_bench};
+use crate::bench::{WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
 
 #[test]
 fn borrowed_clips_are_listed_under_the_name_of_their_file() {
@@ -20,9 +20,17 @@ fn borrowed_clips_are_listed_under_the_name_of_their_file() {
 }
 
 #[test]
-fn without_a_motion_there_is_no_motion_tab() {
-    let mut harness = sample_bench(WIDE);
+fn without_clips_and_motions_there_is_no_motion_tab() {
+    let harness = bench(WIDE, model_with_clips(0));
     assert!(harness.query_by_label(Tab::Motion.label()).is_none());
+}
+
+#[test]
+fn without_a_motion_the_motion_tab_edits_the_clip() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Motion.label());
+    assert!(harness.query_by_label(text::MIRROR).is_some());
+    assert!(harness.query_by_label(text::JOINTS).is_none());
     press(&mut harness, text::BORROW_MOTION);
     assert_eq!(harness.state().actions, [UiAction::ChooseMotion]);
 }
