@@ -90,14 +90,19 @@ fn card(
         let buttons = controls::button_width(ui, text::RAISE_LAYER) + icon_size(ui, BUTTON_SIZE).x;
         let width = ui.available_width() - buttons - 2.0 * ui.spacing().item_spacing.x;
         let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);
-        let response = combo.show_ui(ui, |ui| {
+        let choices = |ui: &mut Ui| {
             for (index, title) in titles.iter().enumerate() {
                 if controls::choice(ui, clip == Some(index), title).clicked() {
                     layer.clip = name_of(model, index);
                 }
             }
+        };
+        // The text of a combo box takes what is available, whatever its width.
+        let response = ui.scope(|ui| {
+            ui.set_max_width(width);
+            combo.show_ui(ui, choices).response
         });
-        let chooser = response.response.accessible_name(text::LAYER_CLIP);
+        let chooser = response.inner.accessible_name(text::LAYER_CLIP);
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
         }

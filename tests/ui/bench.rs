@@ -121,11 +121,16 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
 
 /// One joint and as many clips as asked for, each of its own length, and a few warnings.
 pub fn model_with_clips(count: usize) -> Model {
+    model_with_clips_named((0..count).map(|index| format!("Move {index}")))
+}
+
+/// The same with these names.
+pub fn model_with_clips_named(names: impl Iterator<Item = String>) -> Model {
     let joint = Joint { name: "Only".to_owned(), ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");
     let mut clips = Vec::new();
-    for index in 0..count {
-        let mut clip = ClipBuilder::new(format!("Move {index}"), &skeleton);
+    for (index, name) in names.enumerate() {
+        let mut clip = ClipBuilder::new(name, &skeleton);
         let keys = Keys::Translation(vec![glam::Vec3::ZERO, glam::Vec3::X]);
         let end_secs = 1.0 + index as f32;
         clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, end_secs], keys).expect("two keys");

@@ -7,7 +7,7 @@ use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
 use gaitway::state::Command;
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips_named, motion_bench, press, sample_bench};
 use crate::header::choose;
 
 fn scrolled_to(harness: &mut Harness<'_, Bench>, label: &str) {
@@ -79,6 +79,19 @@ fn a_new_layer_is_in_sight_and_has_the_focus() {
             }
         }
     }
+}
+
+#[test]
+fn a_long_name_leaves_the_panel_as_it_is() {
+    let names = ["short".to_owned(), "a very long name of a clip ".repeat(4)];
+    let mut harness = bench(WIDE, model_with_clips_named(names.into_iter()));
+    press(&mut harness, Tab::Motion.label());
+    let before = harness.state().viewport;
+    scrolled_to(&mut harness, text::ADD_LAYER);
+    press(&mut harness, text::ADD_LAYER);
+    assert_eq!(harness.state().state().edits.layers.len(), 1);
+    harness.run();
+    assert_eq!(harness.state().viewport.x_range(), before.x_range());
 }
 
 #[test]
