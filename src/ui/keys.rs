@@ -165,8 +165,12 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Handles keys unless a control has the keyboard, and shortcuts with modifiers unless the user is typing into a field.
+/// Handles shortcuts with modifiers and the keys of the help unless the user is typing into a field, the other keys also unless a
+/// control has the keyboard.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    // An open menu has the arrow keys and Esc, also in the frame in which Esc closes it.
+    let has_popup = egui::Popup::is_any_open(context);
+    let had_popup = std::mem::replace(&mut local.had_popup, has_popup);
     let has_modal = local.host.recording.is_some() || local.motion.is_picking();
     if has_modal || typing::is_typing(context) {
         return;
@@ -175,12 +179,12 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     // While the modal help is open, only the keys that close it work. The help has the focus.
     let modal = local.help.is_open;
     let is_taken = context.egui_wants_keyboard_input() && !local.viewport.has_focus && !modal;
-    // An open menu has the arrow keys and Esc.
-    if is_taken || egui::Popup::is_any_open(context) {
+    if had_popup || has_popup {
         return;
     }
     for line in KEY_TABLE {
-        if modal && !line.pressed.iter().any(|key| matches!(key, Key::Escape | Key::Questionmark)) {
+        let toggles_help = line.pressed.contains(&Key::Questionmark);
+        if is_taken && !toggles_help || modal && !toggles_help && !line.pressed.contains(&Key::Escape) {
             continue;
         }
         for (which, &key) in line.pressed.iter().enumerate() {

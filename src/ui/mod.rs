@@ -115,6 +115,8 @@ pub struct UiState {
     pub info_model: Option<ModelId>,
     /// While a modal is open: the control that had the focus when it opened, if any. It gets the focus back.
     focus_before_modal: Option<Option<egui::Id>>,
+    /// A menu was open at the end of the last frame.
+    had_popup: bool,
     /// The Info tab last showed the Khronos validator running; its summary then scrolls into view.
     is_validating: bool,
     lists: tabs::Lists,

@@ -4,7 +4,7 @@ use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
-use gaitway::ui::{KEY_TABLE, UiAction, text};
+use gaitway::ui::{KEY_TABLE, Tab, UiAction, text};
 
 use crate::bench::{Bench, WIDE, press, press_key, sample_bench};
 
@@ -161,6 +161,31 @@ fn the_help_takes_the_focus_and_gives_it_back() {
     assert!(is_focused(&harness, text::HELP_TITLE));
     press_key(&mut harness, Key::Escape);
     assert!(is_focused(&harness, text::MENU));
+}
+
+#[test]
+fn the_help_opens_while_a_control_has_the_focus() {
+    let mut harness = sample_bench(WIDE);
+    harness.get_by_label(text::MENU).focus();
+    harness.run();
+    for closing in [Key::Questionmark, Key::Escape] {
+        press_key(&mut harness, Key::Questionmark);
+        assert!(harness.state().panels.help.is_open);
+        press_key(&mut harness, closing);
+        assert!(!harness.state().panels.help.is_open, "{closing:?}");
+    }
+}
+
+#[test]
+fn escape_closes_a_list_and_nothing_else() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().editor.apply(Command::SelectJoint(Some(5)));
+    press(&mut harness, Tab::Display.label());
+    press(&mut harness, text::CHANNEL);
+    assert!(egui::Popup::is_any_open(&harness.ctx));
+    assert_eq!(press_key(&mut harness, Key::Escape), []);
+    assert!(!egui::Popup::is_any_open(&harness.ctx));
+    assert_eq!(press_key(&mut harness, Key::Escape), [Command::SelectJoint(None)]);
 }
 
 #[test]
