@@ -244,11 +244,21 @@ pub struct Layout {
     is_small: bool,
     /// Where the open sheet is.
     sheet_rect: Option<Rect>,
+    /// How far the user has dragged the sheet above its usual height.
+    sheet_raised: f32,
 }
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { clips_open: true, inspector_open: true, sheet: None, tab: Tab::Scene, is_small: false, sheet_rect: None }
+        Self {
+            clips_open: true,
+            inspector_open: true,
+            sheet: None,
+            tab: Tab::Scene,
+            is_small: false,
+            sheet_rect: None,
+            sheet_raised: 0.0,
+        }
     }
 }
 
@@ -339,6 +349,14 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     if !shown.state.page.embed {
         header::show(ui, &shown, local, out);
     }
+    let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
+    let side_sheet = has_sheet.then(|| sheet::side_rect(ui.available_rect_before_wrap())).flatten();
+    if let Some(rect) = side_sheet {
+        // Beside the transport, since such screens are low.
+        let place = egui::Panel::right("side sheet").frame(egui::Frame::NONE).exact_size(rect.width());
+        place.resizable(false).show_separator_line(false).show(ui, |_| ());
+        local.layout.sheet_raised = local.layout.sheet_raised.min(0.0);
+    }
     let side = if small { 6 } else { 12 };
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")
@@ -350,11 +368,11 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         side_panels(ui, &shown, local, out);
     }
     let free = ui.available_rect_before_wrap();
-    let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
-    local.layout.sheet_rect = has_sheet.then(|| sheet::rect(free));
+    let raised = &mut local.layout.sheet_raised;
+    local.layout.sheet_rect = side_sheet.or_else(|| has_sheet.then(|| sheet::bottom_rect(free, raised)));
     match local.layout.sheet_rect {
         // The viewport ends where the sheet begins, so that the character is not behind it.
-        Some(rect) if rect.left() > free.left() => free.with_max_x(rect.left() + f32::from(style::WINDOW_CORNER)),
+        Some(rect) if side_sheet.is_some() => free.with_max_x(rect.left() + f32::from(style::WINDOW_CORNER)),
         Some(rect) => free.with_max_y(rect.top() + f32::from(style::WINDOW_CORNER)),
         None => free,
     }

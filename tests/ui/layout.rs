@@ -6,7 +6,7 @@ use gaitway::retarget::ClipLayer;
 use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, motion_bench, painted, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench, drag, model_with_clips, motion_bench, painted, press, sample_bench};
 
 #[test]
 fn panels_fold_away_and_come_back() {
@@ -34,6 +34,27 @@ fn a_narrow_screen_has_sheets_one_at_a_time() {
     assert!(harness.query_by_label(text::REST_POSE).is_none());
     press(&mut harness, text::CLOSE_SHEET);
     assert_eq!(harness.state().panels.layout.sheet, None);
+}
+
+#[test]
+fn a_sheet_is_dragged_higher_and_away() {
+    let mut harness = sample_bench(NARROW);
+    press(&mut harness, text::CLIPS);
+    let usual = harness.state().viewport;
+    let grip = |harness: &Harness<'_, Bench>| harness.state().viewport.center_bottom() - egui::vec2(0.0, 4.0);
+    let from = grip(&harness);
+    drag(&mut harness, from, from + egui::vec2(0.0, -90.0), egui::PointerButton::Primary);
+    assert_eq!(harness.state().viewport, usual.with_max_y(usual.bottom() - 90.0));
+    // Not over the whole viewport.
+    let from = grip(&harness);
+    drag(&mut harness, from, from + egui::vec2(0.0, -500.0), egui::PointerButton::Primary);
+    assert!(harness.state().viewport.height() >= 56.0 && harness.state().panels.layout.sheet == Some(Sheet::Clips));
+    let from = grip(&harness);
+    let down = usual.bottom() + 60.0 - harness.state().viewport.bottom();
+    drag(&mut harness, from, from + egui::vec2(0.0, down), egui::PointerButton::Primary);
+    assert_eq!(harness.state().panels.layout.sheet, None);
+    press(&mut harness, text::CLIPS);
+    assert_eq!(harness.state().viewport, usual);
 }
 
 #[test]

@@ -14,6 +14,8 @@ use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
 const MIN_ROWS: f32 = 6.0;
+/// On a phone, those rows are no more than this share of the tab, so that a selected joint shows below them.
+const MAX_SHARE: f32 = 0.55;
 /// Share of the tab's height. Always the same, so that selecting a joint moves no row.
 const TREE_SHARE: f32 = 0.4;
 
@@ -56,7 +58,8 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    let height = (TREE_SHARE * ui.available_height()).max(MIN_ROWS * row_height(ui));
+    let room = ui.available_height();
+    let height = (TREE_SHARE * room).max((MIN_ROWS * row_height(ui)).min(MAX_SHARE * room));
     // Everything scrolls together when there is too little room for the cards.
     controls::scrolled(ui, "scene", |ui| {
         clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);

@@ -8,14 +8,23 @@ use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
 /// A sheet at the side isn't narrower, nor much wider.
 const SIDE_WIDTH: f32 = 280.0;
 
-/// The rectangle of a sheet: at the right of what the panels leave free if half of that is wide enough, else at the bottom, where
-/// it leaves a strip of the viewport visible.
-pub fn rect(free: Rect) -> Rect {
-    if free.width() > free.height() && free.width() >= 2.0 * SIDE_WIDTH {
-        return free.with_min_x(free.right() - (0.5 * free.width()).min(1.25 * SIDE_WIDTH));
-    }
-    let height = (free.height() * 0.66).max(240.0).min(free.height() - 56.0).max(0.0);
-    Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
+/// Of the viewport, a sheet at the bottom leaves at least this height.
+const MIN_VIEWPORT_HEIGHT: f32 = 56.0;
+/// Dragged down by this, a sheet closes.
+const CLOSING_DISTANCE: f32 = 48.0;
+
+/// The rectangle of a sheet at the right of what the header leaves free; `None` if half of that isn't wide enough.
+pub fn side_rect(free: Rect) -> Option<Rect> {
+    let has_room = free.width() > free.height() && free.width() >= 2.0 * SIDE_WIDTH;
+    has_room.then(|| free.with_min_x(free.right() - (0.5 * free.width()).min(1.25 * SIDE_WIDTH)))
+}
+
+/// The rectangle of a sheet at the bottom of what the panels leave free, `raised` above its usual height as far as there is room.
+pub fn bottom_rect(free: Rect, raised: &mut f32) -> Rect {
+    let max_height = (free.height() - MIN_VIEWPORT_HEIGHT).max(0.0);
+    let usual_height = (free.height() * 0.66).max(240.0).min(max_height);
+    *raised = raised.min(max_height - usual_height);
+    free.with_min_y(free.bottom() - usual_height - *raised)
 }
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -31,8 +40,13 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         ui.allocate_rect(rect, egui::Sense::click_and_drag());
         let handle = Rect::from_min_size(rect.min, vec2(rect.width() - 48.0, 24.0));
         let handle = ui.interact(handle, ui.scope_id().with("handle"), egui::Sense::drag());
-        if handle.total_drag_delta().is_some_and(|dragged| dragged.y > 48.0) {
-            local.layout.sheet = None;
+        let raised = &mut local.layout.sheet_raised;
+        *raised -= handle.drag_delta().y;
+        if handle.drag_stopped() {
+            if *raised < -CLOSING_DISTANCE {
+                local.layout.sheet = None;
+            }
+            *raised = raised.max(0.0);
         }
         let size = icon_size(ui, ICON_SIZE);
         let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + 4.0), size);
