@@ -144,8 +144,7 @@ impl App {
                     view => self.open(*contents, view.map(|view| *view)),
                 };
                 if let Err(error) = &opened {
-                    self.panels.messages.error = Some(error.clone());
-                    self.panels.messages.failed_to_open = progress.map(|progress| progress.name);
+                    self.panels.messages.fail_to_open(error, progress);
                 }
                 if let Some(reply) = reply {
                     self.answer_opened(opened, reply);
@@ -153,8 +152,8 @@ impl App {
             }
             Message::OpenFailed(error) => {
                 let progress = self.panels.messages.progress.take();
-                self.replace_error(error);
-                self.panels.messages.failed_to_open = progress.map(|progress| progress.name);
+                self.panels.messages.clear_error();
+                self.panels.messages.fail_to_open(&error, progress);
             }
             Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),

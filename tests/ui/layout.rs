@@ -298,6 +298,16 @@ fn an_error_stays_until_dismissed() {
 }
 
 #[test]
+fn a_file_that_failed_to_open_is_named_once() {
+    let mut harness = sample_bench(WIDE);
+    let progress = Progress { name: "broken.glb".to_owned(), ..Progress::default() };
+    harness.state_mut().panels.messages.fail_to_open("broken.glb: it is not a GLB file", Some(progress));
+    harness.run();
+    assert!(harness.query_by_label(&text::couldnt_open("broken.glb")).is_some());
+    assert!(harness.query_by_label("It is not a GLB file").is_some());
+}
+
+#[test]
 fn messages_begin_with_a_capital_and_files_keep_their_names() {
     let harness = bench_with_error("this is a folder, not a file\nwalk.bvh: no joints");
     assert!(harness.query_by_label("This is a folder, not a file\nwalk.bvh: no joints").is_some());

@@ -15,7 +15,7 @@ pub struct Messages {
     /// Mapping joints manually is none of them.
     pub model_lacks_skeleton: bool,
     /// The error is about opening this file.
-    pub failed_to_open: Option<String>,
+    failed_to_open: Option<String>,
     /// The load under way.
     pub progress: Option<Progress>,
     /// The latest one; a new toast replaces it.
@@ -54,6 +54,15 @@ impl Messages {
     pub fn clear_error(&mut self) {
         (self.error, self.failed_to_open) = (None, None);
         (self.motion_refused, self.model_lacks_skeleton) = (false, false);
+    }
+
+    /// Replaces the error by why a load failed. `progress` is that of the load.
+    pub fn fail_to_open(&mut self, error: &str, progress: Option<Progress>) {
+        self.failed_to_open = progress.map(|progress| progress.name).filter(|_| !self.motion_refused);
+        // The title has the name.
+        let name = self.failed_to_open.as_deref();
+        let after_name = name.and_then(|name| error.strip_prefix(name)?.strip_prefix(": "));
+        self.error = Some(after_name.unwrap_or(error).to_owned());
     }
 
     /// Shows the load under way, the error and the toast in the viewport's lower left corner.
@@ -134,8 +143,8 @@ impl Messages {
 
     fn error_title(&self) -> String {
         match &self.failed_to_open {
-            _ if self.motion_refused => text::REFUSED_TITLE.to_owned(),
             Some(name) => text::couldnt_open(name),
+            None if self.motion_refused => text::REFUSED_TITLE.to_owned(),
             None => text::ERROR_TITLE.to_owned(),
         }
     }
