@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::motions::{ClipIdentity, added_from};
 use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
+use crate::asset::{Asset, Warning};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::state::{
     ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
@@ -45,6 +46,7 @@ struct Opened {
     others: Vec<String>,
     evicted: Vec<String>,
     lacks_joints: bool,
+    missing_images: Vec<String>,
     about_motions: Option<String>,
     about_feet: Option<&'static str>,
 }
@@ -119,7 +121,7 @@ impl Editor {
         let (is_view, has_map) = (view.is_some(), map.is_some());
         let keeps_motions = !is_view && motions.as_ref().is_none_or(|motions| !motions.is_empty());
         let motions = motions.unwrap_or_default();
-        let suits_feet = is_by_hand && !is_view && !has_map && !motions.is_empty();
+        let borrows = is_by_hand && !is_view && !motions.is_empty();
         if keeps_motions {
             self.check_room(&motions)?;
         }
@@ -130,17 +132,20 @@ impl Editor {
         let Some(first) = models.next() else { return Ok(()) };
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
         let lacks_joints = is_obj(&name) && first.model.asset.skins.is_empty();
+        let missing_images = missing_images(&first.model.asset);
         let before = self.snapshot();
         let playing = before.as_ref().and_then(|before| before.playing.clone());
-        let known = self.library.models().len();
-        let id = self.add(first);
+        let (id, is_new) = self.add(first);
         if let Err(error) = self.admit(&before, admit) {
             self.library.remove(id);
             self.evict();
             return Err(error);
         }
-        let others = models.map(|other| (short_name(&other.model.source), self.add(other)));
-        let others: Vec<String> = others.map(|(name, _)| name).collect();
+        let mut others = Vec::new();
+        for other in models {
+            others.push(short_name(&other.model.source));
+            self.add(other);
+        }
         self.library.show(id);
         self.close_jointless(id);
         self.close_placeholders();
@@ -162,10 +167,11 @@ impl Editor {
             self.finish_view(is_view);
             None
         };
-        let about_feet = if suits_feet { self.suit_feet() } else { None };
+        self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
+        let about_feet = if borrows && !has_map { self.suit_feet() } else { None };
         if was_loaded && !is_view {
-            let is_new = self.library.models().len() + evicted.len() > known;
-            let opened = Opened { name, is_new, others, evicted, lacks_joints, about_motions, about_feet };
+            let opened =
+                Opened { name, is_new, others, evicted, lacks_joints, missing_images, about_motions, about_feet };
             self.notify_undoable(opened.text());
         } else if let Some(about_feet) = about_feet {
             self.notify_undoable(about_feet.to_owned());
@@ -268,8 +274,8 @@ impl Editor {
         self.history.opened(before.state, before.saved_motion, before.loaded);
     }
 
-    /// Adds a model to the library and activates it; if the same file is already loaded, activates that model.
-    fn add(&mut self, opened: OpenedModel) -> ModelId {
+    /// Adds a model to the library and activates it, or the same file's if it is already loaded. Returns whether it is new.
+    fn add(&mut self, opened: OpenedModel) -> (ModelId, bool) {
         let OpenedModel { model, files } = opened;
         let is_same = |known: &&Model| {
             let same_files = self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files);
@@ -280,11 +286,11 @@ impl Editor {
         };
         if let Some(id) = self.library.models().iter().find(is_same).map(|known| known.id) {
             self.library.show(id);
-            return id;
+            return (id, false);
         }
         let id = self.library.add(model);
         self.shelf.insert(id, Shelved { files, last_view: None });
-        id
+        (id, true)
     }
 
     /// Evicts models to make room, with everything kept about them; returns their names.
@@ -422,6 +428,14 @@ impl Editor {
     }
 }
 
+fn missing_images(asset: &Asset) -> Vec<String> {
+    let missing = |warning: &Warning| match warning {
+        Warning::ImageMissing { uri } => Some(short_name(uri)),
+        _ => None,
+    };
+    asset.warnings.iter().filter_map(missing).collect()
+}
+
 impl Opened {
     fn text(&self) -> String {
         let mut text = if self.is_new { format!("Opened {}.", self.name) } else { format!("Reopened {}.", self.name) };
@@ -435,6 +449,12 @@ impl Opened {
         }
         if self.lacks_joints {
             text += " Open its .skel and .attach as well to add its joints.";
+        }
+        match &self.missing_images[..] {
+            [] => {}
+            [image] => text += &format!(" Its image {image} is missing; drop both together."),
+            // Not how many: warnings of one kind have a limit.
+            _ => text += " Some of its images are missing; drop all files together.",
         }
         for sentence in self.about_motions.as_deref().into_iter().chain(self.about_feet) {
             text += &format!(" {sentence}");

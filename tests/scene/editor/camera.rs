@@ -133,12 +133,12 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     let opened = |contents, mut editor: Editor| {
         editor.open(contents, None, &mut any).expect("fits");
         let told = editor.take_events();
-        (editor.state().retarget.feet, told.iter().any(is_told))
+        (editor.state().retarget.feet, told.iter().any(is_told), told.contains(&Event::MotionsAdded))
     };
-    assert_eq!(opened(both(true), super::editor("sample:pilot")), (Some(Feet::Plant), true));
-    assert_eq!(opened(both(true), Editor::default()), (Some(Feet::Plant), true), "in an empty editor as well");
+    assert_eq!(opened(both(true), super::editor("sample:pilot")), (Some(Feet::Plant), true, true));
+    assert_eq!(opened(both(true), Editor::default()), (Some(Feet::Plant), true, true), "in an empty editor as well");
     // A script gets what it says.
-    assert_eq!(opened(both(false), super::editor("sample:pilot")), (None, false));
+    assert_eq!(opened(both(false), super::editor("sample:pilot")), (None, false, false));
     open(&mut editor, "sample:dwarf");
     editor.remove_motion(0);
     open(&mut editor, "sample:walk");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
-use gaitway::asset::Asset;
+use gaitway::asset::{Asset, Warning};
 use gaitway::editor::{ClipFormat, Contents, Editor, Export};
 use gaitway::files::{Held, open_view};
 use gaitway::frame::{Frame, evaluate};
@@ -147,6 +147,25 @@ fn an_unknown_clip_of_a_view_is_told() {
     assert_eq!(notices(&editor.take_events()), [""; 0]);
 }
 
+#[test]
+fn missing_images_are_told() {
+    let mut editor = editor("sample:walker");
+    let mut told = |name: &str, images: &[&str]| {
+        let mut asset = Asset::default();
+        for &uri in images {
+            asset.warnings.push(Warning::ImageMissing { uri: uri.to_owned() });
+        }
+        let model = Model::new(name.to_owned(), asset, Vec::new());
+        let contents = Contents { models: vec![model.into()], ..Contents::default() };
+        editor.open(contents, None, &mut any).expect("fits");
+        notices(&editor.take_events()).concat()
+    };
+    assert_eq!(told("a.gltf", &[]), "Opened a.gltf.");
+    assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; drop both together.");
+    let several = "Opened c.gltf. Some of its images are missing; drop all files together.";
+    assert_eq!(told("c.gltf", &["skin.png", "eyes.png"]), several);
+}
+
 /// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
 /// is opened.
 #[test]
@@ -164,7 +183,7 @@ fn an_empty_stage_awaits_a_model() {
     let mut frame = Frame::default();
     evaluate(editor.library(), editor.state(), 1.5, &mut frame);
     assert!(frame.bones.is_empty() && frame.characters[0].palette.len() <= 1, "there is nothing to see");
-    open(&mut editor, "sample:walker");
+    assert_eq!(notices(&open(&mut editor, "sample:walker")), ["Opened Walker."]);
     let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
     assert_eq!(listed, ["sample:walker"]);
     assert_eq!(editor.state().display.exposure, 1.0);
