@@ -161,7 +161,8 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
             let is_active = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let has_motion = !is_active && !model.asset.clips.is_empty() && active.has_skeleton();
+                let has_motion =
+                    !is_active && !model.asset.clips.is_empty() && [model, active].iter().all(|one| one.has_skeleton());
                 let borrow_width = if has_motion { BORROW_WIDTH + 2.0 } else { 0.0 };
                 let close_width = icon_size(ui, CLEAR_SIZE).x + 2.0;
                 let size = egui::vec2(ui.available_width() - borrow_width - close_width, row_height);

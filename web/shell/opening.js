@@ -108,7 +108,7 @@ function withCompanions(items) {
  */
 function announce(shown, model, { clips, borrowed_clips: borrowed, joints, triangles }) {
   /** @type {(count: number, noun: string) => string} */
-  const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+  const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
   const texts = {
     model: `Opened ${model}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
     motion: `Borrowed motion: ${counted(borrowed?.length ?? 0, "clip")} available.`,

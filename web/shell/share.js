@@ -97,6 +97,7 @@ function codeImage(code) {
  */
 async function copy(id, done, failed) {
   field(id).select();
+  field(id).scrollLeft = 0;
   try {
     await navigator.clipboard.writeText(field(id).value);
     byId("share-said").textContent = done;

@@ -126,7 +126,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
         .horizontal(|ui| {
             let label = ui.label("Source");
             let field = controls::text_field(&mut typed.text)
-                .hint_text("Name or number; empty: none")
+                .hint_text("Name or number, or empty")
                 .margin(egui::Margin::symmetric(8, 5))
                 .desired_width(ui.available_width());
             ui.add(field).labelled_by(label.id)
