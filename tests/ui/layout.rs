@@ -292,7 +292,7 @@ fn bench_with_error(error: &str) -> Harness<'static, Bench> {
 #[test]
 fn an_error_stays_until_dismissed() {
     let mut harness = bench_with_error("broken.glb: it is not a GLB file");
-    assert!(harness.query_by_label("broken.glb: it is not a GLB file").is_some());
+    assert!(harness.query_by_label("broken.glb: it is not a GLB file.").is_some());
     press(&mut harness, text::DISMISS_ERROR);
     assert_eq!(harness.state().panels.messages.error, None);
 }
@@ -304,13 +304,13 @@ fn a_file_that_failed_to_open_is_named_once() {
     harness.state_mut().panels.messages.fail_to_open("broken.glb: it is not a GLB file", Some(progress));
     harness.run();
     assert!(harness.query_by_label(&text::couldnt_open("broken.glb")).is_some());
-    assert!(harness.query_by_label("It is not a GLB file").is_some());
+    assert!(harness.query_by_label("It is not a GLB file.").is_some());
 }
 
 #[test]
-fn messages_begin_with_a_capital_and_files_keep_their_names() {
+fn messages_are_sentences_and_files_keep_their_names() {
     let harness = bench_with_error("this is a folder, not a file\nwalk.bvh: no joints");
-    assert!(harness.query_by_label("This is a folder, not a file\nwalk.bvh: no joints").is_some());
+    assert!(harness.query_by_label("This is a folder, not a file.\nwalk.bvh: no joints.").is_some());
 }
 
 #[test]

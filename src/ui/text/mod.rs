@@ -33,13 +33,16 @@ pub fn without_key(label: &str) -> &str {
     label.rsplit_once(" (").map_or(label, |(label, _)| label)
 }
 
-/// Returns a message that begins with a capital, unless it begins with the name of a file.
+/// Returns a message that begins with a capital, unless it begins with the name of a file, and ends with a full stop.
 pub fn sentence(message: &str) -> String {
     let first = message.split(' ').next().unwrap_or_default();
     let is_word = first.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'\'') && first != message;
     let mut message = message.to_owned();
     if let Some(letter) = message.get_mut(..1).filter(|_| is_word) {
         letter.make_ascii_uppercase();
+    }
+    if !message.ends_with(['.', '!', '?', '…', ':']) {
+        message.push('.');
     }
     message
 }
