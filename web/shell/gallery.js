@@ -34,6 +34,12 @@ export function markCard(link, isLocal) {
   for (const [index, card] of cards.entries()) card.setAttribute("aria-current", String(index === shown));
 }
 
+// Fingers can't drop files.
+if (matchMedia("(pointer: coarse)").matches) {
+  const [title, how] = byId("gallery-own").querySelectorAll("b, small");
+  if (title && how) [title.textContent, how.textContent] = ["Open your character", "Choose its files"];
+}
+
 setShown(location.hash.length < 2 && parent === window && cards.length > 0);
 
 button("gallery-close").addEventListener("click", () => setShown(false));

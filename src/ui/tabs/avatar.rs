@@ -50,10 +50,10 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
     let mut is_changed = false;
     ui.horizontal(|ui| {
-        for (coordinate, name) in [(&mut point.x, "X"), (&mut point.y, "Y"), (&mut point.z, "Z")] {
-            let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).suffix(" m");
+        for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
+            let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).prefix(name).suffix(" m");
             let field = field.update_while_editing(false);
-            is_changed |= controls::sized(ui, [80.0, 26.0], field).accessible_name(name).changed();
+            is_changed |= controls::sized(ui, [80.0, 26.0], field).accessible_name(name.trim_end()).changed();
         }
     });
     is_changed

@@ -298,7 +298,7 @@ pub const RECORD: &str = "Record one loop";
 /// Button that saves the frames of such a video as images.
 pub const RECORD_IMAGES: &str = "Save one loop as images";
 /// Title of the progress of a video, or of images, being recorded.
-pub const RECORDING: &str = "Recording one loop";
+pub const RECORDING: &str = "Rendering one loop";
 
 /// Returns a frame rate.
 pub fn frames_per_sec(rate: u32) -> String {

@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
         }
     });
     // Its switch may be out of sight, and the gizmo takes the drags that would orbit.
-    if local.joint_card.is_posing && !is_embedded {
+    if local.joint_card.is_posing && shown.state.selection.joint.is_some() && !is_embedded {
         let palette = style::palette(ui);
         let width = controls::text_width(ui, text::POSING, style::BODY) + controls::button_width(ui, text::DONE_POSING);
         let has_room = bar.available_width() >= width + ui.spacing().item_spacing.x + 12.0;
