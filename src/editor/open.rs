@@ -326,6 +326,7 @@ impl Editor {
             let id = self.find_loaded(&view).ok_or(OTHER_FILES)?;
             self.library.show(id);
             self.admit(&before, admit)?;
+            self.events.extend([Event::ViewOpened, Event::ModelOpened]);
         }
         self.remember(before);
         self.set_view(view);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
 use gaitway::asset::{Asset, Warning};
-use gaitway::editor::{ClipFormat, Contents, Editor, Export};
+use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export};
 use gaitway::files::{Held, open_view};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Model, Motion};
@@ -164,6 +164,23 @@ fn missing_images_are_told() {
     assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; drop both together.");
     let several = "Opened c.gltf. Some of its images are missing; drop all files together.";
     assert_eq!(told("c.gltf", &["skin.png", "eyes.png"]), several);
+}
+
+/// A link to a loaded model reads no files, but is presented as any other.
+#[test]
+fn a_view_of_a_loaded_model_is_announced_if_another_was_active() {
+    let mut editor = editor("sample:pilot");
+    open(&mut editor, "sample:dwarf");
+    editor.take_events();
+    let view = || Some(ViewerState::of_model("sample:pilot".to_owned()));
+    let nothing_new = || Contents { motions: Some(Vec::new()), ..Contents::default() };
+    for is_other in [true, false] {
+        editor.open(nothing_new(), view(), &mut any).expect("is loaded");
+        let events = editor.take_events();
+        assert_eq!(active(&editor), "sample:pilot");
+        let announced = [Event::ViewOpened, Event::ModelOpened].map(|event| events.contains(&event));
+        assert_eq!(announced, [is_other; 2], "{events:?}");
+    }
 }
 
 /// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
