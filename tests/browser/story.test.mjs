@@ -111,8 +111,6 @@ for (const renderer of BACK_ENDS)
       ];
       await drop(page, files);
       await whenBorrowed(page, 1);
-      // The Motion tab came forward.
-      await toggleInspector(page);
       const { map } = await state(page);
       assert.equal(map.length, 1, "a map is proposed");
       // Makes the left hand follow the right: changes two pairs of the compact form.
@@ -121,6 +119,8 @@ for (const renderer of BACK_ENDS)
       assert.notEqual(corrected, map[0]);
       await apply(page, { map: [corrected], feet: "plant", play: 0, t: 1.5, camera: "40,12,4,0,1,0", show: "grid,skeleton", exposure: 0.5 });
       assert.deepEqual((await state(page)).map, [corrected]);
+      // The Motion tab came forward.
+      await toggleInspector(page);
       const before = await shown(page);
       assert.ok(before.pose.clip);
       const link = await sharedLink(page);
@@ -151,6 +151,7 @@ for (const renderer of BACK_ENDS)
         await other.locator("#bring-later").click();
         await drop(other, files);
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
+        await toggleInspector(other);
         assertSame(await shown(other), before);
         assert.deepEqual(other.troubles, []);
       } finally {
