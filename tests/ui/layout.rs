@@ -237,6 +237,9 @@ fn posing_can_be_ended_on_any_screen() {
         let mut harness = sample_bench(size);
         harness.state_mut().panels.joint_card.is_posing = true;
         harness.run();
+        assert!(harness.query_by_label(text::DONE_POSING).is_none(), "without a joint there are no rings");
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(5)));
+        harness.run();
         let viewport = harness.state().viewport;
         for (text, _, rect) in painted(&harness) {
             if [text::POSING, text::DONE_POSING].contains(&text.as_str()) {
