@@ -297,6 +297,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          limb directions   mean error {}, max. {}\n\
          facing            mean error {}, max. {}\n\
          rotations         mean error {}, max. {}\n\
+         largest turn      {} in 1/60 s\n\
          foot slide        {} (source: {})\n\
          hover             {}\n\
          sole penetration  {}\n\
@@ -313,6 +314,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.facing_error_degrees_max, "°"),
         number(figures.orientation_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_max, "°"),
+        number(figures.largest_turn_degrees_per_frame, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.foot_hover_metres_mean, " m"),

@@ -136,6 +136,7 @@ fn retarget_reports_the_documented_keys() {
         "ground_penetration_metres_max",
         "foot_hover_metres_mean",
         "sole_penetration_metres_max",
+        "largest_turn_degrees_per_frame",
         "coverage",
     ] {
         assert!(report["figures"].get(key).is_some(), "{key}");

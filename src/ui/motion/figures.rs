@@ -105,6 +105,7 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> 
         figures.orientation_error_degrees_max,
         verdicts.orientation_error_max,
     ));
+    lines.push(figure("Largest turn in 1/60 s", degrees(figures.largest_turn_degrees_per_frame), None));
     let hint = "Measured while the source's foot is on the ground, next to the source's own slide.";
     lines.extend([
         group("FEET", hint),

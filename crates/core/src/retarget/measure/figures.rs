@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
@@ -44,6 +45,8 @@ pub struct Figures {
     pub foot_hover_metres_mean: Option<f64>,
     /// How deep the lowest point of either sole goes below the same ground, at any measured time.
     pub sole_penetration_metres_max: Option<f64>,
+    /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
+    pub largest_turn_degrees_per_frame: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -150,6 +153,11 @@ pub fn measure(
         ground_penetration_metres_max: penetration,
         foot_hover_metres_mean: contacts.hover,
         sole_penetration_metres_max: sole_penetration,
+        largest_turn_degrees_per_frame: largest_turn_degrees(
+            transfer.target_skeleton,
+            &transfer.map.pairs,
+            measured.clip,
+        ),
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)

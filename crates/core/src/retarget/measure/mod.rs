@@ -3,6 +3,7 @@
 mod figures;
 mod foot_track;
 mod stage;
+mod turn;
 mod verdict;
 
 pub use figures::{Figures, MeasuredClip, measure};
