@@ -12,9 +12,11 @@ mod people;
 
 use std::time::Instant;
 
+use gaitway::asset::Slot;
+use gaitway::mesh::{DeformedVertices, SkinningMode, deform, write_palette};
 use gaitway::anim::{Clip, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::retarget::{Contacts, Figures, ResolvedMap, Retargeting};
-use glam::{Affine3A, Vec3A};
+use glam::{Affine3A, Vec3, Vec3A};
 use people::{Loaded, load_people, planted, proposed};
 
 /// Dances and gestures: files, and the clip where it isn't the one of [`people::PEOPLE`].
@@ -39,6 +41,8 @@ const MOTIONS: [(&str, &str); 14] = [
 struct Row {
     figures: Figures,
     jerk: f64,
+    /// Independent of the solids: by winding numbers of the skinned mesh.
+    inside_mesh: Option<f64>,
     millis_per_10_secs: f64,
 }
 
@@ -57,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             person.clip = Some(clips.iter().position(|other| other.name() == *clip).ok_or(*clip)?);
         }
     }
-    println!("model\tmotion\tinside\tkept\terror\tkept\tlimbs\tkept\tslide\tkept\tjerk\tkept\tturn\tkept\tms\tkept");
+    println!("model\tmotion\tsolids\tkept\tmesh\tkept\terror\tkept\tlimbs\tkept\tslide\tkept\tjerk\tkept\tturn\tkept\tms\tkept");
     let mut rows: Vec<[Row; 2]> = Vec::new();
     let is_wanted = |pair: &str| name.is_none_or(|name| pair.contains(name.as_str()));
     for (at, (model, motion)) in people::each_pair(&people).enumerate() {
@@ -88,16 +92,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn print_row(name: &str, sides: &[[Option<f64>; 7]; 2]) {
-    let digits = [4, 4, 2, 3, 1, 1, 1];
+fn print_row(name: &str, sides: &[[Option<f64>; 8]; 2]) {
+    let digits = [4, 4, 4, 2, 3, 1, 1, 1];
     let cell = |side: usize, column: usize| {
         sides[side][column].map_or("–".to_owned(), |value| format!("{value:.0$}", digits[column]))
     };
-    let cells: Vec<String> = (0..7).flat_map(|column| [cell(0, column), cell(1, column)]).collect();
+    let cells: Vec<String> = (0..8).flat_map(|column| [cell(0, column), cell(1, column)]).collect();
     println!("{name}\t{}", cells.join("\t"));
 }
 
-fn values(row: &Row) -> [Option<f64>; 7] {
+fn values(row: &Row) -> [Option<f64>; 8] {
     let Figures {
         self_penetration_share,
         contact_error_metres_mean,
@@ -108,6 +112,7 @@ fn values(row: &Row) -> [Option<f64>; 7] {
     } = row.figures;
     [
         self_penetration_share,
+        row.inside_mesh,
         contact_error_metres_mean,
         limb_direction_error_degrees_mean,
         foot_slide_metres_per_sec,
@@ -130,7 +135,8 @@ fn row(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<Row, Box<dy
         *length = length.map(|length| 1.7 * length / height);
     }
     let jerk = 1.7 * jerk(&model.asset.skeleton, &made.clip, map) / height;
-    Ok(Row { figures, jerk, millis_per_10_secs: 10.0 * millis / f64::from(made.clip.duration_secs().max(0.1)) })
+    let inside_mesh = mesh_penetration(model, &made.clip);
+    Ok(Row { figures, jerk, inside_mesh, millis_per_10_secs: 10.0 * millis / f64::from(made.clip.duration_secs().max(0.1)) })
 }
 
 fn height(skeleton: &Skeleton) -> f64 {
@@ -159,4 +165,147 @@ fn jerk(skeleton: &Skeleton, clip: &Clip, map: &ResolvedMap) -> f64 {
     });
     let (sum, count) = jerks.fold((0.0, 0), |(sum, count), jerk| (sum + jerk, count + 1));
     sum / f64::from(count.max(1)) * 60.0_f64.powi(3)
+}
+
+/// Regions of the body, and the slots in them that are limb ends.
+const REGIONS: [(&[Slot], &[Slot]); 5] = {
+    use Slot::*;
+    [
+        (&[Hips, Spine, Chest, UpperChest, Neck, Head], &[]),
+        (&[LeftUpperArm, LeftLowerArm, LeftHand], &[LeftLowerArm, LeftHand]),
+        (&[RightUpperArm, RightLowerArm, RightHand], &[RightLowerArm, RightHand]),
+        (&[LeftUpperLeg, LeftLowerLeg, LeftFoot, LeftToes], &[LeftLowerLeg, LeftFoot, LeftToes]),
+        (&[RightUpperLeg, RightLowerLeg, RightFoot, RightToes], &[RightLowerLeg, RightFoot, RightToes]),
+    ]
+};
+
+const MAX_LIMB_POINTS: usize = 240;
+const MAX_FRAMES: usize = 40;
+
+/// The skinned mesh: triangles by region, and points of limb ends.
+struct Surface {
+    vertices: Vec<Vec3>,
+    triangles: [Vec<[usize; 3]>; 5],
+    points: Vec<(usize, usize)>,
+}
+
+impl Surface {
+    fn new(model: &Loaded) -> Self {
+        let skeleton = &model.asset.skeleton;
+        // Region, and whether it is a limb's end.
+        let part_of: Vec<Option<(usize, bool)>> = skeleton
+            .joints()
+            .map(|joint| {
+                std::iter::successors(Some(joint), |&joint| skeleton.parent(joint)).find_map(|joint| {
+                    let slot = REGIONS.iter().enumerate().find_map(|(region, (slots, ends))| {
+                        let slot = slots.iter().find(|&&slot| model.slots.joint(slot) == Some(joint))?;
+                        Some((region, ends.contains(slot)))
+                    });
+                    slot
+                })
+            })
+            .collect();
+        let mut surface = Self { vertices: Vec::new(), triangles: Default::default(), points: Vec::new() };
+        let mut count = 0;
+        for instance in &model.asset.instances {
+            let skin = instance.skin.map(|skin| &model.asset.skins[skin]);
+            for geometry in &model.asset.meshes[instance.mesh].primitives {
+                let part = |vertex: usize| {
+                    let joint = match skin {
+                        Some(skin) if !geometry.influences.is_empty() => {
+                            let strongest = geometry.influences.of_vertex(vertex).max_by(|a, b| a.1.total_cmp(&b.1));
+                            skin.joints()[usize::from(strongest.map_or(0, |(joint, _)| joint))]
+                        }
+                        _ => instance.joint,
+                    };
+                    part_of[joint.get()].filter(|_| skin.is_some() || model.slots.slot(joint).is_some())
+                };
+                let vertices = geometry.positions.len();
+                for triangle in geometry.indices.chunks_exact(3) {
+                    let triangle = [triangle[0], triangle[1], triangle[2]].map(|index| index as usize);
+                    if let Some((region, _)) = part(triangle[0]) {
+                        surface.triangles[region].push(triangle.map(|index| count + index));
+                    }
+                }
+                surface.points.extend((0..vertices).filter_map(|vertex| {
+                    let (region, _) = part(vertex).filter(|(_, is_end)| *is_end)?;
+                    Some((count + vertex, region))
+                }));
+                count += vertices;
+            }
+        }
+        let step = surface.points.len().div_ceil(MAX_LIMB_POINTS).max(1);
+        surface.points = surface.points.into_iter().step_by(step).collect();
+        surface
+    }
+
+    fn pose(&mut self, model: &Loaded, pose: &Pose) {
+        let mut world = Vec::new();
+        model_from_joint(&model.asset.skeleton, pose, Affine3A::IDENTITY, &mut world);
+        self.vertices.clear();
+        let (mut palette, mut out) = (Vec::new(), DeformedVertices::default());
+        for instance in &model.asset.instances {
+            palette.clear();
+            match instance.skin {
+                Some(skin) => write_palette(&model.asset.skins[skin], &world, SkinningMode::Linear, &mut palette),
+                None => palette.push(gaitway::mesh::palette_entry(
+                    &(world[instance.joint.get()] * instance.joint_from_mesh),
+                    SkinningMode::Linear,
+                )),
+            }
+            for geometry in &model.asset.meshes[instance.mesh].primitives {
+                deform(geometry, &[], &palette, SkinningMode::Linear, &mut out);
+                self.vertices.extend(&out.positions);
+            }
+        }
+    }
+
+    /// Whether each point is inside other regions, one bit each. Arms are tested against all others, legs against the other leg.
+    fn inside(&self) -> Vec<u8> {
+        let boxes = self.triangles.each_ref().map(|triangles| {
+            triangles.iter().flatten().fold((Vec3::MAX, Vec3::MIN), |(low, high), &vertex| {
+                (low.min(self.vertices[vertex]), high.max(self.vertices[vertex]))
+            })
+        });
+        let inside = |&(vertex, own): &(usize, usize)| {
+            let point = self.vertices[vertex];
+            (0..5).filter(|&region| region != own && (own < 3 || region >= 3)).fold(0, |bits, region| {
+                let (low, high) = boxes[region];
+                let is_near = point.cmpge(low).all() && point.cmple(high).all();
+                if is_near && self.winding(region, point).abs() > 0.5 { bits | 1 << region } else { bits }
+            })
+        };
+        self.points.iter().map(inside).collect()
+    }
+
+    fn winding(&self, region: usize, point: Vec3) -> f32 {
+        let angles = self.triangles[region].iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|vertex| self.vertices[vertex] - point);
+            let [la, lb, lc] = [a, b, c].map(Vec3::length);
+            a.dot(b.cross(c)).atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+        });
+        angles.sum::<f32>() / std::f32::consts::TAU
+    }
+}
+
+/// Share of the vertices of limb ends that are inside other regions of the body, and aren't at rest.
+fn mesh_penetration(model: &Loaded, clip: &Clip) -> Option<f64> {
+    let skeleton = &model.asset.skeleton;
+    let mut surface = Surface::new(model);
+    if surface.points.is_empty() {
+        return None;
+    }
+    let mut pose = skeleton.rest().clone();
+    surface.pose(model, &pose);
+    let at_rest = surface.inside();
+    let mut cursor = SampleCursor::default();
+    let mut count = 0;
+    for frame in 0..MAX_FRAMES {
+        pose.copy_from(skeleton.rest());
+        let time = clip.duration_secs() * (frame as f32 + 0.5) / MAX_FRAMES as f32;
+        clip.sample(skeleton, time, &mut cursor, &mut pose);
+        surface.pose(model, &pose);
+        count += surface.inside().iter().zip(&at_rest).filter(|(now, rest)| **now & !**rest != 0).count();
+    }
+    Some(count as f64 / (MAX_FRAMES * surface.points.len()) as f64)
 }

@@ -20,14 +20,12 @@ pub enum Region {
 }
 
 impl Region {
-    pub const LIMBS: [Self; 4] = [Self::LeftArm, Self::RightArm, Self::LeftLeg, Self::RightLeg];
-
-    /// Index into [`Self::LIMBS`].
-    pub fn limb(self) -> Option<usize> {
-        Self::LIMBS.iter().position(|&limb| limb == self)
+    /// 0 for the left arm, 1 for the right one.
+    pub fn arm(self) -> Option<usize> {
+        [Self::LeftArm, Self::RightArm].iter().position(|&arm| arm == self)
     }
 
-    pub fn is_leg(self) -> bool {
+    fn is_leg(self) -> bool {
         matches!(self, Self::LeftLeg | Self::RightLeg)
     }
 
@@ -46,7 +44,7 @@ struct Kind {
     /// Without a mesh: radii to the front and to the side, and how far it extends beyond its ends, as shares of the body's height.
     radii: [f64; 2],
     beyond: [f64; 2],
-    /// How far points go along with the limb's end: at the part's beginning and at its end. `None` for parts without points.
+    /// How far points move if their limb's end does: at the part's beginning and at its end. `None` for parts without points.
     levers: Option<[f64; 2]>,
 }
 
@@ -108,6 +106,7 @@ pub struct LimbPoint {
     place: Place,
     /// How far it moves if the end of its limb does, as a share.
     pub lever: f64,
+    /// Whether it is on a hand: what hands touch is kept.
     pub is_hand: bool,
 }
 
@@ -163,9 +162,8 @@ pub struct Bodies {
     pub target: Body,
     /// The region of each part.
     pub regions: Vec<Region>,
-    /// How far each part goes along with the end of its limb, on average.
+    /// How far each part moves if the end of its limb does, on average.
     pub levers: Vec<f64>,
-    pub names: Vec<String>,
     pub points: Vec<LimbPoint>,
     /// Parts that each point may touch, with how deep it is in them on the target at rest.
     pub others: Vec<Vec<(usize, f64)>>,
@@ -252,7 +250,6 @@ impl Bodies {
             target,
             regions,
             levers,
-            names: mapped.iter().map(|(kind, _)| format!("{:?}", kind.slot)).collect(),
             points,
             others,
             heights: [height, target_height],

@@ -12,7 +12,7 @@ const REACH: f64 = 0.018;
 /// A point is inside a part if it is deeper by this share of the body's height than at rest: 2 mm.
 const INSIDE: f64 = 0.0012;
 
-/// A limb point of the source that touches a part.
+/// A point on a hand of the source that touches a part.
 #[derive(Debug, Clone, Copy)]
 pub struct Touch {
     pub point: usize,
@@ -20,7 +20,7 @@ pub struct Touch {
     place: Place,
     /// From 0 to 1.
     pub weight: f64,
-    /// From the place to the point.
+    /// From the place to the point, if it is outside.
     gap: DVec3,
 }
 
@@ -61,7 +61,7 @@ impl Bodies {
                     if distance < 0.0 && self.source.has_mesh {
                         now.depths.push((index, part, -distance));
                     }
-                    if !point.is_hand || distance < -reach && self.source.has_mesh {
+                    if !point.is_hand || (distance < -reach && self.source.has_mesh) {
                         continue;
                     }
                     let near = [at.saturating_sub(1), (at + 1).min(times.len() - 1)];
@@ -74,9 +74,11 @@ impl Bodies {
                         continue;
                     }
                     let surface = self.source.surface(part, frames, place);
-                    let gap = if distance < 0.0 && !self.source.has_mesh { DVec3::ZERO } else { position - surface };
-                    let weight = smooth(1.0 - distance.abs().min(reach) / reach);
-                    let weight = if self.source.has_mesh || distance > 0.0 { weight } else { 1.0 };
+                    // Overlaps of the source's surfaces count as touching.
+                    let gap = if distance < 0.0 { DVec3::ZERO } else { position - surface };
+                    // How deep a guessed body is in itself says nothing.
+                    let apart = if self.source.has_mesh { distance.abs() } else { distance.max(0.0) };
+                    let weight = smooth(1.0 - apart / reach);
                     now.touches.push(Touch { point: index, part, place, weight, gap });
                     is_met[(point.part * parts + part) * times.len() + at] = true;
                 }
@@ -99,10 +101,30 @@ impl Bodies {
         found
     }
 
-    /// Returns how the target's point has to move relative to the part to touch it as on the source. `target_from_source` turns
-    /// and scales.
-    pub fn miss(&self, touch: &Touch, position: DVec3, target: &Frames, (turn, scale): (DQuat, f64)) -> DVec3 {
-        self.target.surface(touch.part, target, touch.place) + turn * (scale * touch.gap) - position
+    /// Contacts of hands with other parts: hand, part, how much they touch, and how the hand would have to move on the target for
+    /// the middles of both surfaces to meet as on the source. `target_from_source` turns and scales.
+    pub fn misses(
+        &self,
+        touches: &Touches,
+        point: impl Fn(usize) -> DVec3,
+        target: &Frames,
+        (turn, scale): (DQuat, f64),
+    ) -> Vec<(usize, usize, f64, DVec3)> {
+        let mut sums: Vec<(usize, usize, f64, f64, DVec3)> = Vec::new();
+        for touch in &touches.touches {
+            let hand = self.points[touch.point].part;
+            let surface = self.target.surface(touch.part, target, touch.place);
+            let miss = surface + turn * (scale * touch.gap) - point(touch.point);
+            let at = sums.iter().position(|sum| (sum.0, sum.1) == (hand, touch.part)).unwrap_or_else(|| {
+                sums.push((hand, touch.part, 0.0, 0.0, DVec3::ZERO));
+                sums.len() - 1
+            });
+            sums[at].2 = touch.weight.max(sums[at].2);
+            sums[at].3 += touch.weight;
+            sums[at].4 += touch.weight * miss;
+        }
+        sums.retain(|sum| sum.3 > 0.0);
+        sums.into_iter().map(|(hand, part, weight, sum, miss)| (hand, part, weight, miss / sum)).collect()
     }
 }
 
@@ -118,13 +140,9 @@ pub struct TouchFigures {
 impl TouchFigures {
     pub fn add(&mut self, bodies: &Bodies, touches: &Touches, target: &Frames, target_from_source: (DQuat, f64)) {
         let position = |index: usize| bodies.target.point(index, bodies.points[index].part, target);
-        for touch in &touches.touches {
-            let miss = bodies.miss(touch, position(touch.point), target, target_from_source);
-            if let Ok(_) = std::env::var("GW_DUMP") {
-                println!("DUMP {} {} {:.3} {:.3}", bodies.names[bodies.points[touch.point].part], bodies.names[touch.part], touch.weight, 1.7 * miss.length() / bodies.heights[1]);
-            }
-            self.miss += touch.weight * miss.length();
-            self.weight += touch.weight;
+        for (hand, part, weight, miss) in bodies.misses(touches, position, target, target_from_source) {
+            self.miss += weight * miss.length();
+            self.weight += weight;
         }
         let margin = INSIDE * bodies.heights[1];
         for (index, others) in bodies.others.iter().enumerate() {

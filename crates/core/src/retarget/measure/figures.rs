@@ -67,7 +67,7 @@ const FACING: [(Slot, Slot); 6] = [
     (Slot::RightHand, Slot::RightMiddleProximal),
 ];
 
-/// Contacts of the body are looked for at most this often: a bit more than 30 times per second.
+/// Contacts of the body are looked for a bit more than 30 times per second.
 const TOUCH_STEP_SECS: f32 = 0.03;
 
 /// A clip of the target to measure.
@@ -126,25 +126,9 @@ pub fn measure(
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet);
-    let bodies = bodies.filter(|bodies| bodies.target.has_mesh);
-    let mut touches = TouchFigures::default();
-    let touch_times: Vec<f32> = {
-        let last = measured.clip.duration_secs();
-        (0..=(last / TOUCH_STEP_SECS) as usize).map(|at| at as f32 * TOUCH_STEP_SECS).collect()
-    };
-    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let touches = bodies.filter(|bodies| bodies.target.has_mesh).map(|bodies| touches(transfer, bodies, measured.clip));
+    let touches = touches.unwrap_or_default();
     let mut scratches = [Scratch::default(), Scratch::default()];
-    if let Some(bodies) = bodies {
-        let mut scratch = Scratch::default();
-        let removed = removed_travel(transfer, &laws, &touch_times);
-        let source: Vec<_> =
-            touch_times.iter().map(|&time| bodies.source.frames(&transfer.source_pose(time))).collect();
-        for (&time, found) in touch_times.iter().zip(bodies.touches(&touch_times, &source)) {
-            let yaw = removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time));
-            let target = bodies.target.frames(&transfer.target_pose(measured.clip, time, &mut scratch));
-            touches.add(bodies, &found, &target, (DQuat::from_rotation_y(yaw), scale));
-        }
-    }
     for (index, &time) in times.iter().enumerate() {
         let source = transfer.source_pose(time);
         let [scratch, unplanted_scratch] = &mut scratches;
@@ -253,6 +237,24 @@ fn with_travel(
     let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
     let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
     turned + removed.horizontal(index)
+}
+
+/// Measures contacts of the body on the clip, at even steps.
+fn touches(transfer: &Transfer, bodies: &Bodies, clip: &Clip) -> TouchFigures {
+    let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
+    let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
+    let source: Vec<_> = times.iter().map(|&time| bodies.source.frames(&transfer.source_pose(time))).collect();
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, &times);
+    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let mut figures = TouchFigures::default();
+    let mut scratch = Scratch::default();
+    for (&time, touches) in times.iter().zip(bodies.touches(&times, &source)) {
+        let target = bodies.target.frames(&transfer.target_pose(clip, time, &mut scratch));
+        let yaw = removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time));
+        figures.add(bodies, &touches, &target, (DQuat::from_rotation_y(yaw), scale));
+    }
+    figures
 }
 
 fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {
