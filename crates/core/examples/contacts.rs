@@ -12,9 +12,9 @@ mod people;
 
 use std::time::Instant;
 
+use gaitway::anim::{Clip, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::asset::Slot;
 use gaitway::mesh::{DeformedVertices, SkinningMode, deform, write_palette};
-use gaitway::anim::{Clip, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::retarget::{Contacts, Figures, ResolvedMap, Retargeting};
 use glam::{Affine3A, Vec3, Vec3A};
 use people::{Loaded, load_people, planted, proposed};
@@ -49,7 +49,8 @@ struct Row {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let plant = arguments.iter().any(|argument| argument == "plant");
-    let every = arguments.iter().find_map(|argument| argument.strip_prefix("every=")?.parse::<usize>().ok()).unwrap_or(1);
+    let every =
+        arguments.iter().find_map(|argument| argument.strip_prefix("every=")?.parse::<usize>().ok()).unwrap_or(1);
     let name = arguments.iter().find(|argument| *argument != "plant" && !argument.starts_with("every="));
     let folder = data_folder::data_folder().ok_or("no test data")?;
     let mut people = load_people(&folder);
@@ -61,7 +62,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             person.clip = Some(clips.iter().position(|other| other.name() == *clip).ok_or(*clip)?);
         }
     }
-    println!("model\tmotion\tsolids\tkept\tmesh\tkept\terror\tkept\tlimbs\tkept\tslide\tkept\tjerk\tkept\tturn\tkept\tms\tkept");
+    println!(
+        "model\tmotion\tsolids\tkept\tmesh\tkept\terror\tkept\tlimbs\tkept\tslide\tkept\tjerk\tkept\tturn\tkept\tms\tkept"
+    );
     let mut rows: Vec<[Row; 2]> = Vec::new();
     let is_wanted = |pair: &str| name.is_none_or(|name| pair.contains(name.as_str()));
     for (at, (model, motion)) in people::each_pair(&people).enumerate() {
@@ -136,7 +139,12 @@ fn row(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<Row, Box<dy
     }
     let jerk = 1.7 * jerk(&model.asset.skeleton, &made.clip, map) / height;
     let inside_mesh = mesh_penetration(model, &made.clip);
-    Ok(Row { figures, jerk, inside_mesh, millis_per_10_secs: 10.0 * millis / f64::from(made.clip.duration_secs().max(0.1)) })
+    Ok(Row {
+        figures,
+        jerk,
+        inside_mesh,
+        millis_per_10_secs: 10.0 * millis / f64::from(made.clip.duration_secs().max(0.1)),
+    })
 }
 
 fn height(skeleton: &Skeleton) -> f64 {

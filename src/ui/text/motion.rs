@@ -186,6 +186,8 @@ pub const REDO_KEY: &str = "Redo (Ctrl+Y)";
 // Options
 /// Switch that plants the feet.
 pub const PLANT_FEET: &str = "Hold feet on the ground";
+/// Switch that keeps contacts of the body.
+pub const KEEP_CONTACTS: &str = "Keep contacts of the body";
 /// Option of several choices: decides by the file.
 pub const AUTOMATIC: &str = "Automatic";
 /// Option: keeps translations, scales or a part of the root motion.

@@ -92,7 +92,14 @@ impl Solver<'_> {
     }
 
     /// Adds a wish of a part, which moves with its arm by `lever`, relative to another. Two arms share it.
-    fn wish(&self, wishes: &mut [Wish; 2], [part, other]: [usize; 2], lever: f64, by: DVec3, [weight, share]: [f64; 2]) {
+    fn wish(
+        &self,
+        wishes: &mut [Wish; 2],
+        [part, other]: [usize; 2],
+        lever: f64,
+        by: DVec3,
+        [weight, share]: [f64; 2],
+    ) {
         let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.movable[arm]);
         let [own, partner] = [movable(part), movable(other)];
         let half = if own.is_some() && partner.is_some() { 0.5 } else { 1.0 };

@@ -140,7 +140,7 @@ pub struct TouchFigures {
 impl TouchFigures {
     pub fn add(&mut self, bodies: &Bodies, touches: &Touches, target: &Frames, target_from_source: (DQuat, f64)) {
         let position = |index: usize| bodies.target.point(index, bodies.points[index].part, target);
-        for (hand, part, weight, miss) in bodies.misses(touches, position, target, target_from_source) {
+        for (_, _, weight, miss) in bodies.misses(touches, position, target, target_from_source) {
             self.miss += weight * miss.length();
             self.weight += weight;
         }

@@ -81,7 +81,7 @@ pub enum Contacts {
     /// Leaves them where the retargeted rotations put them.
     #[default]
     Off,
-    /// Keeps hands where the source touches itself, and limbs out of other body parts.
+    /// Keeps hands where the source's touch its body, and arms out of other body parts.
     Keep,
 }
 
