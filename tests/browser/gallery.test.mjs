@@ -14,6 +14,7 @@ const MAX_DIFFERENCE = 4;
 const STILL = { width: 640, height: 480 };
 const DESKTOP = { width: 1280, height: 720 };
 const PHONE = { width: 390, height: 844 };
+const SIDEWAYS = { width: 844, height: 390 };
 const scenes = readScenes();
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
@@ -143,6 +144,24 @@ for (const renderer of BACK_ENDS)
       assert.equal(await gallery(page).isVisible(), true);
       await page.goBack();
       await whenModel(page, scenes[0].model);
+    });
+
+    onFirstScreen("on a phone held sideways, the samples are there only when asked for", { viewport: SIDEWAYS }, async (page) => {
+      assert.equal(await gallery(page).isVisible(), false);
+      assert.equal((await page.locator("canvas").first().boundingBox())?.height, SIDEWAYS.height);
+      await control(page, "button", "Menu").press("Enter");
+      await control(page, "button", "Samples").press("Enter");
+      await gallery(page).waitFor({ state: "visible" });
+      const cards = await gallery(page).boundingBox();
+      assert.ok(cards !== null && cards.height < SIDEWAYS.height / 4, `a single row, not ${cards?.height} of ${SIDEWAYS.height}`);
+      const last = scenes[scenes.length - 1];
+      await card(page, last.name).click();
+      await whenModel(page, last.model);
+      assert.equal(await gallery(page).isVisible(), false, "the choice closes them");
+      await resize(page, PHONE.width, PHONE.height);
+      await page.evaluate(() => document.querySelector("#gallery")?.removeAttribute("hidden"));
+      await resize(page, SIDEWAYS.width, SIDEWAYS.height);
+      await gallery(page).waitFor({ state: "hidden" });
     });
 
     onFirstScreen("what the user opens hides the gallery, by URL as well (phone)", { viewport: PHONE }, async (page) => {

@@ -1,9 +1,11 @@
 // The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page
-// and what the user opens hide them until they are asked for.
+// and what the user opens hide them until they are asked for. So does a low screen, which has no room for both.
 import { byId, button, focusCanvas } from "./dom.js";
 import { mostSimilarLink } from "./links.js";
 
 const gallery = byId("gallery");
+/** Phones held sideways: LOW_HEIGHT in src/ui/mod.rs. */
+const lowScreen = matchMedia("(max-height: 28.125rem)");
 const cards = /** @type {HTMLAnchorElement[]} */ ([...gallery.querySelectorAll("a.card")]);
 
 export function showGallery() {
@@ -40,13 +42,18 @@ if (matchMedia("(pointer: coarse)").matches) {
   if (title && how) [title.textContent, how.textContent] = ["Open your character", "Choose its files"];
 }
 
-setShown(location.hash.length < 2 && parent === window && cards.length > 0);
+setShown(location.hash.length < 2 && parent === window && cards.length > 0 && !lowScreen.matches);
 
 button("gallery-close").addEventListener("click", () => setShown(false));
+lowScreen.addEventListener("change", ({ matches }) => matches && setShown(false));
 // In the viewport, Escape acts on the selection there.
 addEventListener("keydown", ({ key, target }) => {
   if (key === "Escape" && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
 });
 // After a click the keyboard controls the viewport; after a key press the focus stays here.
 for (const card of cards)
-  card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => detail > 0 && !(ctrlKey || metaKey || shiftKey) && focusCanvas());
+  card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => {
+    if (ctrlKey || metaKey || shiftKey) return;
+    if (lowScreen.matches) setShown(false);
+    else if (detail > 0) focusCanvas();
+  });
