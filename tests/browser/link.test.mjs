@@ -8,7 +8,7 @@ import { after, before, describe, test } from "node:test";
 import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -197,6 +197,19 @@ for (const renderer of BACK_ENDS)
       // The address bar shows the same link.
       await until(page, () => location.hash.includes("t=1"));
       assert.ok(page.url().includes("motion=file:dance.bvh"), page.url());
+    });
+
+    onPage("can be copied on a phone held sideways", () => fragment([["model", site.data(XBOT)]]), async (page) => {
+      await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
+      await whenBorrowed(page, 1);
+      await resize(page, 844, 390);
+      await share(page);
+      const isCovered = () => {
+        const button = /** @type {HTMLElement} */ (document.querySelector("#share-copy"));
+        const { left, top, bottom } = button.getBoundingClientRect();
+        return [top + 1, bottom - 1].some((y) => document.elementFromPoint(left + 9, y) !== button);
+      };
+      assert.equal(await page.evaluate(isCovered), false, "all of the button should be in sight");
     });
 
     onPage("says when a link is too long for a QR code", () => `model=sample:walker&whatever=${"x".repeat(3000)}`, async (page) => {
