@@ -131,7 +131,7 @@ impl Editor {
         let mut models = models.into_iter();
         let Some(first) = models.next() else { return Ok(()) };
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
-        let lacks_joints = is_obj(&name) && first.model.asset.skins.is_empty();
+        let lacks_joints = is_jointless_obj(&name, &first.model.asset);
         let missing_images = missing_images(&first.model.asset);
         let before = self.snapshot();
         let playing = before.as_ref().and_then(|before| before.playing.clone());
@@ -147,7 +147,7 @@ impl Editor {
             self.add(other);
         }
         self.library.show(id);
-        self.close_jointless(id);
+        self.close_incomplete(id);
         self.close_placeholders();
         let was_loaded = before.is_some();
         self.remember(before);
@@ -225,14 +225,14 @@ impl Editor {
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 
-    /// Closes the jointless model of an .obj once it has been opened again with its joints.
-    fn close_jointless(&mut self, id: ModelId) {
-        let Some(complete) = self.library.get(id).filter(|model| !model.asset.skins.is_empty()) else { return };
-        let is_jointless = |known: &&Model| {
-            let is_same = known.source == complete.source && known.is_own == complete.is_own;
-            is_same && is_obj(&known.source) && known.asset.skins.is_empty()
+    /// Closes a model that lacked files once it has been opened again with them.
+    fn close_incomplete(&mut self, id: ModelId) {
+        let Some(complete) = self.library.get(id) else { return };
+        let (source, is_own, lacks) = (&complete.source, complete.is_own, lacking(&complete.source, &complete.asset));
+        let is_incomplete = |known: &&Model| {
+            known.source == *source && known.is_own == is_own && lacking(&known.source, &known.asset) > lacks
         };
-        if let Some(id) = self.library.models().iter().find(is_jointless).map(|known| known.id) {
+        if let Some(id) = self.library.models().iter().find(is_incomplete).map(|known| known.id) {
             self.library.close(id);
         }
     }
@@ -427,6 +427,15 @@ impl Editor {
         (self.needs_redraw, self.is_changed) = (true, true);
         self.open_models(vec![model.into()], companions, admit)
     }
+}
+
+/// Number of images that a model lacks; the joints of an .obj count as one more.
+fn lacking(source: &str, asset: &Asset) -> usize {
+    missing_images(asset).len() + usize::from(is_jointless_obj(source, asset))
+}
+
+fn is_jointless_obj(source: &str, asset: &Asset) -> bool {
+    is_obj(source) && asset.skins.is_empty()
 }
 
 fn missing_images(asset: &Asset) -> Vec<String> {

@@ -4,7 +4,8 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { loadScene } from "../three/scene.mjs";
-import { BACK_ENDS, VIEWPORT, apply, colorsOf, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, resize, startSite, state, stats, until, untilStill, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
+import { triangle } from "../three/triangle.mjs";
+import { BACK_ENDS, VIEWPORT, apply, colorsOf, controls, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, resize, startSite, state, stats, until, untilStill, whenModel, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -13,6 +14,9 @@ const CESIUM_MAN_VERTICES = 3273;
 /** Display frames in an idle second. */
 const IDLE_FRAMES = 60;
 const CENTER = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
+
+/** A PNG of one pixel. */
+const PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 
 /** A code point that no font has. */
 const UNASSIGNED = "\u0378";
@@ -233,6 +237,29 @@ for (const renderer of BACK_ENDS) {
       await apply(page, { play: 0 });
       assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
     });
+
+    for (const order of ["a .gltf, then its files", "files, then their .gltf"])
+      onPage(`puts ${order} together`, {}, async (page) => {
+        const { bytes, document: plain } = triangle({ uri: "body.bin" });
+        const textured = { ...plain, images: [{ uri: "skin.png" }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
+        const gltf = { name: "own.gltf", text: JSON.stringify(textured) };
+        const files = [
+          { name: "body.bin", url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
+          { name: "skin.png", url: `data:image/png;base64,${PIXEL}` },
+        ];
+        const isFirst = order.startsWith("a .gltf");
+        /** @type {(name: string) => Promise<unknown>} */
+        const whenLacking = (name) => until(page, (name) => document.querySelector("#problem")?.textContent?.includes(name) === true, name);
+        const [first, second, third] = isFirst ? [gltf, ...files] : [...files, gltf];
+        await drop(page, [first]);
+        await whenLacking("body.bin");
+        await drop(page, [second]);
+        // Without its image, it is shown.
+        await (isFirst ? whenModel(page, "own.gltf") : whenLacking("skin.png"));
+        await drop(page, [third]);
+        await until(page, () => /^Opened own\.gltf: /.test(document.querySelector("#news")?.textContent ?? "") && document.querySelector("#problem")?.textContent === "");
+        await eventually(async () => (await controls(page, "button", "Close own.gltf").count()) === 1, "it replaces the one without its image");
+      });
 
     onPage("shows the next model without the weights of the previous model's joint", { data: true }, async (page) => {
       await apply(page, { joint: 5, show: "grid,weights" });

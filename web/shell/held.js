@@ -126,7 +126,7 @@ export const shareableLink = (link) => publicLink(link, localFiles(link).map(({ 
  * @type {Record<string, { words: string, extension: RegExp }>}
  */
 const COMPANIONS = {
-  gltf: { words: "its .bin and images", extension: /\.(bin|png|jpe?g|webp)$/i },
+  gltf: { words: "its .bin and images", extension: /\.(bin|png|jpe?g|webp|avif|ktx2)$/i },
   obj: { words: "its .skel and .attach", extension: /\.(skel|attach|mtl|png|jpe?g)$/i },
 };
 
@@ -135,6 +135,15 @@ const COMPANIONS = {
  * @param {string} name
  */
 export const companionWords = (name) => COMPANIONS[extensionOf(name)]?.words;
+
+/** @param {Item} item */
+export const isGltf = (item) => extensionOf(fileName(nameOf(item))) === "gltf";
+
+/**
+ * Whether a .gltf may refer to it, and it can't be opened by itself.
+ * @param {Item} item
+ */
+export const isPartOfGltf = (item) => COMPANIONS.gltf.extension.test(fileName(nameOf(item)));
 
 /**
  * Returns the names of the companions that were opened together with a file.

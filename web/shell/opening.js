@@ -1,10 +1,10 @@
-// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits
-// for complete it.
+// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. The files of a model may come
+// one after the other. Files that a link waits for complete it.
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
-import { coded } from "./errors.js";
-import { extensionOf, fileName, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
+import { codeOf, coded } from "./errors.js";
+import { extensionOf, fileName, heldItems, heldMotionsAndLight, isGltf, isPartOfGltf, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
@@ -18,6 +18,12 @@ import { running } from "./session.js";
 /** @typedef {import("./types.d.ts").Role} Role */
 
 /**
+ * What was opened last, if it is a .gltf without all of its files, or such files without their .gltf.
+ * @type {Item[]}
+ */
+let incomplete = [];
+
+/**
  * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
  * one learns nothing. `isByHand`: the user opens them, not a script.
  * @param {Openable | Openable[] | FileList} items
@@ -29,14 +35,18 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   await running();
   try {
     const { shown, document } = await load(wanted, as, isPrivate, isByHand);
+    const lacksImages = shown === "model" && wanted.some(isGltf) && document.warnings.some(({ code }) => code === "image-missing");
+    incomplete = lacksImages ? wanted : [];
     forgetProblem();
     await completeLink(wanted, true);
     // In place of the app's notice, which says less.
     announce(shown, summarize(), document);
     return document;
   } catch (error) {
-    // A motion may have arrived before its model.
-    await completeLink(wanted, false);
+    const lacksFiles = wanted.some(isGltf) && codeOf(error) === "not-found";
+    incomplete = lacksFiles || wanted.every(isPartOfGltf) ? wanted : [];
+    // A motion may have arrived before its model. What is incomplete can't complete a link yet.
+    if (incomplete.length === 0) await completeLink(wanted, false);
     throw error;
   }
 }
@@ -87,19 +97,28 @@ function toItems(items) {
 const isNamedFile = (item) => item !== null && typeof item === "object" && "name" in item && typeof item.name === "string" && "content" in item && item.content instanceof Blob;
 
 /**
- * Adds what was opened before to a .skel or .attach that comes after its .obj.
+ * Adds what was opened before to a .skel or .attach that comes after its .obj, and to the files of a .gltf, whichever of them
+ * comes first.
  * @param {Item[]} items
  * @returns {Item[]}
  */
 function withCompanions(items) {
-  if (items.length === 0 || !items.every((item) => ["skel", "attach"].includes(extensionOf(nameOf(item))))) return items;
+  if (items.length === 0) return items;
+  if (items.every(isPartOfGltf) || (items.some(isGltf) && incomplete.every(isPartOfGltf))) return joined(incomplete, items);
+  if (!items.every((item) => ["skel", "attach"].includes(extensionOf(nameOf(item))))) return items;
   const stem = nameOf(items[0]).replace(/\.[^.]*$/, "");
   const mesh = setWith(`${stem}.obj`);
   if (mesh === undefined) return items;
   const others = ["skel", "attach"].map((extension) => itemNamed(`${stem}.${extension}`)).filter((item) => item !== undefined);
-  const all = [...mesh, ...others, ...items];
-  return [...new Map(all.map((item) => [nameOf(item), item])).values()];
+  return joined([...mesh, ...others], items);
 }
+
+/**
+ * Returns the items of both lists, the later ones of the same name.
+ * @param {Item[]} before
+ * @param {Item[]} items
+ */
+const joined = (before, items) => (before.length === 0 ? items : [...new Map([...before, ...items].map((item) => [nameOf(item), item])).values()]);
 
 /**
  * @param {"model" | "motion" | "light" | "map"} shown

@@ -164,6 +164,12 @@ fn missing_images_are_told() {
     assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; drop both together.");
     let several = "Opened c.gltf. Some of its images are missing; drop all files together.";
     assert_eq!(told("c.gltf", &["skin.png", "eyes.png"]), several);
+    // Opened again with more of them, it takes the place of the one without.
+    told("c.gltf", &["eyes.png"]);
+    told("c.gltf", &[]);
+    told("c.gltf", &["eyes.png"]);
+    let names: Vec<&str> = editor.library().models().iter().map(|model| &*model.source).collect();
+    assert_eq!(names, ["sample:walker", "a.gltf", "b.gltf", "c.gltf", "c.gltf"], "a worse one replaces nothing");
 }
 
 /// A link to a loaded model reads no files, but is presented as any other.
