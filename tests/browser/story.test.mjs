@@ -160,14 +160,23 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    onPage("somebody who opens something else isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
+    onPage("somebody who opens something else is told what the link asks for, but isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
       await whenAsked(page);
       await page.locator("#bring-later").click();
       assert.equal((await state(page)).exposure, 1, "what doesn't depend on the model is applied");
+      const problem = (/** @type {string} */ text) => until(page, (text) => document.querySelector("#problem")?.textContent?.includes(text) === true, text);
+      await drop(page, [{ name: "scene.blend", text: "BLENDER" }]);
+      await whenAsked(page);
+      assert.equal(await page.locator("#bring-others").innerText(), "Brought instead: scene.blend.");
+      await page.locator("#bring-later").click();
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenShown(page, FOX_VERTICES);
+      await problem("The link asks for Soldier.glb (model), not for Fox.glb. Drop that file to see the shared view.");
+      assert.equal(await page.locator("#bring").isVisible(), false);
+      await apply(page, { exposure: 0.5 });
       await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
       await whenModel(page, "Soldier.glb");
+      await until(page, async () => (await window.gaitway.state()).exposure === 1);
       await until(page, () => location.hash.includes("Soldier.glb"));
       assert.equal(await page.locator("#bring").isVisible(), false);
     });

@@ -16,6 +16,7 @@ import { panel } from "./panels.js";
  * @property {LinkedFile[]} wanted The files that it waits for.
  * @property {LinkedFile[]} missing Those that the page asks for.
  * @property {Item[][]} sets The sets of files that have arrived meanwhile.
+ * @property {boolean} [isPassedOver] Something else was opened instead.
  */
 
 /** @type {Awaited | null} */
@@ -51,8 +52,11 @@ export function awaitCopies(link, names) {
 /** @param {string} link */
 const filesToBring = (link) => linkedFiles(link).filter(({ isToBring }) => isToBring);
 
-/** Asks for the files that are missing. */
-export function showAwaited() {
+/**
+ * Asks for the files that are missing.
+ * @param {string} [others] Names of files that were brought instead.
+ */
+export function showAwaited(others) {
   if (current === null || current.missing.length === 0 || panel() !== null || dialog("bring").open) return;
   dialog("bring").returnValue = "";
   const lines = current.missing.map(({ role, name }) => {
@@ -60,6 +64,8 @@ export function showAwaited() {
     return `${name} (${role})${companions === undefined ? "" : `, with ${companions}`}`;
   });
   showList("bring-files", lines);
+  byId("bring-others").hidden = others === undefined;
+  byId("bring-others").textContent = `Brought instead: ${others}.`;
   // They were open in this entry of the history before the page was reloaded.
   const isOwn = history.state?.own === true;
   byId("bring-again").hidden = !isOwn;

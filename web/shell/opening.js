@@ -10,12 +10,15 @@ import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
-import { running } from "./session.js";
+import { refuse, running } from "./session.js";
 
 /** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").Openable} Openable */
 /** @typedef {import("./types.d.ts").Role} Role */
+
+/** Files that a message names. */
+const MAX_NAMES = 4;
 
 /**
  * What was opened last, if it is a .gltf without all of its files, or such files without their .gltf.
@@ -155,13 +158,33 @@ async function completeLink(items, isShown) {
   });
   const missing = found.filter(({ item }) => item === undefined);
   if (missing.length > 0) {
-    // The user opened something else instead and wants to see that.
-    if (isShown && !found.some(({ set }) => set === items)) return forgetAwaited();
+    const isOther = !found.some(({ set }) => set === items);
+    if (isShown && isOther) return passOver(waiting, items);
     waiting.missing = missing.map(({ file }) => file);
-    return showAwaited();
+    return showAwaited(isOther ? namesOf(items) : undefined);
   }
   const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
   const complete = linkWithFiles(marked, names);
   forgetAwaited();
   await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotionsAndLight(complete) });
 }
+
+/**
+ * Something else was opened instead of what a link waits for, on purpose or by mistake: says so, and waits on without asking,
+ * but not longer than until the next file.
+ * @param {import("./awaited.js").Awaited} waiting
+ * @param {Item[]} items
+ */
+function passOver(waiting, items) {
+  // Copies of files that couldn't be loaded are accepted, not asked for.
+  if (waiting.isPassedOver || waiting.missing.length === 0) return forgetAwaited();
+  waiting.isPassedOver = true;
+  const wanted = listOf(waiting.missing.map(({ role, name }) => `${name} (${role})`));
+  refuse(`The link asks for ${wanted}, not for ${namesOf(items)}. Drop ${waiting.missing.length === 1 ? "that file" : "those files"} to see the shared view.`);
+}
+
+/** @param {Item[]} items */
+const namesOf = (items) => listOf(items.map((item) => fileName(nameOf(item))));
+
+/** @param {string[]} names */
+const listOf = (names) => (names.length > MAX_NAMES ? [...names.slice(0, MAX_NAMES), `${names.length - MAX_NAMES} more`] : names).join(", ");
