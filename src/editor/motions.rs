@@ -212,6 +212,15 @@ impl Editor {
         }
     }
 
+    /// Returns the sentence about the retargeted clip that a model plays when it is shown for the first time: the user may have
+    /// expected its own.
+    pub(super) fn about_continued_clip(&self) -> Option<String> {
+        let (model, clip) = (self.library.active()?, self.retargeted_clip()?);
+        let motion = self.library.motions().iter().find(|motion| clip.is_of(motion))?;
+        let own = if model.asset.clips.is_empty() { "" } else { "; its own clips are in the clip list" };
+        Some(format!("It plays the motion borrowed from {}{own}.", short_name(&motion.source)))
+    }
+
     fn find_retargeted(&self, wanted: &ClipIdentity) -> Option<ClipChoice> {
         let model = self.library.active()?;
         let is_wanted = |borrowed: &BorrowedClip| {

@@ -212,16 +212,17 @@ impl Editor {
             self.report(problems);
         }
         let dropped = self.drop_incompatible_motions();
-        if new.is_empty() {
+        let about_clip = if new.is_empty() {
             self.choose_retargeted(playing);
-            return dropped;
-        }
-        let problems = self.add_motions(new.clone(), map);
-        self.report(problems);
-        self.choose_retargeted(new.first().map(ClipIdentity::first_of));
-        let clips = self.clips_of_last(new.len());
-        let sentences = [(clips > 0).then(|| added_from(clips, &new)), dropped];
-        let sentences: Vec<String> = sentences.into_iter().flatten().collect();
+            self.about_continued_clip()
+        } else {
+            let problems = self.add_motions(new.clone(), map);
+            self.report(problems);
+            self.choose_retargeted(new.first().map(ClipIdentity::first_of));
+            let clips = self.clips_of_last(new.len());
+            (clips > 0).then(|| added_from(clips, &new))
+        };
+        let sentences: Vec<String> = [about_clip, dropped].into_iter().flatten().collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 
@@ -374,13 +375,19 @@ impl Editor {
         self.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
         self.library.set_motions(motions);
         self.retarget();
-        if let Some(dropped) = self.drop_incompatible_motions() {
-            self.notify(dropped);
-        }
+        let dropped = self.drop_incompatible_motions();
+        let mut about_clip = None;
         match playing {
-            playing if is_first_time => self.choose_retargeted(playing),
+            playing if is_first_time => {
+                self.choose_retargeted(playing);
+                about_clip = self.about_continued_clip();
+            }
             Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
             _ => {}
+        }
+        let sentences: Vec<String> = [about_clip, dropped].into_iter().flatten().collect();
+        if !sentences.is_empty() {
+            self.notify(sentences.join(" "));
         }
         self.suit_automatic_follow();
         (self.needs_redraw, self.is_changed) = (true, true);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gaitway::asset::{Asset, AssetParts};
-use gaitway::editor::{Editor, Event};
+use gaitway::editor::{Contents, Editor, Event};
 use gaitway::library::{Library, Model};
 use gaitway::state::{ViewerState, active_clip};
 use glam::Vec3;
@@ -61,6 +61,36 @@ fn a_model_with_motions_keeps_the_loaded_ones() {
     let [text] = notices(&events)[..] else { panic!("{events:?}") };
     assert!(text.ends_with("Removed motions dance.glb, other.glb: they don't fit this model."), "{text}");
     assert!(events.iter().any(|event| matches!(event, Event::Problem(text) if text.starts_with("third.glb: "))));
+}
+
+#[test]
+fn a_new_model_that_plays_a_borrowed_motion_says_so() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "folder/dance.glb");
+    let own = "Opened Walker. It plays the motion borrowed from dance.glb; its own clips are in the clip list.";
+    assert_eq!(notices(&open(&mut editor, "sample:walker")), [own]);
+    let bare = Contents {
+        models: vec![Model::new("bare.glb".to_owned(), without_clips("sample:pilot"), Vec::new()).into()],
+        ..Contents::default()
+    };
+    editor.open(bare, None, &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), ["Opened bare.glb. It plays the motion borrowed from dance.glb."]);
+    // So does one of several that is shown for the first time.
+    let mut several = contents(&["sample:walker", "sample:mannequin"]);
+    several.motions = None;
+    editor.open(several, None, &mut any).expect("fits");
+    editor.take_events();
+    editor.activate(id_of(&editor, "sample:mannequin"), &mut any).expect("fits");
+    let events = editor.take_events();
+    let [text] = notices(&events)[..] else { panic!("{events:?}") };
+    assert!(text.starts_with("It plays the motion borrowed from dance.glb"), "{text}");
+}
+
+/// Returns the asset of a sample without its clips.
+fn without_clips(sample: &str) -> Asset {
+    let opened = contents(&[sample]).models.remove(0);
+    let asset = Arc::into_inner(opened.model.asset).expect("of one model");
+    Asset::new(AssetParts { clips: Vec::new(), ..asset.into_parts() }).expect("indices in range")
 }
 
 #[test]
