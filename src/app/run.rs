@@ -409,6 +409,7 @@ impl eframe::App for App {
         self.panels.host.has_gltf = self.editor.has_gltf();
         self.expire_toast();
         self.update_motions();
+        self.panels.host.has_planted_feet = self.editor.has_planted_feet();
         self.update_drawn();
         let mut output = std::mem::take(&mut self.output);
         let (has_input, rect, slot) = self.lay_out(ui, &mut output);

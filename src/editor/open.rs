@@ -182,7 +182,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.view_with_reduced_motion(view);
-        (self.held_camera, self.suits_follow) = (None, false);
+        (self.held_camera, self.suits_follow, self.suits_feet) = (None, false, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 

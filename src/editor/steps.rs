@@ -16,14 +16,14 @@ impl Editor {
         self.history.can_redo()
     }
 
-    /// Whether the next undo takes back an edit of a joint map or of how motions are retargeted.
+    /// Whether the next undo takes back the user's edit of a joint map or of how motions are retargeted.
     pub fn can_undo_retargeting(&self) -> bool {
-        self.history.would_undo_retargeting(&self.state)
+        self.history.would_undo_retargeting(&self.state) && !self.history.would_undo_automatic()
     }
 
     /// Whether the next redo repeats such an edit.
     pub fn can_redo_retargeting(&self) -> bool {
-        self.history.would_redo_retargeting(&self.state)
+        self.history.would_redo_retargeting(&self.state) && !self.history.would_redo_automatic()
     }
 
     /// Number of steps that can be undone.
@@ -49,7 +49,7 @@ impl Editor {
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
-        let view = if self.can_undo_retargeting() { self.automatic_view() } else { None };
+        let view = if self.history.would_undo_retargeting(&self.state) { self.automatic_view() } else { None };
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Redo");
@@ -61,7 +61,7 @@ impl Editor {
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
-        let view = if self.can_redo_retargeting() { self.automatic_view() } else { None };
+        let view = if self.history.would_redo_retargeting(&self.state) { self.automatic_view() } else { None };
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Undo");

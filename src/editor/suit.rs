@@ -29,6 +29,11 @@ impl Editor {
         }
     }
 
+    /// Whether feet are held on the ground because of [`Editor::suit_feet`].
+    pub fn has_planted_feet(&self) -> bool {
+        self.suits_feet && self.state.retarget.feet == Some(Feet::Plant)
+    }
+
     /// Holds the feet on the ground if the borrowed clip that plays slides or hovers more than is acceptable, in a step of its own.
     /// Returns what to tell the user about it.
     pub(super) fn suit_feet(&mut self) -> Option<&'static str> {
@@ -42,6 +47,8 @@ impl Editor {
         self.end_gesture();
         self.apply(Command::SetFeet(Some(Feet::Plant)));
         self.end_gesture();
+        self.history.mark_automatic();
+        self.suits_feet = true;
         Some("The feet would slide or hover, so they are held on the ground. Undo turns this off.")
     }
 }

@@ -26,8 +26,8 @@ struct Gesture {
 
 #[derive(Debug)]
 enum Step {
-    /// Restores edits alone.
-    Edits(ViewerState),
+    /// Restores edits alone, which the user has made unless `is_automatic`.
+    Edits { before: ViewerState, is_automatic: bool },
     /// Restores what was loaded, with its whole view.
     View(ViewerState, SavedMotion, Loaded),
     /// Restores the list of models.
@@ -51,15 +51,22 @@ impl History {
         if before.undoable() != state.undoable() {
             let gesture = Some(Gesture { kind, has_ended: false, presses: 0 });
             if self.gesture != gesture {
-                self.push(Step::Edits(before));
+                self.push(Step::Edits { before, is_automatic: false });
             }
             self.future.clear();
             self.gesture = gesture;
             let is_back =
-                |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
+                |step: &mut Step| matches!(step, Step::Edits { before, .. } if before.undoable() == state.undoable());
             if self.past.pop_if(is_back).is_some() {
                 self.gesture = None;
             }
+        }
+    }
+
+    /// The last step was not the user's own.
+    pub fn mark_automatic(&mut self) {
+        if let Some(Step::Edits { is_automatic, .. }) = self.past.last_mut() {
+            *is_automatic = true;
         }
     }
 
@@ -140,6 +147,16 @@ impl History {
         self.future.last().is_some_and(|step| step.is_of_retargeting(state))
     }
 
+    /// Whether the last step was not the user's own.
+    pub fn would_undo_automatic(&self) -> bool {
+        self.past.last().is_some_and(Step::is_automatic)
+    }
+
+    /// Whether the last undone step was not.
+    pub fn would_redo_automatic(&self) -> bool {
+        self.future.last().is_some_and(Step::is_automatic)
+    }
+
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> bool {
         self.gesture = None;
@@ -160,19 +177,23 @@ impl History {
 impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
-        matches!(self, Self::Edits(before)
+        matches!(self, Self::Edits { before, .. }
             if before.retarget != state.retarget
                 || before.edits.clips != state.edits.clips
                 || before.edits.layers != state.edits.layers)
     }
 
+    fn is_automatic(&self) -> bool {
+        matches!(self, Self::Edits { is_automatic: true, .. })
+    }
+
     /// Restores what the step holds; returns the step in the opposite direction.
     fn take(self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> Self {
         match self {
-            Self::Edits(edits) => {
+            Self::Edits { before: edits, is_automatic } => {
                 let before = state.clone();
                 restore_edits(state, library.active(), &edits);
-                Self::Edits(before)
+                Self::Edits { before, is_automatic }
             }
             Self::View(view, view_motion, loaded) => {
                 let before = Self::View(state.clone(), *saved_motion, library.loaded());

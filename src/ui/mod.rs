@@ -139,10 +139,12 @@ pub struct HostState {
     pub can_undo: bool,
     /// There is an undone step to redo.
     pub can_redo: bool,
-    /// The next undo takes back an edit of a joint map or of how motions are retargeted.
+    /// The next undo takes back the user's edit of a joint map or of how motions are retargeted.
     pub can_undo_retargeting: bool,
     /// The next redo repeats such an edit.
     pub can_redo_retargeting: bool,
+    /// The feet are held on the ground because a borrowed clip needs it, not because the user has said so.
+    pub has_planted_feet: bool,
     /// Counts for the last image, and frame times.
     pub drawn: Drawn,
     /// GPU memory of the shown models in bytes: geometry and images.

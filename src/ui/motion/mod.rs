@@ -233,11 +233,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let place = ("motion", part);
     if ui.available_height() >= ROOMY_HEIGHT {
         head(ui, &pairing, map, &contents, local, out);
-        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, map, &contents, &mut local.motion, out));
+        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, &contents, local, out));
     } else {
         controls::scrolled(ui, place, |ui| {
             head(ui, &pairing, map, &contents, local, out);
-            body(ui, shown, &pairing, map, &contents, &mut local.motion, out);
+            body(ui, shown, &pairing, &contents, local, out);
         });
     }
 }
@@ -275,14 +275,14 @@ fn body(
     ui: &mut Ui,
     shown: &Shown<'_>,
     pairing: &Pairing<'_>,
-    map: &JointMap,
     contents: &Rc<Contents>,
-    tab: &mut MotionTab,
+    local: &mut UiState,
     out: &mut Output,
 ) {
+    let (map, tab) = (pairing.map, &mut local.motion);
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Section::Options => options::show(ui, shown, pairing, map, contents, out),
+        Section::Options => options::show(ui, shown, pairing, map, contents, &local.host, out),
         Section::Clip => clip(ui, shown, out),
         Section::Figures => figures::show(ui, shown, pairing, contents, tab),
         Section::Files => options::files(ui, shown, pairing, out),

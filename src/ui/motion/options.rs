@@ -9,7 +9,7 @@ use crate::editor::{ClipFormat, Export, is_derived};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
-use crate::ui::{Output, Saved, Shown, UiAction, style, text};
+use crate::ui::{HostState, Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
@@ -22,6 +22,7 @@ pub(super) fn show(
     pairing: &Pairing<'_>,
     map: &JointMap,
     contents: &Contents,
+    host: &HostState,
     out: &mut Output,
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
@@ -30,6 +31,9 @@ pub(super) fn show(
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, text::PLANT_FEET, planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
+    }
+    if host.has_planted_feet {
+        controls::hint(ui, text::PLANTED_AUTOMATICALLY);
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
 

@@ -115,6 +115,20 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
         |event: &Event| matches!(event, Event::Notice { text, undoable: true } if text.contains("held on the ground"));
     assert!(told.iter().any(is_told), "{told:?}");
     assert_eq!(editor.state().camera, CameraChoice::Auto, "it frames the clip as it is now");
+    let is_edit = |editor: &Editor| (editor.can_undo_retargeting(), editor.can_redo_retargeting());
+    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (true, (false, false)), "not the user's edit");
+    assert!(editor.undo());
+    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (false, (false, false)));
+    editor.redo();
+    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (true, (false, false)));
+    for feet in [Feet::Off, Feet::Plant] {
+        editor.apply(Command::SetFeet(Some(feet)));
+        editor.end_gesture();
+        assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (false, (true, false)), "now it is: {feet:?}");
+    }
+    editor.undo();
+    assert!(editor.can_redo_retargeting());
+    editor.undo();
     assert!(editor.undo());
     assert_eq!((editor.state().retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
     assert!(editor.undo());

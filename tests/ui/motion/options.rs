@@ -3,6 +3,8 @@
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{ClipBuilder, Interpolation, Keys, Transform};
 use gaitway::asset::{Asset, AssetParts};
+use gaitway::editor::Contents;
+use gaitway::files::{Role, read_paths};
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{ClipRef, Feet, Keep, RestChoice, RootOptions, RootPart, Unmapped};
 use gaitway::samples;
@@ -11,7 +13,7 @@ use gaitway::ui::{Tab, text};
 use glam::{Quat, Vec3};
 
 use super::{edit, map, motion_tab, press_row, reach, says};
-use crate::bench::{WIDE, bench_of, drag, press};
+use crate::bench::{WIDE, bench_of, drag, press, sample_bench};
 use crate::skeletons;
 
 #[test]
@@ -33,6 +35,25 @@ fn options_set_root_motion_foot_planting_and_rest_poses() {
     press(&mut harness, text::rest_choice(RestChoice::Bind));
     let now = map(&harness, 0);
     assert_eq!((now.rest.model, now.root, now.feet), (RestChoice::Bind, root, Feet::Plant));
+}
+
+#[test]
+fn feet_that_were_planted_automatically_are_marked_as_such() {
+    let mut harness = sample_bench(WIDE);
+    let walk = read_paths(&["sample:walk".into()], Role::Any).expect("a sample");
+    let dwarf = read_paths(&["sample:dwarf".into()], Role::Any).expect("a sample");
+    for contents in [dwarf, walk] {
+        let contents = Contents { is_by_hand: true, ..contents };
+        harness.state_mut().editor.open(contents, None, &mut |_| Ok(())).expect("fits");
+    }
+    harness.run();
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    assert!(harness.query_by_label(text::PLANTED_AUTOMATICALLY).is_some());
+    for feet in [Feet::Off, Feet::Plant] {
+        assert_eq!(press(&mut harness, text::PLANT_FEET), [Command::SetFeet(Some(feet))]);
+        assert!(harness.query_by_label(text::PLANTED_AUTOMATICALLY).is_none());
+    }
 }
 
 #[test]
