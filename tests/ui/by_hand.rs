@@ -3,7 +3,6 @@
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::editor::ClipFormat;
 use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
@@ -188,7 +187,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     press(&mut harness, text::FIT);
     assert!(harness.query_by_label(text::NOTHING_TO_MEASURE).is_some());
     press(&mut harness, text::FILES);
-    for label in [text::SAVE_GLB, text::save_clip(ClipFormat::Glb), text::SHOW_SOURCE] {
+    for label in [text::SAVE_GLB, text::SHOW_SOURCE] {
         assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label}: the clip is the model's own");
     }
     press(&mut harness, text::FIT);

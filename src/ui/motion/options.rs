@@ -119,30 +119,38 @@ pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
 
 /// Buttons that open, save and remove files.
 pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
-    let wide = |ui: &mut Ui, enabled: bool, text: &str| {
+    // With a reason if it is disabled.
+    let button = |ui: &mut Ui, text: &str, problem: Option<&str>| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
-        ui.add_enabled(enabled, button).on_disabled_hover_text(text::NEEDS_BORROWED_CLIP).clicked()
+        let response = ui.add_enabled(problem.is_none(), button);
+        problem.map_or(response.clone(), |problem| response.on_disabled_hover_text(problem)).clicked()
     };
     controls::section(ui, "JOINT MAP");
     controls::hint(ui, "The source of each joint, as JSON. You can also drop a map anywhere.");
     ui.add_space(2.0);
-    if wide(ui, true, text::SAVE_MAP) {
+    if button(ui, text::SAVE_MAP, None) {
         out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));
     }
-    if wide(ui, true, text::LOAD_MAP) {
+    if button(ui, text::LOAD_MAP, None) {
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
-    let clip = active_clip(pairing.model, shown.state).filter(|&clip| is_derived(pairing.model, shown.state, clip));
+    // The same as in the export menu.
+    let clip = active_clip(pairing.model, shown.state);
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
-    if wide(ui, clip.is_some(), text::SAVE_GLB)
-        && let Some(clip) = clip
+    let derived = clip.filter(|&clip| is_derived(pairing.model, shown.state, clip));
+    let problem = if clip.is_some() { text::IS_IN_FILE } else { text::NEEDS_CLIP };
+    if button(ui, text::SAVE_GLB, derived.is_none().then_some(problem))
+        && let Some(clip) = derived
     {
         out.actions.push(UiAction::Save(Saved::File(Export::Model { clip })));
     }
+    controls::section(ui, "CLIP ALONE");
+    controls::hint(ui, "The current clip with its skeleton, without the meshes.");
+    ui.add_space(2.0);
     for format in ClipFormat::ALL.into_iter().filter(|format| format.fits(pairing.model)) {
-        if wide(ui, clip.is_some(), text::save_clip(format))
+        if button(ui, text::save_clip(format), clip.is_none().then_some(text::NEEDS_CLIP))
             && let Some(clip) = clip
         {
             out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip, format })));
@@ -152,13 +160,14 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     let show = shown.state.display.show;
     // Only a borrowed clip has a source to show.
     let is_borrowed = clip.is_some_and(|clip| pairing.model.borrowed(clip).is_some());
-    if wide(ui, is_borrowed, if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE }) {
+    let label = if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE };
+    if button(ui, label, (!is_borrowed).then_some(text::NEEDS_BORROWED_CLIP)) {
         out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
     }
-    if wide(ui, true, text::OPEN_INSTEAD) {
+    if button(ui, text::OPEN_INSTEAD, None) {
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
     }
-    if wide(ui, true, text::REMOVE_MOTION) {
+    if button(ui, text::REMOVE_MOTION, None) {
         out.actions.push(UiAction::RemoveMotion(pairing.index));
     }
 }

@@ -293,7 +293,11 @@ pub const SAVE_GLB: &str = "Save GLB";
 pub const SHOW_SOURCE: &str = "Show source beside the model";
 /// The same button while the skeleton is shown.
 pub const HIDE_SOURCE: &str = "Hide source";
-/// Why those buttons are disabled while one of the model's own clips is active.
+/// Why it is disabled for a clip that the model's file has as it is.
+pub const IS_IN_FILE: &str = "The model's file has this clip as it is.";
+/// Why buttons that save the current clip are disabled in the rest pose.
+pub const NEEDS_CLIP: &str = "Choose a clip in the clip list first.";
+/// Why the source can't be shown while one of the model's own clips is active.
 pub const NEEDS_BORROWED_CLIP: &str = "Choose a borrowed clip in the clip list first.";
 /// Button that opens the motion's skeleton as the model.
 pub const OPEN_INSTEAD: &str = "Open source instead of the model";

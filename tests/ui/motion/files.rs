@@ -1,7 +1,7 @@
 //! Motions and their files: borrowing, saving, removing, and the choices if a motion doesn't fit.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::editor::Export;
+use gaitway::editor::{ClipFormat, Export};
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
@@ -53,6 +53,23 @@ fn files_are_requested_from_the_host() {
         UiAction::RemoveMotion(0),
     ];
     assert_eq!(harness.state().actions, expected);
+}
+
+/// As the export menu does: one of the model's own clips can be saved alone, but is in the model's file already.
+#[test]
+fn an_own_clip_can_be_saved_alone() {
+    let mut harness = motion_tab();
+    press(&mut harness, text::FILES);
+    press(&mut harness, "Walk");
+    press(&mut harness, text::SAVE_GLB);
+    assert_eq!(harness.state().actions, []);
+    let format = ClipFormat::Bvh;
+    reach(&mut harness, text::save_clip(format));
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Clip { clip: 0, format }))]);
+    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::RestPose));
+    harness.run();
+    reach(&mut harness, text::save_clip(format));
+    assert_eq!(harness.state().actions.len(), 1, "there is no clip");
 }
 
 /// The tab shows the motion whose clip plays.
