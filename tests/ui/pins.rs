@@ -154,19 +154,22 @@ fn a_pin_holds_in_the_range_with_a_blend() {
 
 fn track_of(harness: &Harness<'_, Bench>, times: PinTimes) -> String {
     let skeleton = &harness.state().library().active().expect("a model").asset.skeleton;
-    let name = skeleton.name(skeleton.joint_of_source(LEFT_HAND).expect("a joint"));
-    text::pin_track(name, &text::pin_times(times))
+    let name = |joint| skeleton.name(skeleton.joint_of_source(joint).expect("a joint"));
+    let pin = pin_of(harness, LEFT_HAND).expect("is pinned");
+    let other = if let PinGoal::Joint(other, _) = pin.goal { Some(name(other)) } else { None };
+    text::pin_track(&text::pin_to(name(LEFT_HAND), pin.goal, other), &text::pin_times(times))
 }
 
 #[test]
 fn a_pin_with_times_has_a_track_under_the_timeline() {
     for size in [WIDE, NARROW] {
         let mut harness = sample_bench(size);
-        let goal = PinGoal::Point(place(harness.state(), LEFT_HAND));
+        let goal = PinGoal::Joint(HEAD, Vec3::ZERO);
         let times = PinTimes { start_secs: 0.25, end_secs: 0.75, blend_secs: 0.1 };
         let pin = |times| Command::SetPin { joint: LEFT_HAND, pin: Some(Pin { goal, times }) };
-        let track = track_of(&harness, times);
         harness.state_mut().editor.apply(pin(None));
+        let track = track_of(&harness, times);
+        assert!(track.contains(" pinned to Head. Holds from 0.25 s"), "{track}");
         harness.run();
         assert!(harness.query_by_label(&track).is_none(), "it always holds");
         harness.state_mut().editor.apply(pin(Some(times)));
@@ -174,7 +177,8 @@ fn a_pin_with_times_has_a_track_under_the_timeline() {
         let (row, timeline) = (harness.get_by_label(&track).rect(), harness.get_by_label(text::TIME).rect());
         assert!(row.top() >= timeline.bottom() && row.bottom() <= size[1], "{row:?} below {timeline:?}");
         let name = painted(&harness).into_iter().find(|(_, _, rect)| row.contains(rect.center()));
-        let (_, is_cut, rect) = name.expect("the joint's name");
+        let (name, is_cut, rect) = name.expect("the pin's name");
+        assert!(name.ends_with(": Head"), "{name}");
         assert!(!is_cut && rect.right() <= timeline.left() + 8.0, "{rect:?} left of {timeline:?}");
         harness.state_mut().change(|state| state.page.embed = true);
         harness.run();

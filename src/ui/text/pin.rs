@@ -1,6 +1,7 @@
 //! Texts about pins.
 
-use crate::retarget::PinTimes;
+use super::labelled;
+use crate::retarget::{PinGoal, PinTimes};
 
 /// Label of the choice of where the selected joint is held.
 pub const PIN: &str = "Pin";
@@ -23,9 +24,29 @@ pub const PIN_IN_RANGE: &str = "Only in the range";
 /// Button that moves a pin's times to the in and out points.
 pub const PIN_TO_RANGE: &str = "Use the current range";
 
-/// Returns the accessible name of a pin's track under the timeline. `when` is that of [`pin_times`].
-pub fn pin_track(joint: &str, when: &str) -> String {
-    format!("Pin {joint}: {when}")
+/// Returns the name of a pin's track under the timeline: the joint and its goal. `other` is the name of the goal if that is a joint.
+pub fn pin_name(joint: &str, goal: PinGoal, other: Option<&str>) -> String {
+    let goal = match goal {
+        PinGoal::Point(_) | PinGoal::Look(_) => "point",
+        PinGoal::Joint(..) => other.unwrap_or("joint"),
+        PinGoal::Camera => "camera",
+    };
+    labelled(joint, goal)
+}
+
+/// Returns the same in words.
+pub fn pin_to(joint: &str, goal: PinGoal, other: Option<&str>) -> String {
+    match goal {
+        PinGoal::Point(_) => format!("{joint} pinned to a point"),
+        PinGoal::Joint(..) => format!("{joint} pinned to {}", other.unwrap_or("a joint")),
+        PinGoal::Look(_) => format!("{joint} looks at a point"),
+        PinGoal::Camera => format!("{joint} looks at the camera"),
+    }
+}
+
+/// Returns the accessible name and tooltip of that track. `pin` is from [`pin_to`], `when` from [`pin_times`].
+pub fn pin_track(pin: &str, when: &str) -> String {
+    format!("{pin}. {when}")
 }
 
 /// Returns when a pin holds.
