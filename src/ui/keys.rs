@@ -43,7 +43,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |_, _, Press { which, .. }, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
     },
     KeyHelp {
-        keys: "Up  Down",
+        keys: "Up, Down",
         does: "Zoom in, zoom out",
         pressed: &[Key::ArrowUp, Key::ArrowDown],
         act: |_, _, Press { which, .. }, out| {
@@ -52,7 +52,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
-        keys: "Left  Right",
+        keys: "Left, Right",
         does: "Orbit",
         pressed: &[Key::ArrowLeft, Key::ArrowRight],
         act: |_, _, Press { which, .. }, out| {
@@ -61,7 +61,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
-        keys: "1 – 9",
+        keys: "1 to 9",
         does: "Play a clip",
         pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
         act: |shown, _, Press { which, .. }, out| {
@@ -89,7 +89,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |shown, _, _, out| out.commands.push(Command::SetFollow(!shown.state.camera_options.follow)),
     },
     KeyHelp {
-        keys: "I  O",
+        keys: "I, O",
         does: "Set in point, set out point",
         pressed: &[Key::I, Key::O],
         act: |shown, _, Press { which, .. }, out| out.commands.extend(range_here(shown, which == 0)),
@@ -107,7 +107,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
-        keys: "S  W  G",
+        keys: "S, W, G",
         does: "Toggle skeleton, wireframe, grid",
         pressed: &[Key::S, Key::W, Key::G],
         act: |shown, _, Press { which, .. }, out| {
@@ -130,7 +130,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
-        keys: "T  N",
+        keys: "T, N",
         does: "Show or hide the clips, the inspector",
         pressed: &[Key::T, Key::N],
         act: |_, local, Press { which, .. }, _| {
@@ -138,7 +138,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp { keys: "Ctrl O", does: "Open files", pressed: &[], act: |_, _, _, _| {} },
-    KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo", pressed: &[], act: |_, _, _, _| {} },
+    KeyHelp { keys: "Ctrl Z, Ctrl Y", does: text::UNDO_HELP, pressed: &[], act: |_, _, _, _| {} },
     KeyHelp {
         keys: "?",
         does: "Show this list",

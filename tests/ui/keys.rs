@@ -194,6 +194,7 @@ fn the_help_lists_every_key_and_closes() {
     press_key(&mut harness, Key::Questionmark);
     for line in KEY_TABLE {
         assert!(harness.query_all_by_label(line.does).next().is_some(), "{}", line.does);
+        assert!(!line.keys.contains("  "), "keys are separated by commas: {}", line.keys);
     }
     assert!(press_key(&mut harness, Key::Space).is_empty(), "nothing plays behind the help");
     press(&mut harness, text::CLOSE_HELP);

@@ -36,6 +36,9 @@ pub const STEP_KEYS: &str = "Comma, period";
 /// What [`STEP_KEYS`] do, in the help.
 pub const STEP_FRAMES: &str = "Previous frame, next frame";
 
+/// What undo and redo cover, in the help.
+pub const UNDO_HELP: &str = "Undo, redo: edits, display settings and opening, but not playback or the camera";
+
 /// The gesture that zooms, in the help.
 pub const PINCH: &str = "Pinch";
 

@@ -54,14 +54,18 @@ impl Help {
     }
 }
 
-/// Returns whether its close button was clicked. Its title can have the focus: unlike a button, it leaves Space alone.
+/// Returns whether its close button was clicked. Its title has the focus: unlike a button, it leaves Space alone.
 fn title_bar(ui: &mut Ui, takes_focus: bool) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
     ui.horizontal(|ui| {
-        let title = RichText::new(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE }).heading();
-        let title = ui.add(egui::Label::new(title).sense(Sense::FOCUSABLE));
+        let title = if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE };
+        // Not a label, which would be underlined while it has the focus.
+        let galley = ui.painter().layout_no_wrap(title.to_owned(), style::HEADING, style::palette(ui).text);
+        let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::FOCUSABLE);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, title));
+        ui.painter().galley(rect.min, galley, style::palette(ui).text);
         if takes_focus {
-            title.request_focus();
+            response.request_focus();
         }
         ui.with_layout(Layout::right_to_left(Align::Center), close).inner
     })
