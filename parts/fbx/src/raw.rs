@@ -59,11 +59,14 @@ fn explain(error: &ufbx::Error, bytes: &[u8]) -> String {
     }
     match error.type_ {
         ErrorType::UnrecognizedFileFormat | ErrorType::FeatureDisabled => NOT_FBX.to_owned(),
+        // A text without the version that every FBX file states.
+        ErrorType::UnsupportedVersion if error.info() == "0" && !bytes.starts_with(b"Kaydara") => NOT_FBX.to_owned(),
         ErrorType::TruncatedFile => {
             "the FBX file ends too early: expected more bytes. Download or export it again.".to_owned()
         }
         ErrorType::UnsupportedVersion => format!(
-            "unsupported FBX version {}: expected 3000 to 7700. Convert it with a newer program, for example Blender.",
+            "this is FBX version {}: expected 3000 to 7700. Open it in the program that it is from and export a newer \
+             one, or glTF (.glb).",
             error.info()
         ),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
