@@ -19,7 +19,7 @@ use gaitway::state::{
 use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
-use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, sample_bench};
 use crate::motion::reach;
 
 #[test]
@@ -459,6 +459,9 @@ fn materials_and_images_are_listed_with_what_they_are() {
     ] {
         assert!(harness.query_by_label(line).is_some(), "{line}");
     }
+    let facts = painted(&harness).into_iter().find(|(text, ..)| text.starts_with("PNG, 8"));
+    let (_, is_cut, rect) = facts.expect("the image's facts");
+    assert!(!is_cut && rect.right() <= WIDE[0] - 14.0 && rect.height() > 20.0, "in two lines: {rect:?}");
     assert_eq!(harness.query_all_by_label("on Cloak").count(), 2);
     assert!(harness.query_by_label(&text::labelled(text::INFLUENCES, "up to 0")).is_some());
     assert!(harness.query_by_label(&text::labelled(text::FRAME_TIME, text::NO_FRAMES)).is_some());

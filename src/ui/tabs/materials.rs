@@ -12,6 +12,8 @@ use crate::ui::{HostState, Output, Shown, controls, style, text};
 const MAX_ROWS: usize = 200;
 const LINE_HEIGHT: f32 = 16.0;
 const THUMBNAIL: f32 = 36.0;
+/// Height of the line with an image's name.
+const NAME_HEIGHT: f32 = 20.0;
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, lists: &Lists, out: &mut Output) {
     if lists.materials.is_empty() {
@@ -73,9 +75,14 @@ pub fn images(ui: &mut Ui, model: &Model, lists: &Lists, host: &HostState) {
     }
 }
 
+/// Where the maps don't fit beside the other facts, they take more lines.
 fn image_row(ui: &mut Ui, id: Id, image: &ImageText, thumbnail: Option<egui::TextureId>) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), THUMBNAIL + 4.0), Sense::hover());
+    const GAP: f32 = 8.0;
     let palette = style::palette(ui);
+    let width = ui.available_width() - THUMBNAIL - GAP;
+    let facts = ui.painter().layout(image.line.clone(), style::SMALL, palette.weak_text, width);
+    let height = (NAME_HEIGHT + facts.size().y).max(THUMBNAIL) + 4.0;
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let square = Rect::from_min_size(rect.min + vec2(0.0, 2.0), vec2(THUMBNAIL, THUMBNAIL));
     match thumbnail {
         Some(id) => {
@@ -84,8 +91,10 @@ fn image_row(ui: &mut Ui, id: Id, image: &ImageText, thumbnail: Option<egui::Tex
         }
         None => _ = ui.painter().rect_filled(square, 2.0, palette.surface),
     }
-    let text = rect.with_min_x(square.right() + 8.0);
-    let middle = rect.center().y;
-    line(ui, id, text.with_max_y(middle), &image.name, false, palette.text);
-    line(ui, id.with("facts"), text.with_min_y(middle), &image.line, true, palette.weak_text);
+    let text = rect.with_min_x(square.right() + GAP);
+    let below = text.with_min_y(text.top() + NAME_HEIGHT);
+    line(ui, id, text.with_max_y(below.top()), &image.name, false, palette.text);
+    let response = ui.interact(below, id.with("facts"), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &image.line));
+    ui.painter().galley(below.min, facts, palette.weak_text);
 }
