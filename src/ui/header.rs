@@ -34,6 +34,9 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Clips, local);
     if ui.ctx().content_rect().width() >= NAME_WIDTH {
         let name = RichText::new(text::NAME).strong();
+        if local.layout.is_small {
+            ui.add_space(2.0);
+        }
         ui.label(if local.layout.is_small { name } else { name.heading() });
         ui.add_space(4.0);
     }
