@@ -39,6 +39,11 @@ pub trait Host {
     /// Opens the gallery of samples. Called only if [`Host::has_gallery`] returns true.
     fn show_gallery(&self) {}
 
+    /// Called when a box opens that everything else waits for, and when it closes.
+    fn modal_changed(&self, is_open: bool) {
+        let _ = is_open;
+    }
+
     /// Saves a file for the user. Sends [`Message::Saved`](super::Message::Saved), unless the user changes their mind.
     fn save_file(&self, file: ExportedFile, inbox: &Inbox);
 

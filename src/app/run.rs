@@ -37,6 +37,8 @@ pub struct App {
     pub(super) toast_steps: usize,
     /// A notice or an error was added since the host last heard of a change.
     pub(super) has_new_message: bool,
+    /// Whether the host was told last that a modal is open.
+    had_modal: bool,
     /// Motions loaded in the last frame.
     last_motions: Vec<ModelId>,
     timing: Timing,
@@ -82,6 +84,7 @@ impl App {
             recording: None,
             toast_steps: 0,
             has_new_message: false,
+            had_modal: false,
             last_motions: Vec::new(),
             timing: Timing::default(),
             backend: device::backend_name(&info),
@@ -406,14 +409,18 @@ impl eframe::App for App {
         self.panels.host.can_redo = self.editor.can_redo();
         self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
         self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
+        self.panels.host.has_planted_feet = self.editor.has_planted_feet();
         self.panels.host.has_gltf = self.editor.has_gltf();
         self.expire_toast();
         self.update_motions();
-        self.panels.host.has_planted_feet = self.editor.has_planted_feet();
         self.update_drawn();
         let mut output = std::mem::take(&mut self.output);
         let (has_input, rect, slot) = self.lay_out(ui, &mut output);
         self.output = output;
+        let has_modal = self.panels.has_modal();
+        if std::mem::replace(&mut self.had_modal, has_modal) != has_modal {
+            self.host.modal_changed(has_modal);
+        }
         self.advance(&context);
         if !std::mem::replace(&mut self.is_laid_out, true) {
             // The panels come first, the scene a frame later: both in one frame would block the page for too long.

@@ -330,6 +330,11 @@ impl UiState {
         (self.layout.tab, self.layout.inspector_open) = (Tab::Motion, true);
     }
 
+    /// Whether a box is open that everything else waits for.
+    pub fn has_modal(&self) -> bool {
+        self.help.is_open || self.about_open || self.host.recording.is_some()
+    }
+
     /// Drops what was begun for a motion, whose index may now be another's.
     pub fn on_motions_changed(&mut self) {
         self.motion.other_motions();

@@ -241,6 +241,10 @@ impl Host for PageHost {
         self.shell.gallery();
     }
 
+    fn modal_changed(&self, is_open: bool) {
+        self.shell.set_modal(is_open);
+    }
+
     fn save_file(&self, file: ExportedFile, inbox: &Inbox) {
         self.shell.save(&file.name, &file.bytes);
         inbox.send(Message::Saved(Ok((file.name, file.remark))));

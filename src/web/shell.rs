@@ -18,6 +18,10 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn gallery(this: &Shell);
 
+    /// Dims what is around the canvas while a box in it is open that everything else waits for.
+    #[wasm_bindgen(method, js_name = setModal)]
+    pub fn set_modal(this: &Shell, is_open: bool);
+
     /// Downloads a file.
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);

@@ -26,6 +26,14 @@ function setShown(isShown) {
 }
 
 /**
+ * Dims the samples while a box in the canvas waits for an answer.
+ * @param {boolean} isInert
+ */
+export function setInert(isInert) {
+  gallery.inert = isInert;
+}
+
+/**
  * Marks the card of the current view, if it is one of the scenes.
  * @param {string} link
  * @param {boolean} isLocal

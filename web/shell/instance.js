@@ -8,7 +8,7 @@ import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
-import { showGallery } from "./gallery.js";
+import { setInert, showGallery } from "./gallery.js";
 import { heldItems, heldMotionsAndLight } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
@@ -195,6 +195,7 @@ function callsFor(bindings) {
   return {
     choose: showOpenDialog,
     gallery: showGallery,
+    setModal: (isOpen) => isCurrent() && setInert(isOpen),
     save: download,
     record: (name, width, height, framesPerSec, frameCount, isTransparent, asImages) => record(name, { width, height, framesPerSec, frameCount, isTransparent, asImages, frame: bindings.video_frame }),
     cancelRecording,
@@ -230,6 +231,7 @@ function stopped(message) {
   const ended = current;
   session.app = current = null;
   showPanel("stopped");
+  setInert(false);
   for (const dialog of document.querySelectorAll("dialog")) dialog.close();
   button("stopped-again").focus();
   // Not from inside the instance's own call.

@@ -40,6 +40,7 @@ export interface LinkedFile {
 export interface ShellCalls {
   choose(role: "any" | "motion"): void;
   gallery(): void;
+  setModal(isOpen: boolean): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
   record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean, asImages: boolean): Promise<string | undefined>;
   cancelRecording(): void;

@@ -27,8 +27,9 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
 
 /// Notes what has the focus when a modal opens, and gives it back when the modal and its controls are gone.
 fn keep_focus(context: &Context, local: &mut UiState) {
+    let is_modal = local.has_modal();
     let before = &mut local.focus_before_modal;
-    if local.help.is_open || local.about_open || local.host.recording.is_some() {
+    if is_modal {
         // Only in the first pass does whatever opened the modal still have the focus.
         before.get_or_insert_with(|| context.memory(egui::Memory::focused));
     } else if let Some(id) = before.take().flatten() {
