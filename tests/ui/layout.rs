@@ -337,3 +337,26 @@ fn nothing_repaints_by_itself() {
     harness.run();
     assert_eq!(harness.run(), 1, "one step for the run itself and none after it");
 }
+
+/// The rows of a phone are high, so its tree shows only a few.
+#[test]
+fn a_selected_joint_is_in_sight_in_the_tree() {
+    for size in [WIDE, NARROW, [844.0, 390.0]] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        harness.run();
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(9)));
+        harness.run();
+        let skeleton = &harness.state().library().active().expect("a model").asset.skeleton;
+        let name = skeleton.name(skeleton.joint_of_source(9).expect("a joint")).to_owned();
+        let row = harness.get_by_role_and_label(egui::accesskit::Role::TreeItem, &name).rect();
+        let is_name = |shape: &egui::Shape| matches!(shape, egui::Shape::Text(text) if text.galley.text() == name);
+        let clipped = harness
+            .output()
+            .shapes
+            .iter()
+            .find(|clipped| is_name(&clipped.shape) && row.contains_rect(clipped.shape.visual_bounding_rect()));
+        let sight = clipped.expect("the row's name is painted").clip_rect;
+        assert!(sight.contains_rect(row.shrink(1.0)), "{size:?}: {row:?} in {sight:?}");
+    }
+}

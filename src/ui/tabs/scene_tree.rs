@@ -233,7 +233,8 @@ impl SceneTree {
 
     /// The scroll offset that shows a newly selected joint.
     fn scroll_offset(&mut self, ui: &Ui, shown: &Shown<'_>, asset: &Asset, rows: &[Row]) -> Option<f32> {
-        const ROWS_ABOVE: f32 = 4.0;
+        /// Fewer in a tree that shows few rows, as on a phone.
+        const MAX_ROWS_ABOVE: f32 = 4.0;
         let selected = shown.state.selection.joint;
         if self.scrolled_to == selected {
             return None;
@@ -241,7 +242,8 @@ impl SceneTree {
         self.scrolled_to = selected;
         let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)?;
         let max = rows.len() as f32 * row_height(ui) - ui.available_height();
-        let wanted = (at as f32 - ROWS_ABOVE) * row_height(ui);
+        let rows_above = (0.5 * ui.available_height() / row_height(ui)).floor().min(MAX_ROWS_ABOVE);
+        let wanted = (at as f32 - rows_above) * row_height(ui);
         Some(wanted.min(max).max(0.0))
     }
 }
