@@ -59,16 +59,17 @@ fn explain(error: &ufbx::Error, bytes: &[u8]) -> String {
     }
     match error.type_ {
         ErrorType::UnrecognizedFileFormat | ErrorType::FeatureDisabled => NOT_FBX.to_owned(),
-        // A text without the version that every FBX file states.
-        ErrorType::UnsupportedVersion if error.info() == "0" && !bytes.starts_with(b"Kaydara") => NOT_FBX.to_owned(),
         ErrorType::TruncatedFile => {
             "the FBX file ends too early: expected more bytes. Download or export it again.".to_owned()
         }
-        ErrorType::UnsupportedVersion => format!(
-            "this is FBX version {}: expected 3000 to 7700. Open it in the program that it is from and export a newer \
-             one, or glTF (.glb).",
-            error.info()
-        ),
+        ErrorType::UnsupportedVersion => {
+            let version = error.info();
+            // Real ones have four digits.
+            let what = if version.len() == 4 { "this is FBX" } else { "the FBX file is damaged: it states" };
+            format!(
+                "{what} version {version}, expected 3000 to 7700. Export it again, as FBX 2014 to 2020 or glTF (.glb)."
+            )
+        }
         ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
             "the FBX file needs too much memory: expected at most {MAX_SCENE_BYTES} bytes. Export a part of the scene."
         ),

@@ -489,10 +489,8 @@ fn what_is_not_fbx_says_so() {
         (&b"glTF\x02\0\0\0"[..], "this is not an FBX file"),
         (&b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"[..], "this is not an FBX file"),
         (&b"Dear reader,\nthis is a letter.\n"[..], "this is not an FBX file"),
-        (
-            &b"; FBX 2.0.0 project file\nFBXHeaderExtension: {\nFBXVersion: 2000\n}\n"[..],
-            "this is FBX version 2000: expected 3000 to 7700. Open it",
-        ),
+        (&b"Kaydara FBX Binary  \0\x1a\0\xd0\x07\0\0"[..], "this is FBX version 2000, expected 3000 to 7700"),
+        (&b"Kaydara FBX Binary  \0\x1a\0\0\0\0\0"[..], "the FBX file is damaged: it states version 0, expected"),
         (&b"Kaydara FBX Binary   \x1a "[..], "its zero bytes were changed"),
         (&b"Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0"[..], "the FBX file"),
         (&b"; FBX 7.4.0 project file\nObjects: {"[..], "the FBX file"),
