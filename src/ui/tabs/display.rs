@@ -191,7 +191,7 @@ fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         return;
     }
     if active_clip(model, shown.state).and_then(|clip| model.borrowed(clip)).is_none() {
-        controls::hint(ui, "This clip is the model's own. Select a borrowed clip to see its source.");
+        controls::hint(ui, "This clip is the model's own. Choose a borrowed clip to see its source.");
         return;
     }
     controls::hint(
