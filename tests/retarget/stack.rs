@@ -1,13 +1,16 @@
 //! Layers over a clip: their time, their masks, and the clip they are baked into.
 
-use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointMask, Pose, SampleCursor};
-use gaitway::asset::Slot;
+use std::collections::BTreeMap;
+
+use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointMask, Keys, Pose, SampleCursor};
+use gaitway::asset::{Humanoid, Slot};
 use gaitway::retarget::{
     Body, BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack,
 };
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::figure::{Figure, Rig, build};
+use crate::skeletons::{asset, chain};
 
 /// A figure with a clip, and another clip for it.
 fn dancer(interpolation: Interpolation, armature: bool) -> (Figure, Clip) {
@@ -124,34 +127,52 @@ fn key_count(clip: &Clip) -> usize {
     clip.channels().iter().map(|channel| clip.timelines()[channel.timeline as usize].len()).sum()
 }
 
-/// Bakes the layers, compares the clip with them at many times, and returns its number of keys.
+/// Bakes the layers, compares the clip with them on, beside and between its keys, and returns its number of keys.
 fn check_baked(figure: &Figure, other: &Clip, layers: &[ClipLayer]) -> usize {
     let source = ClipOverLayers { clip: other, below: &[] };
     let stack: Vec<_> =
         layers.iter().map(|layer| StackedLayer { layer, source, included: included(figure, &layer.mask) }).collect();
     let clip = &figure.asset.clips[0];
     let baked = bake_stack(&figure.asset.skeleton, clip, &stack);
-    assert_eq!(baked.duration_secs(), clip.duration_secs());
+    let end_secs = clip.duration_secs();
+    assert_eq!(baked.duration_secs(), end_secs);
+    let mut keys: Vec<f32> = baked.timelines().concat();
+    keys.sort_by(f32::total_cmp);
+    keys.dedup();
+    let mut times: Vec<f32> = (0..2000).map(|step| end_secs * (step as f32 + 0.37) / 2000.0).collect();
+    times.extend(keys.iter().flat_map(|&key| [key.next_down(), key, key.next_up()]));
+    times.extend(keys.windows(2).flat_map(|pair| [0.21, 0.47, 0.83].map(|part| pair[0] + part * (pair[1] - pair[0]))));
+    times.retain(|time| (0.0..=end_secs).contains(time));
+    // A layer that starts over at the very end does so after the clip.
+    let starts_over = |layer: &ClipLayer| {
+        let rounds = layer.period_secs(other).map_or(0.5, |period| (f64::from(end_secs) - layer.start_secs) / period);
+        (rounds - rounds.round()).abs() < 1e-6
+    };
+    if layers.iter().any(starts_over) {
+        times.retain(|&time| time < end_secs * (1.0 - 8.0 * f32::EPSILON));
+    }
     // The figure is 1.6 m tall and 1.5 m wide at rest.
-    let (mut turn, mut distance) = (0.0_f64, 0.0_f64);
-    for step in 0..2000 {
-        let time = f64::from(clip.duration_secs()) * (f64::from(step) + 0.37) / 2000.0;
+    for time in times.into_iter().map(f64::from) {
         let expected = world(figure, &played(figure, other, layers, time));
         let found = world(figure, &sampled(figure, &baked, time));
         for (expected, found) in expected.iter().zip(&found) {
             let between = expected.0.conjugate() * found.0;
-            turn = turn.max(2.0 * between.xyz().length().atan2(between.w.abs()).to_degrees());
-            distance = distance.max(expected.1.distance(found.1));
+            let turn = 2.0 * between.xyz().length().atan2(between.w.abs()).to_degrees();
+            let distance = expected.1.distance(found.1);
+            assert!(
+                turn <= 0.05 && distance <= 1.6e-4,
+                "off by {turn}° and {distance} m after {time} s of {end_secs} s"
+            );
         }
     }
-    assert!(turn <= 0.05, "off by {turn}°");
-    assert!(distance <= 1.6e-4, "off by {distance} m");
     key_count(&baked)
 }
 
+const KINDS: [Interpolation; 3] = [Interpolation::Linear, Interpolation::CubicSpline, Interpolation::Step];
+
 #[test]
 fn a_baked_stack_is_what_is_played() {
-    for kind in [Interpolation::Linear, Interpolation::CubicSpline, Interpolation::Step] {
+    for kind in KINDS {
         for armature in [false, true] {
             let (figure, other) = dancer(kind, armature);
             let whole = ClipLayer { weight: 0.4, ..ClipLayer::default() };
@@ -165,6 +186,76 @@ fn a_baked_stack_is_what_is_played() {
             check_baked(&figure, &other, &[whole, sum, wave]);
         }
     }
+}
+
+/// A clip whose last key is a step shows its value at the end only.
+#[test]
+fn a_step_at_the_end_stays_a_step() {
+    for kind in KINDS {
+        let (mut figure, other) = dancer(kind, false);
+        figure.dance(5, 40.0, Interpolation::Step);
+        let sum = ClipLayer { mode: LayerMode::Additive, weight: 0.7, start_secs: 0.4, ..ClipLayer::default() };
+        check_baked(&figure, &other, std::slice::from_ref(&sum));
+        // A layer's own step, half-way through it, falls on the end.
+        let (figure, other) = dancer(Interpolation::Step, false);
+        let clips_end = f64::from(figure.asset.clips[0].duration_secs());
+        for step in other.timelines().iter().map(|times| f64::from(times[1])) {
+            check_baked(&figure, &other, &[ClipLayer { start_secs: clips_end - step, ..sum.clone() }]);
+        }
+    }
+}
+
+/// Layers that start over at times of their own, some of them together with the clip.
+#[test]
+fn loops_of_different_periods_are_baked() {
+    for kind in KINDS {
+        let (figure, other) = dancer(kind, false);
+        for speed in [0.37, 1.0, 2.0, 3.7, 1.5 / 0.7] {
+            let first = ClipLayer { weight: 0.6, speed, ..ClipLayer::default() };
+            let late = ClipLayer { speed: 1.1, start_secs: 100.0 / 3.0, mask: arms(), ..first.clone() };
+            check_baked(&figure, &other, &[first, late]);
+        }
+    }
+}
+
+/// Half-way between rotations, the shorter arc is another one as soon as they are more than 180° apart.
+#[test]
+fn a_change_of_the_shorter_arc_is_a_jump() {
+    let (mut figure, _) = dancer(Interpolation::Linear, false);
+    let joint = figure.joint(Slot::LeftUpperArm);
+    let turning = |from_degrees: f32, to_degrees: f32| {
+        let mut clip = ClipBuilder::new("Turn", &figure.asset.skeleton);
+        let keys = [from_degrees, to_degrees].map(|degrees| Quat::from_rotation_x(degrees.to_radians()));
+        clip.channel(joint, Interpolation::Linear, &[0.0, 2.0], Keys::Rotation(keys.to_vec())).unwrap();
+        clip.build()
+    };
+    let (base, other) = (turning(-50.0, -110.0), turning(50.0, 110.0));
+    figure.set_clip(base);
+    let keys = check_baked(&figure, &other, &[ClipLayer { weight: 0.5, ..ClipLayer::default() }]);
+    assert!(keys <= 6, "{keys} keys");
+}
+
+/// What each joint of a long chain is off by adds up.
+#[test]
+fn a_long_chain_is_close_everywhere() {
+    let names: Vec<String> = (0..41).map(|joint| joint.to_string()).collect();
+    let asset = asset(chain(names.iter().map(String::as_str), Vec3::new(0.0, 0.04, 0.0)));
+    let swinging = |degrees: f32| {
+        let mut clip = ClipBuilder::new("Swing", &asset.skeleton);
+        for joint in asset.skeleton.joints() {
+            let turn = |degrees: f32| Quat::from_rotation_z(degrees.to_radians());
+            let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+            let keys = [turn(degrees), turn(-0.5 * degrees), turn(degrees)].into_iter();
+            let keys = Keys::Rotation(keys.flat_map(|key| [still, key, still]).collect());
+            clip.channel(joint, Interpolation::CubicSpline, &[0.0, 0.7, 1.5], keys).unwrap();
+        }
+        clip.build()
+    };
+    let (base, other) = (swinging(2.0), swinging(-3.0));
+    let mut figure = Figure { asset, slots: Humanoid::default(), t_pose: BTreeMap::new() };
+    figure.set_clip(base);
+    let sum = ClipLayer { mode: LayerMode::AdditiveToRest, speed: 1.7, ..ClipLayer::default() };
+    check_baked(&figure, &other, &[sum]);
 }
 
 /// A clip without channels shows the rest pose, and nothing is left to hold the length of the one below.

@@ -1,5 +1,5 @@
 //! Resamples where no single channel suffices: evaluates a function of time at the given times, then subdivides until
-//! linear interpolation follows it closely enough.
+//! linear interpolation follows it closely enough. And the reverse: finds as few samples as suffice.
 
 use glam::DVec3;
 
@@ -20,11 +20,10 @@ impl<T> Resampled<T> {
     }
 }
 
-/// A function of time, and how its values are interpolated and compared.
-pub struct Curve<V, I, E> {
+/// A function of time, and how its values are compared.
+pub struct Curve<V, E> {
     pub value: V,
-    pub interpolate: I,
-    /// Distance between two values, in the unit of `tolerance`.
+    /// Distance of the fourth value from the interpolation between the first two by the factor, in the unit of `tolerance`.
     pub error: E,
     pub tolerance: f64,
 }
@@ -39,27 +38,25 @@ pub fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f32> {
 
 /// Resamples a curve. `times` and `jumps` are ascending without duplicates; at `jumps` the value may change abruptly, so a
 /// key is placed right before each.
-pub fn resample<T: Copy>(
+pub fn resample<T>(
     times: &[f32],
     jumps: &[f32],
-    curve: &Curve<impl Fn(f32) -> T, impl Fn(T, T, f64) -> T, impl Fn(T, T) -> f64>,
+    mut curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
 ) -> Resampled<T> {
     let mut keys = Resampled { times: Vec::with_capacity(times.len()), values: Vec::with_capacity(times.len()) };
-    let mut previous: Option<(f32, T)> = None;
     for &time in times {
         let key = (time, (curve.value)(time));
-        if let Some(start) = previous {
+        if let Some(&start) = keys.times.last() {
             let just_before = time.next_down();
-            if jumps.binary_search_by(|jump| jump.total_cmp(&time)).is_ok() && just_before > start.0 {
+            if jumps.binary_search_by(|jump| jump.total_cmp(&time)).is_ok() && just_before > start {
                 let end = (just_before, (curve.value)(just_before));
-                refine(curve, start, end, 0, &mut keys);
+                refine(&mut curve, &end, 0, &mut keys);
                 keys.push(end);
             } else {
-                refine(curve, start, key, 0, &mut keys);
+                refine(&mut curve, &key, 0, &mut keys);
             }
         }
         keys.push(key);
-        previous = Some(key);
     }
     keys
 }
@@ -71,34 +68,85 @@ pub fn resample_positions(
     tolerance: f64,
     value: impl Fn(f32) -> DVec3,
 ) -> Resampled<DVec3> {
-    let interpolate = |a: DVec3, b, factor| a.lerp(b, factor);
-    resample(times, jumps, &Curve { value, interpolate, error: |a: DVec3, b| a.distance(b), tolerance })
+    let error = |from: &DVec3, to: &DVec3, factor: f64, at: &DVec3| from.lerp(*to, factor).distance(*at);
+    resample(times, jumps, Curve { value, error, tolerance })
 }
 
-/// Subdivides the interval between two keys until the tolerance is met.
-fn refine<T: Copy>(
-    curve: &Curve<impl Fn(f32) -> T, impl Fn(T, T, f64) -> T, impl Fn(T, T) -> f64>,
-    start: (f32, T),
-    end: (f32, T),
+/// Subdivides the interval from the last key to `end` until the tolerance is met.
+fn refine<T>(
+    curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
+    end: &(f32, T),
     halvings: u32,
     keys: &mut Resampled<T>,
 ) {
-    let length = end.0 - start.0;
-    let middle_secs = start.0 + 0.5 * length;
-    if halvings == MAX_HALVINGS || middle_secs <= start.0 || middle_secs >= end.0 {
+    let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
+    let length = end.0 - start_secs;
+    let Some(middle_secs) = middle(start_secs, end.0) else { return };
+    // Halfway through an S-curve there is no error.
+    let is_close = [0.25, 0.5, 0.75].into_iter().all(|part| {
+        let time = start_secs + part * length;
+        let factor = f64::from(time - start_secs) / f64::from(length);
+        (curve.error)(start, &end.1, factor, &(curve.value)(time)) <= curve.tolerance
+    });
+    if is_close {
         return;
     }
-    let error_at = |part: f32| {
-        let time = start.0 + part * length;
-        let factor = f64::from(time - start.0) / f64::from(length);
-        (curve.error)((curve.interpolate)(start.1, end.1, factor), (curve.value)(time))
-    };
-    let max_error = [0.25, 0.5, 0.75].into_iter().map(error_at).fold(0.0, f64::max);
-    if max_error <= curve.tolerance {
+    if halvings == MAX_HALVINGS {
+        close_in(curve, end, keys);
         return;
     }
     let middle = (middle_secs, (curve.value)(middle_secs));
-    refine(curve, start, middle, halvings + 1, keys);
+    refine(curve, &middle, halvings + 1, keys);
     keys.push(middle);
-    refine(curve, middle, end, halvings + 1, keys);
+    refine(curve, end, halvings + 1, keys);
+}
+
+/// Adds keys right before and after the largest jump between the last key and `end`: nothing smooth would still be off.
+fn close_in<T>(
+    curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
+    end: &(f32, T),
+    keys: &mut Resampled<T>,
+) {
+    let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
+    let (mut before, mut after): (Option<(f32, T)>, Option<(f32, T)>) = (None, None);
+    loop {
+        let from = before.as_ref().map_or((start_secs, start), |(time, value)| (*time, value));
+        let to = after.as_ref().map_or((end.0, &end.1), |(time, value)| (*time, value));
+        let Some(middle_secs) = middle(from.0, to.0) else { break };
+        let value = (curve.value)(middle_secs);
+        let mut difference = |other: &T| (curve.error)(other, other, 0.0, &value);
+        if difference(from.1) <= difference(to.1) {
+            before = Some((middle_secs, value));
+        } else {
+            after = Some((middle_secs, value));
+        }
+    }
+    before.into_iter().chain(after).for_each(|key| keys.push(key));
+}
+
+/// Returns a time strictly between two, if there is one.
+fn middle(from: f32, to: f32) -> Option<f32> {
+    let middle = from + 0.5 * (to - from);
+    (from < middle && middle < to).then_some(middle)
+}
+
+/// Returns the indices of samples to keep: from each, the search goes on to the farthest for which `fits` holds, as far as
+/// doubling and halving the step tells.
+pub fn fewest(count: usize, mut fits: impl FnMut(usize, usize) -> bool) -> Vec<usize> {
+    let (mut kept, mut from) = (vec![0], 0);
+    while from + 1 < count {
+        let (mut near, mut step) = (from + 1, 2);
+        while from + step < count && fits(from, from + step) {
+            near = from + step;
+            step *= 2;
+        }
+        let mut far = (from + step).min(count);
+        while far - near > 1 {
+            let middle = (near + far) / 2;
+            if fits(from, middle) { near = middle } else { far = middle }
+        }
+        kept.push(near);
+        from = near;
+    }
+    kept
 }

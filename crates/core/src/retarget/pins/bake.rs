@@ -5,7 +5,7 @@ use glam::DQuat;
 use super::{Pin, PinTimes, Pinning};
 use crate::anim::{Clip, Interpolation, JointIndex, Pose, SampleCursor};
 use crate::retarget::change::track::{Target, Track, Tracks};
-use crate::retarget::keys::resample::union;
+use crate::retarget::keys::resample::{fewest, union};
 use crate::retarget::math::{angle_between, slerp};
 use crate::retarget::pose::{WorldPose, is_within, locals_of};
 
@@ -52,27 +52,6 @@ impl Pinning<'_> {
         }
         tracks.build(clip.name(), skeleton)
     }
-}
-
-/// Indices of samples to keep: from each, the search goes on to the farthest for which `fits` holds, as far as doubling and
-/// halving the step tells.
-fn fewest(count: usize, mut fits: impl FnMut(usize, usize) -> bool) -> Vec<usize> {
-    let (mut kept, mut from) = (vec![0], 0);
-    while from + 1 < count {
-        let (mut near, mut step) = (from + 1, 2);
-        while from + step < count && fits(from, from + step) {
-            near = from + step;
-            step *= 2;
-        }
-        let mut far = (from + step).min(count);
-        while far - near > 1 {
-            let middle = (near + far) / 2;
-            if fits(from, middle) { near = middle } else { far = middle }
-        }
-        kept.push(near);
-        from = near;
-    }
-    kept
 }
 
 /// The pinned clip at close times.

@@ -3,7 +3,8 @@
 use glam::{DQuat, DVec3};
 
 use crate::anim::{Clip, Interpolation, JointIndex, Pose, PropertyTarget, SampleCursor, Skeleton};
-use crate::retarget::change::track::{Target, Track, Tracks};
+use crate::retarget::change::track::{Target, Track, Tracks, rotation};
+use crate::retarget::keys::resample::{Curve, Resampled, fewest, resample};
 use crate::retarget::math::{angle_between, slerp};
 use crate::retarget::pose::{WorldPose, ancestry, locals_of};
 
@@ -13,9 +14,13 @@ const MAX_TURN: f64 = 0.05 * std::f64::consts::PI / 180.0;
 const MAX_OFFSET_PER_METRE: f64 = 1e-4;
 /// Likewise morph weights, and scales that move no joint.
 const MAX_WEIGHT_ERROR: f64 = 1e-3;
-/// The samples follow the poses this much more closely than the keys have to.
-const SAMPLE_SHARE: f64 = 0.25;
-const MAX_HALVINGS: u32 = 8;
+/// Shares of these errors: for the times between two samples, and for the samples between two keys. They add up to a little less
+/// than 1, since not all times are looked at.
+const BETWEEN_SAMPLES: f64 = 0.25;
+const BETWEEN_KEYS: f64 = 0.7;
+/// How much closer a channel is made to follow its samples as long as a joint that it moves is too far off, and when to give up.
+const CLOSER: f64 = 0.6;
+const MIN_SHARE: f64 = 1e-3;
 
 /// Poses over time.
 pub struct Poses<'a> {
@@ -24,7 +29,7 @@ pub struct Poses<'a> {
     pub included: &'a [bool],
     /// Times to sample at, ascending; more are added where they don't suffice.
     pub times: Vec<f32>,
-    /// Those of `times` right after which the pose jumps, ascending. Nothing is sampled before the next time.
+    /// Those of `times` at which the pose jumps, ascending.
     pub jumps: Vec<f32>,
     pub pose_at: &'a mut dyn FnMut(f32, &mut Pose),
 }
@@ -38,34 +43,52 @@ struct Column {
     limit: f64,
 }
 
-/// All new channels at one time.
-struct Row {
-    time: f32,
+/// A pose, and all new channels in it.
+struct Sample {
+    pose: Pose,
     numbers: Vec<f32>,
 }
 
+type Samples = Resampled<Sample>;
+
 /// Returns the clip with the channels of the included joints replaced by the poses.
-pub fn bake(clip: &Clip, mut poses: Poses<'_>) -> Clip {
-    let skeleton = poses.skeleton;
-    let height = height(skeleton);
-    let columns = columns(skeleton, poses.included, MAX_OFFSET_PER_METRE * height);
-    let rows = rows(&mut poses, &columns);
+pub fn bake(clip: &Clip, poses: Poses<'_>) -> Clip {
+    let Poses { skeleton, included, times, jumps, pose_at } = poses;
+    let limits = Limits { skeleton, offset: MAX_OFFSET_PER_METRE * height(skeleton) };
+    let columns = columns(skeleton, included, limits.offset);
+    let value = |time| {
+        let mut pose = skeleton.rest().clone();
+        pose_at(time, &mut pose);
+        Sample { numbers: numbers(skeleton, &columns, &pose), pose }
+    };
+    let error = |from: &Sample, to: &Sample, factor: f64, at: &Sample| limits.error(&columns, [from, to], factor, at);
+    let samples = resample(&times, &jumps, Curve { value, error, tolerance: BETWEEN_SAMPLES });
     let mut kept = Tracks::of(clip);
-    kept.tracks.retain(|track| !joint_of(track.target).is_some_and(|joint| poses.included[joint.get()]));
-    let mut share = 1.0;
+    kept.tracks.retain(|track| !joint_of(track.target).is_some_and(|joint| included[joint.get()]));
+    let mut shares = vec![1.0; columns.len()];
+    let track = |column: &Column, share: f64| column.track(skeleton, &samples, share * column.limit);
+    let mut new: Vec<Option<Track>> = columns.iter().map(|column| track(column, 1.0)).collect();
     loop {
         let mut tracks = kept.clone();
-        tracks.tracks.extend(columns.iter().filter_map(|column| track(skeleton, column, &rows, share * column.limit)));
+        tracks.tracks.extend(new.iter().flatten().cloned());
         if tracks.tracks.is_empty() {
             // All joints rest. A clip is as long as its tracks, so it needs one.
-            tracks.tracks.extend(columns.first().map(|column| column.track(&rows, &[0])));
+            tracks.tracks.extend(columns.first().map(|column| column.with_keys(&samples, &[0])));
         }
         let baked = tracks.build(clip.name(), skeleton);
         // The errors of a chain of joints add up, though seldom all in one direction.
-        if share < 1e-3 || is_close(&baked, &mut poses, &rows, MAX_OFFSET_PER_METRE * height) {
+        let moves_far = limits.moves_far(&baked, &samples);
+        let is_loose = |(column, share): &(&Column, f64)| {
+            *share > MIN_SHARE && joint_of(column.target).is_some_and(|joint| moves_far[joint.get()])
+        };
+        let loose: Vec<bool> = columns.iter().zip(shares.iter().copied()).map(|pair| is_loose(&pair)).collect();
+        if !loose.contains(&true) {
             return baked;
         }
-        share *= 0.6;
+        for (index, column) in columns.iter().enumerate().filter(|(index, _)| loose[*index]) {
+            shares[index] *= CLOSER;
+            new[index] = track(column, shares[index]);
+        }
     }
 }
 
@@ -135,135 +158,122 @@ fn numbers(skeleton: &Skeleton, columns: &[Column], pose: &Pose) -> Vec<f32> {
     numbers
 }
 
-/// Samples the poses until linear interpolation follows them closely.
-fn rows(poses: &mut Poses<'_>, columns: &[Column]) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::with_capacity(poses.times.len());
-    let times = std::mem::take(&mut poses.times);
-    let mut pose = poses.skeleton.rest().clone();
-    for time in times {
-        let end = row(poses, columns, time, &mut pose);
-        if let Some(start) = rows.pop() {
-            let is_jump = poses.jumps.binary_search_by(|jump| jump.total_cmp(&start.time)).is_ok();
-            let halvings = if is_jump { 0 } else { MAX_HALVINGS };
-            refine(poses, columns, start, &end, halvings, (&mut rows, &mut pose));
-        }
-        rows.push(end);
-    }
-    rows
-}
-
-fn row(poses: &mut Poses<'_>, columns: &[Column], time: f32, pose: &mut Pose) -> Row {
-    (poses.pose_at)(time, pose);
-    Row { time, numbers: numbers(poses.skeleton, columns, pose) }
-}
-
-/// Adds `start` and what is needed between it and `end`.
-fn refine(
-    poses: &mut Poses<'_>,
-    columns: &[Column],
-    start: Row,
-    end: &Row,
-    halvings: u32,
-    (rows, pose): (&mut Vec<Row>, &mut Pose),
-) {
-    let length = end.time - start.time;
-    let middle_secs = start.time + 0.5 * length;
-    if halvings > 0 && middle_secs > start.time && middle_secs < end.time {
-        let probes = [0.25, 0.5, 0.75].map(|part| row(poses, columns, start.time + part * length, pose));
-        let is_close = |probe: &Row| {
-            let fits = |column: &Column| column.error(&start, end, probe) <= SAMPLE_SHARE * column.limit;
-            columns.iter().all(fits)
-        };
-        if !probes.iter().all(is_close) {
-            let [_, middle, _] = probes;
-            refine(poses, columns, start, &middle, halvings - 1, (rows, pose));
-            refine(poses, columns, middle, end, halvings - 1, (rows, pose));
-            return;
-        }
-    }
-    rows.push(start);
-}
-
 impl Column {
-    fn of<'a>(&self, row: &'a Row) -> &'a [f32] {
-        &row.numbers[self.start..self.start + self.width]
+    fn of<'a>(&self, sample: &'a Sample) -> &'a [f32] {
+        &sample.numbers[self.start..self.start + self.width]
     }
 
-    /// Returns the channel with the values of these rows.
-    fn track(&self, rows: &[Row], keys: &[usize]) -> Track {
+    /// Returns the channel with as few keys as stay within the limit, each as far from the one before as it can be. `None` if
+    /// it would only hold the rest.
+    fn track(&self, skeleton: &Skeleton, samples: &Samples, limit: f64) -> Option<Track> {
+        let Resampled { times, values } = samples;
+        let changes = |&at: &usize| at == 0 || self.of(&values[at]) != self.of(&values[at - 1]);
+        let changes: Vec<usize> = (0..times.len()).filter(changes).collect();
+        if let [first] = changes[..] {
+            let rest = numbers(skeleton, &[Self { start: 0, ..*self }], skeleton.rest());
+            return (rest != self.of(&values[first])).then(|| self.with_keys(samples, &changes));
+        }
+        if changes[1..].iter().all(|&at| times[at - 1].next_up() == times[at]) {
+            return Some(Track { interpolation: Interpolation::Step, ..self.with_keys(samples, &changes) });
+        }
+        let is_close = |from: usize, to: usize, at: usize| {
+            let factor = f64::from(times[at] - times[from]) / f64::from(times[to] - times[from]);
+            self.error([&values[from], &values[to]], factor, &values[at]) <= limit
+        };
+        let keys = fewest(times.len(), |from, to| (from + 1..to).all(|at| is_close(from, to, at)));
+        Some(self.with_keys(samples, &keys))
+    }
+
+    /// Returns the channel with the values of these samples.
+    fn with_keys(&self, samples: &Samples, keys: &[usize]) -> Track {
         Track {
             target: self.target,
             interpolation: Interpolation::Linear,
-            times: keys.iter().map(|&key| rows[key].time).collect(),
+            times: keys.iter().map(|&key| samples.times[key]).collect(),
             width: self.width,
-            values: keys.iter().flat_map(|&key| self.of(&rows[key])).copied().collect(),
+            values: keys.iter().flat_map(|&key| self.of(&samples.values[key])).copied().collect(),
         }
     }
 
-    /// How far the value at a time is from the one between two others, in radians for rotations.
-    fn error(&self, from: &Row, to: &Row, at: &Row) -> f64 {
-        let factor = f64::from(at.time - from.time) / f64::from(to.time - from.time);
-        let [from, to, value] = [from, to, at].map(|row| self.of(row));
-        let quat = |numbers: &[f32]| DQuat::from_array(std::array::from_fn(|part| f64::from(numbers[part])));
+    /// Interpolates a rotation.
+    fn rotation(&self, ends: [&Sample; 2], factor: f64) -> DQuat {
+        let [from, to] = ends.map(|sample| rotation(self.of(sample)));
+        slerp(from, to, factor)
+    }
+
+    /// Interpolates numbers.
+    fn numbers(&self, ends: [&Sample; 2], factor: f64) -> impl Iterator<Item = f64> {
+        let [from, to] = ends.map(|sample| self.of(sample).iter().copied().map(f64::from));
+        from.zip(to).map(move |(from, to)| from + (to - from) * factor)
+    }
+
+    /// How far a value is from the one between two others, in radians for rotations.
+    fn error(&self, ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
         if let Target::Rotation(_) = self.target {
-            return angle_between(slerp(quat(from), quat(to), factor), quat(value));
+            return angle_between(self.rotation(ends, factor), rotation(self.of(at)));
         }
-        let parts = from.iter().zip(to).zip(value).map(|((&from, &to), &value)| {
-            let (from, to) = (f64::from(from), f64::from(to));
-            from + (to - from) * factor - f64::from(value)
-        });
+        let parts = self.numbers(ends, factor).zip(self.of(at)).map(|(found, &exact)| found - f64::from(exact));
         parts.map(|part| part * part).sum::<f64>().sqrt()
     }
 }
 
-/// Returns the channel with as few keys as stay within the limit, each as far from the one before as it can be. `None` if it
-/// would only hold the rest.
-fn track(skeleton: &Skeleton, column: &Column, rows: &[Row], limit: f64) -> Option<Track> {
-    let first = rows.first()?;
-    let is_constant = rows.iter().all(|row| column.of(row) == column.of(first));
-    let mut keys = vec![0];
-    if is_constant {
-        if numbers(skeleton, std::slice::from_ref(column), skeleton.rest()) == column.of(first) {
-            return None;
-        }
-    } else {
-        let fits =
-            |from: usize, to: usize| (from + 1..to).all(|at| column.error(&rows[from], &rows[to], &rows[at]) <= limit);
-        let last = rows.len() - 1;
-        let mut from = 0;
-        while from < last {
-            let (mut good, mut step) = (from + 1, 1);
-            while step > 0 {
-                let next = (good + step).min(last);
-                if next > good && fits(from, next) {
-                    (good, step) = (next, 2 * step);
-                } else {
-                    step /= 2;
-                }
-            }
-            keys.push(good);
-            from = good;
-        }
-    }
-    Some(column.track(rows, &keys))
+/// How close every joint has to be.
+struct Limits<'a> {
+    skeleton: &'a Skeleton,
+    /// In the skeleton's unit.
+    offset: f64,
 }
 
-/// Whether the clip has every joint where the poses have it.
-fn is_close(clip: &Clip, poses: &mut Poses<'_>, rows: &[Row], offset: f64) -> bool {
-    let skeleton = poses.skeleton;
-    let (mut expected, mut found) = (skeleton.rest().clone(), skeleton.rest().clone());
-    let mut cursor = SampleCursor::default();
-    rows.iter().all(|row| {
-        (poses.pose_at)(row.time, &mut expected);
-        found.copy_from(skeleton.rest());
-        clip.sample(skeleton, row.time, &mut cursor, &mut found);
-        let (expected, found) = (world(skeleton, &expected), world(skeleton, &found));
-        let is_near = |joint: JointIndex| {
-            // The samples have a share of their own.
-            let part = 1.0 - SAMPLE_SHARE;
-            expected.position(joint).distance(found.position(joint)) <= part * offset
-                && angle_between(expected.rotation(joint), found.rotation(joint)) <= part * MAX_TURN
+impl Limits<'_> {
+    /// How far a joint is off, as a share of what is allowed.
+    fn share(&self, expected: &WorldPose, found: &WorldPose, joint: JointIndex) -> f64 {
+        let distance = expected.position(joint).distance(found.position(joint));
+        (distance / self.offset).max(angle_between(expected.rotation(joint), found.rotation(joint)) / MAX_TURN)
+    }
+
+    /// How far the joint or number that is farthest off is so between two samples, as a share of what is allowed.
+    fn error(&self, columns: &[Column], ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
+        let expected = world(self.skeleton, &at.pose);
+        let mut locals = expected.locals.clone();
+        let mut error = 0.0_f64;
+        let vector = |column: &Column| {
+            let mut numbers = column.numbers(ends, factor);
+            DVec3::from_array(std::array::from_fn(|_| numbers.next().unwrap_or_default()))
         };
-        skeleton.joints().all(is_near)
-    })
+        for column in columns {
+            match column.target {
+                Target::Translation(joint) => locals[joint.get()].translation = vector(column),
+                Target::Rotation(joint) => locals[joint.get()].rotation = column.rotation(ends, factor),
+                Target::Scale(joint) => locals[joint.get()].scale = vector(column),
+                Target::Weights(_) | Target::Property(_) => {}
+            }
+            if let Target::Scale(_) | Target::Weights(_) = column.target {
+                error = error.max(column.error(ends, factor, at) / MAX_WEIGHT_ERROR);
+            }
+        }
+        let found = WorldPose::new(self.skeleton, locals, DQuat::IDENTITY);
+        self.skeleton.joints().map(|joint| self.share(&expected, &found, joint)).fold(error, f64::max)
+    }
+
+    /// Flags the joints that are too far from where a sample has them in the clip, and all above them.
+    fn moves_far(&self, clip: &Clip, samples: &Samples) -> Vec<bool> {
+        let mut moves_far = vec![false; self.skeleton.len()];
+        let mut pose = self.skeleton.rest().clone();
+        let mut cursor = SampleCursor::default();
+        for (&time, sample) in samples.times.iter().zip(&samples.values) {
+            pose.copy_from(self.skeleton.rest());
+            clip.sample(self.skeleton, time, &mut cursor, &mut pose);
+            let (expected, found) = (world(self.skeleton, &sample.pose), world(self.skeleton, &pose));
+            for joint in self.skeleton.joints() {
+                moves_far[joint.get()] |= self.share(&expected, &found, joint) > BETWEEN_KEYS;
+            }
+        }
+        // Children come after their parents.
+        for joint in self.skeleton.joints().rev() {
+            if let Some(parent) = self.skeleton.parent(joint) {
+                moves_far[parent.get()] |= moves_far[joint.get()];
+            }
+        }
+        moves_far
+    }
 }

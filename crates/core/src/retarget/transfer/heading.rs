@@ -79,11 +79,10 @@ fn heading(transfer: &Transfer, hips: &Hips, top: usize, laws: &[RotationLaw]) -
     }
     let curve = Curve {
         value,
-        interpolate: |from: f64, to: f64, factor: f64| from + factor * wrapped(to - from),
-        error: |a: f64, b: f64| wrapped(a - b).abs(),
+        error: |from: &f64, to: &f64, factor: f64, at: &f64| wrapped(from + factor * wrapped(to - from) - at).abs(),
         tolerance: TOLERANCE_RADIANS,
     };
-    let Resampled { times, values: mut radians } = resample(&times, &jumps, &curve);
+    let Resampled { times, values: mut radians } = resample(&times, &jumps, curve);
     // Unwrap, so that several turns count as several.
     for at in 1..radians.len() {
         radians[at] = radians[at - 1] + wrapped(radians[at] - radians[at - 1]);

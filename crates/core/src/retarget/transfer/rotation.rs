@@ -152,11 +152,10 @@ impl<'a> RotationLaw<'a> {
         let (times, jumps) = self.times();
         let curve = Curve {
             value: |time| self.at(time),
-            interpolate: slerp,
-            error: angle_between,
+            error: |from: &DQuat, to: &DQuat, factor: f64, at: &DQuat| angle_between(slerp(*from, *to, factor), *at),
             tolerance: TOLERANCE_RADIANS,
         };
-        let Resampled { times, values } = resample(&times, &jumps, &curve);
+        let Resampled { times, values } = resample(&times, &jumps, curve);
         let mut values: Vec<Quat> = values.into_iter().map(DQuat::as_quat).collect();
         for key in 1..values.len() {
             if values[key - 1].dot(values[key]) < 0.0 {
