@@ -232,7 +232,8 @@ fn a_change_of_the_shorter_arc_is_a_jump() {
     let (base, other) = (turning(-50.0, -110.0), turning(50.0, 110.0));
     figure.set_clip(base);
     let keys = check_baked(&figure, &other, &[ClipLayer { weight: 0.5, ..ClipLayer::default() }]);
-    assert!(keys <= 6, "{keys} keys");
+    // One at each end and on each side of the jump. Others have no more than the one that they rest in.
+    assert!(keys < 4 + figure.asset.skeleton.len(), "{keys} keys");
 }
 
 /// What each joint of a long chain is off by adds up.

@@ -108,7 +108,8 @@ fn close_in<T>(
     keys: &mut Resampled<T>,
 ) {
     let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
-    let (mut before, mut after): (Option<(f32, T)>, Option<(f32, T)>) = (None, None);
+    let mut before: Option<(f32, T)> = None;
+    let mut after: Option<(f32, T)> = None;
     loop {
         let from = before.as_ref().map_or((start_secs, start), |(time, value)| (*time, value));
         let to = after.as_ref().map_or((end.0, &end.1), |(time, value)| (*time, value));
