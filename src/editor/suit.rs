@@ -29,7 +29,7 @@ impl Editor {
         }
     }
 
-    /// Whether feet are held on the ground because of [`Editor::suit_feet`].
+    /// Whether feet are held on the ground because a borrowed clip slid or hovered, not because the user asked for it.
     pub fn has_planted_feet(&self) -> bool {
         self.suits_feet && self.state.retarget.feet == Some(Feet::Plant)
     }
