@@ -43,18 +43,6 @@ pub(super) fn watch(device: &wgpu::Device, closing: &Arc<AtomicBool>) {
     }));
 }
 
-/// Returns the samples per pixel for an adapter: one for software rendering, where four samples double the frame time.
-pub(super) fn samples(info: &wgpu::AdapterInfo) -> u32 {
-    if is_software(info) { 1 } else { 4 }
-}
-
-/// Whether the adapter renders on the CPU. Browsers hide the adapter's type, but name software adapters.
-fn is_software(info: &wgpu::AdapterInfo) -> bool {
-    let names = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
-    info.device_type == wgpu::DeviceType::Cpu
-        || ["swiftshader", "llvmpipe", "lavapipe", "software"].iter().any(|name| names.contains(name))
-}
-
 /// Returns `webgpu` or `webgl2` in the page; `vulkan`, `metal`, `dx12` or `gl` natively.
 pub(super) fn backend_name(info: &wgpu::AdapterInfo) -> &'static str {
     match info.backend {

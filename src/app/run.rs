@@ -71,7 +71,7 @@ impl App {
         cc.egui_ctx.set_theme(host.theme());
         let app = Self {
             editor: Editor::default(),
-            viewport: Viewport::new(gpu, device::samples(&info)),
+            viewport: Viewport::new(gpu),
             panels,
             output: Output::default(),
             inbox: inbox.clone(),

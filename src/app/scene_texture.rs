@@ -15,8 +15,9 @@ pub(super) struct SceneTexture {
 }
 
 impl SceneTexture {
-    pub fn new(gpu: RenderState, samples: u32) -> Self {
-        let renderer = Renderer::new(&gpu.device, &gpu.queue, RendererOptions { samples });
+    pub fn new(gpu: RenderState) -> Self {
+        let options = RendererOptions::for_adapter(&gpu.adapter.get_info());
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, options);
         let blit = Blit::new(&gpu.device, gpu.target_format);
         gpu.renderer.write().callback_resources.insert(blit);
         Self { gpu, renderer, displayed: None }

@@ -23,8 +23,8 @@ pub(super) struct Viewport {
 }
 
 impl Viewport {
-    pub fn new(gpu: RenderState, samples: u32) -> Self {
-        let scene = SceneTexture::new(gpu, samples);
+    pub fn new(gpu: RenderState) -> Self {
+        let scene = SceneTexture::new(gpu);
         Self {
             scene,
             frame: Frame::default(),

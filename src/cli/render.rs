@@ -82,7 +82,7 @@ impl Studio {
         // On failure, try again without silencing the driver, whose output may explain why.
         let (device, queue, adapter) = device.or_else(|_| headless_device())?;
         print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
-        let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
+        let mut renderer = Renderer::new(&device, &queue, RendererOptions::for_adapter(&adapter));
         let library = editor.library();
         let source = source_on_stage(library, editor.state()).map(|source| source.model);
         for model in library.models().iter().chain(source) {
@@ -94,7 +94,7 @@ impl Studio {
     /// Returns RGBA rows from the top, with straight alpha. Fails if the device was lost.
     fn draw(&mut self, library: &Library, state: &ViewerState) -> Outcome<Vec<u8>> {
         evaluate(library, state, aspect(self.size), &mut self.frame);
-        self.renderer.draw(&self.device, &self.queue, &self.frame, self.size);
+        self.renderer.draw_refined(&self.device, &self.queue, &self.frame, self.size);
         let pixels = pollster::block_on(read_pixels(&self.device, &self.queue, self.renderer.output()));
         if pixels.is_empty() { Err(Failure::new(NOT_READ)) } else { Ok(pixels) }
     }

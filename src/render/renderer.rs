@@ -24,8 +24,22 @@ use crate::state::Background;
 /// Settings that last as long as the renderer.
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
-    /// Samples per pixel of a picture that isn't refined: 4, or 1 on software adapters.
+    /// Samples per pixel of a picture that isn't refined.
     pub samples: u32,
+}
+
+impl RendererOptions {
+    /// One sample per pixel for software rendering, where four samples double the frame time, and four otherwise.
+    pub fn for_adapter(info: &wgpu::AdapterInfo) -> Self {
+        Self { samples: if is_software(info) { 1 } else { 4 } }
+    }
+}
+
+/// Whether the adapter renders on the CPU. Browsers hide the adapter's type, but name software adapters.
+fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    let names = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
+    info.device_type == wgpu::DeviceType::Cpu
+        || ["swiftshader", "llvmpipe", "lavapipe", "software"].iter().any(|name| names.contains(name))
 }
 
 /// Why a model cannot be drawn.

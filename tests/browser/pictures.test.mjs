@@ -42,14 +42,12 @@ const MORE_PICTURES = [
   { name: "Node_NegativeScale", file: "asset-generator/Positive/Node_NegativeScale/Node_NegativeScale_08.gltf", clip: "", t: 0 },
 ];
 
-/**
- * In the light of an .hdr image, which is also the background. Without fine textures: on a software adapter the page
- * draws a picture four times, while the command line samples each texture once, anisotropically.
- * @type {Shown[]}
- */
+/** In the light of an .hdr image, which is also the background. @type {Shown[]} */
 const LIT_PICTURES = [
   { name: "glass-table", file: "materials/playcanvas/glass-table.glb", clip: "", t: 0, light: SKY },
   { name: "cryptovoxels", file: "vrm/vrm0_cryptovoxels.vrm", clip: "", t: 0, light: SKY },
+  { name: "ClearCoatTest", file: "materials/playcanvas/ClearCoatTest.glb", clip: "", t: 0, light: SKY },
+  { name: "MToon", file: "materials/three-vrm/materials-mtoon/cube.gltf", clip: "", t: 0, light: SKY },
 ];
 
 /**
