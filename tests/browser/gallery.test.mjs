@@ -7,7 +7,7 @@ import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
-import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
@@ -158,6 +158,7 @@ for (const renderer of BACK_ENDS)
       await card(page, last.name).click();
       await whenModel(page, last.model);
       assert.equal(await gallery(page).isVisible(), false, "the choice closes them");
+      await apply(page, { play: 0 });
       await resize(page, PHONE.width, PHONE.height);
       await page.evaluate(() => document.querySelector("#gallery")?.removeAttribute("hidden"));
       await resize(page, SIDEWAYS.width, SIDEWAYS.height);

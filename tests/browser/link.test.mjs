@@ -202,6 +202,7 @@ for (const renderer of BACK_ENDS)
     onPage("can be copied on a phone held sideways", () => fragment([["model", site.data(XBOT)]]), async (page) => {
       await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
       await whenBorrowed(page, 1);
+      await apply(page, { play: 0 });
       await resize(page, 844, 390);
       await share(page);
       const isCovered = () => {
