@@ -135,8 +135,8 @@ fn is_left_of(first: &Value, second: &Value) -> bool {
 struct List<'a> {
     nodes: HashMap<NodeId, &'a Node>,
     entries: Vec<Value>,
-    /// Bounds of the last tree row. ARIA allows no controls in a row, so its buttons are left out; keys replace them: arrows expand
-    /// the row, others act on the selection.
+    /// Bounds of the last tree row in the same layout. ARIA allows no controls in a row, so its buttons are left out; keys replace
+    /// them: arrows expand the row, others act on the selection.
     row: Option<Rect>,
 }
 
@@ -165,7 +165,12 @@ impl List<'_> {
             Some(_) => (group, true),
             None => (group, is_in_control),
         };
+        let row = self.row;
         node.children().iter().for_each(|child| self.add(*child, group, is_in_control));
+        if role.is_none() {
+            // The last row of a scrolled tree reaches under what comes below the tree.
+            self.row = row;
+        }
     }
 
     fn entry(&self, id: NodeId, node: &Node, role: &str, group: Option<NodeId>) -> Map<String, Value> {

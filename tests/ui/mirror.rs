@@ -11,7 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::mirror::{Mirror, entries};
 use gaitway::retarget::ClipLayer;
-use gaitway::state::Command;
+use gaitway::state::{Command, Hidden};
 use gaitway::ui::{Sheet, Tab, Toast, text};
 use serde_json::Value;
 
@@ -54,6 +54,24 @@ fn everything_that_takes_the_focus_has_a_name() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn the_button_below_a_scrolled_tree_is_listed() {
+    let mut harness = motion_bench(WIDE, &[]);
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    harness.state_mut().panels.layout.tab = Tab::Scene;
+    let hidden = Hidden { nodes: [0].into(), ..Hidden::default() };
+    harness.state_mut().editor.apply(Command::SetHidden(hidden));
+    // At some of these heights, the button covers the center of a row that is scrolled out of sight.
+    for height in 0..40 {
+        harness.set_size(egui::vec2(WIDE[0], WIDE[1] - 4.0 * height as f32));
+        harness.run();
+        let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+        let entries = entries(&update);
+        assert!(entries.iter().any(|entry| entry["name"] == text::SHOW_ALL), "{height}");
     }
 }
 

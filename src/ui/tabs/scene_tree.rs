@@ -335,8 +335,13 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let eye_width = if line.is_shown.is_some() { hiding::EYE_WIDTH } else { 6.0 };
     let warnings = (line.warnings > 0).then(|| text::node_warnings(line.warnings));
     let dot_width = if warnings.is_some() { 12.0 } else { 0.0 };
-    if let Some(warnings) = &warnings {
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(warnings.clone()));
+    let is_hidden = line.is_shown == Some(false);
+    if is_hidden || warnings.is_some() {
+        let state = is_hidden.then_some(text::HIDDEN_NODE).into_iter().chain(warnings.as_deref());
+        let describe = |node: &mut egui::accesskit::Node| node.set_description(state.collect::<Vec<_>>().join(", "));
+        ui.ctx().accesskit_node_builder(response.id, describe);
+    }
+    if warnings.is_some() {
         let at = rect.right_center() - vec2(eye_width + 4.0, 0.0);
         ui.painter().circle_filled(at, 3.0, palette.warning);
     }

@@ -17,6 +17,8 @@ pub const SOLO_HINT: &str = "Hides all other meshes. Press again to show them.";
 pub const HIDE: &str = "Hide";
 /// The same button once they are hidden.
 pub const SHOW: &str = "Show";
+/// Description of a hidden node's row.
+pub const HIDDEN_NODE: &str = "Hidden";
 /// Button that shows all hidden nodes and materials.
 pub const SHOW_ALL: &str = "Show all";
 /// Tooltip of an eye.
