@@ -64,15 +64,10 @@ pub fn joint_matrices(model: &Model, character: &Character, joint: JointIndex) -
 pub fn vertex_formula(model: &Model, character: &Character, choice: VertexChoice, out: &mut VertexFormula) -> bool {
     out.terms.clear();
     let asset = &model.asset;
-    let Some(draw) = character.draws.iter().find(|draw| draw.instance == choice.instance) else { return false };
-    if !model.has_vertex(choice.instance, choice.primitive, choice.vertex) {
-        return false;
-    }
-    let geometry = &asset.meshes[draw.mesh].primitives[choice.primitive];
-    let (weights, palette) = (character.morph_weights_of(draw), character.palette_of(draw));
-    [out.bound, out.drawn] =
-        deform_vertex(geometry, choice.vertex, weights, palette, character.skinning, &mut out.scratch);
+    let Some(deformed) = deformed(model, character, choice, &mut out.scratch) else { return false };
+    [out.bound, out.drawn] = deformed;
     let instance = &asset.instances[choice.instance];
+    let geometry = &asset.meshes[instance.mesh].primitives[choice.primitive];
     let mut add = |joint: JointIndex, weight: f32, joint_from_bind: &Affine3A| {
         let Some(world_from_joint) = character.world_from_joint.get(joint.get()) else { return };
         let alone = world_from_joint.transform_point3(joint_from_bind.transform_point3(out.bound));
@@ -91,4 +86,27 @@ pub fn vertex_formula(model: &Model, character: &Character, choice: VertexChoice
     }
     out.sum = out.terms.iter().map(|term| term.share).sum();
     true
+}
+
+impl VertexFormula {
+    /// Returns where another character of the frame draws the same vertex, in world space; `None` if it doesn't.
+    pub fn drawn_by(&mut self, model: &Model, character: &Character, choice: VertexChoice) -> Option<Vec3> {
+        deformed(model, character, choice, &mut self.scratch).map(|[_, drawn]| drawn)
+    }
+}
+
+/// Returns a vertex in the bind pose, in mesh space, and as the character draws it, in world space; `None` if it is not drawn.
+fn deformed(
+    model: &Model,
+    character: &Character,
+    choice: VertexChoice,
+    scratch: &mut DeformedVertices,
+) -> Option<[Vec3; 2]> {
+    let draw = character.draws.iter().find(|draw| draw.instance == choice.instance)?;
+    if !model.has_vertex(choice.instance, choice.primitive, choice.vertex) {
+        return None;
+    }
+    let geometry = &model.asset.meshes[draw.mesh].primitives[choice.primitive];
+    let (weights, palette) = (character.morph_weights_of(draw), character.palette_of(draw));
+    Some(deform_vertex(geometry, choice.vertex, weights, palette, character.skinning, scratch))
 }

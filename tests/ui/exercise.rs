@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable;
 use gaitway::editor::{Contents, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::Model;
+use gaitway::mesh::SkinningMode;
 use gaitway::state::{Command, Show, VertexChoice};
 use gaitway::ui::text::FormulaRow;
 use gaitway::ui::{Saved, Tab, UiAction, text};
@@ -115,10 +116,19 @@ fn a_vertex_shows_shares_that_add_up() {
         }
         assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_none(), "linear skinning draws the sum");
         harness.state_mut().change(|state| {
-            state.display.skinning = gaitway::mesh::SkinningMode::Rigid;
+            state.display.skinning = SkinningMode::Rigid;
         });
         harness.run();
         assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_some());
+        harness.state_mut().change(|state| state.inspect.split = true);
+        harness.run();
+        assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_none(), "each method is named");
+        for method in [SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+            let label = FormulaRow::DrawnBy(method).label();
+            assert!(harness.query_by_label_contains(&label).is_some(), "{label} at {size:?}");
+        }
+        harness.state_mut().change(|state| state.inspect.split = false);
+        harness.run();
         assert_eq!(reach(&mut harness, &text::joint_weight("joint 2", 0.5)), [Command::SelectJoint(Some(2))]);
         assert_eq!(reach(&mut harness, text::UNPIN_VERTEX), [Command::SelectVertex(None)]);
     }

@@ -4,11 +4,11 @@ use egui::{Align2, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos
 use glam::{Affine3A, Mat4, Vec3};
 
 use crate::anim::JointIndex;
-use crate::frame::{FormulaTerm, VertexFormula, joint_matrices, pick_vertex, vertex_formula};
+use crate::frame::{Character, FormulaTerm, VertexFormula, joint_matrices, pick_vertex, vertex_formula};
 use crate::library::Model;
 use crate::mesh::{DeformedVertices, SkinningMode};
-use crate::state::{Command, VertexChoice, title};
-use crate::ui::viewport::panes::{pane_at, to_ndc, to_screen};
+use crate::state::{Command, Comparison, VertexChoice, title};
+use crate::ui::viewport::panes::{pane_index, pane_rects, to_ndc, to_screen};
 use crate::ui::{Output, Shown, UiState, controls, style, text};
 
 const LINE: f32 = 17.0;
@@ -92,15 +92,25 @@ pub fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiSta
 
 fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut DeformedVertices) -> Option<VertexChoice> {
     let model = shown.library.active()?;
-    let pane = pane_at(shown, rect, Some(at));
-    pick_vertex(model, shown.frame, shown.frame.characters.first()?, to_ndc(pane, at), scratch)
+    let panes = pane_rects(shown, rect);
+    let pane = pane_index(&panes, Some(at));
+    pick_vertex(model, shown.frame, character_in(shown, pane)?, to_ndc(panes[pane], at), scratch)
 }
 
-/// Marks the vertex with a dot and its number.
-pub fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
+/// The character of a pane; without a comparison, the only one of the model.
+fn character_in<'a>(shown: &Shown<'a>, pane: usize) -> Option<&'a Character> {
+    let characters = &shown.frame.characters;
+    if shown.frame.comparison.is_some() { characters.get(pane) } else { characters.first() }
+}
+
+/// Marks the vertex with a dot and its number in the pane under the pointer.
+pub fn mark(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
     let choice =
         local.vertex_probe.vertex(shown).filter(|_| local.vertex_probe.is_on(shown) && !shown.state.page.embed)?;
-    let (model, character) = (shown.library.active()?, shown.frame.characters.first()?);
+    let pointer = ui.input(|input| input.pointer.hover_pos());
+    let panes = pane_rects(shown, rect);
+    let index = pane_index(&panes, pointer);
+    let (model, character, pane) = (shown.library.active()?, character_in(shown, index)?, panes[index]);
     let formula = &mut local.vertex_probe.formula;
     if !vertex_formula(model, character, choice, formula) {
         return None;
@@ -169,7 +179,7 @@ fn equation(
     shown: &Shown<'_>,
     model: &Model,
     choice: VertexChoice,
-    formula: &VertexFormula,
+    formula: &mut VertexFormula,
     out: &mut Output,
 ) {
     ui.horizontal(|ui| {
@@ -198,7 +208,13 @@ fn equation(
     ui.add_space(2.0);
     ui.separator();
     numbers(ui, text::FormulaRow::Sum, formula.sum, digits, true);
-    if shown.state.display.skinning != SkinningMode::Linear {
+    if shown.frame.comparison == Some(Comparison::Skinning) {
+        for character in shown.frame.characters.iter().filter(|character| character.skinning != SkinningMode::Linear) {
+            if let Some(drawn) = formula.drawn_by(model, character, choice) {
+                numbers(ui, text::FormulaRow::DrawnBy(character.skinning), drawn, digits, true);
+            }
+        }
+    } else if shown.state.display.skinning != SkinningMode::Linear {
         numbers(ui, text::FormulaRow::Drawn, formula.drawn, digits, true);
         controls::hint(ui, "The sum is the result of linear skinning; the Display tab sets another method.");
     }

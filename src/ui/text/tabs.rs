@@ -2,6 +2,7 @@
 
 use super::{counted, grouped, labelled};
 use crate::editor::ValidatorReport;
+use crate::mesh::SkinningMode;
 use crate::state::Channel;
 
 // Scene tab
@@ -103,6 +104,8 @@ pub enum FormulaRow {
     Sum,
     /// The vertex as drawn, in world space. Shown unless the skinning method is linear.
     Drawn,
+    /// The vertex as another method draws it beside the linear one, in world space.
+    DrawnBy(SkinningMode),
 }
 
 impl FormulaRow {
@@ -114,6 +117,9 @@ impl FormulaRow {
             Self::Share => ("share", "w · T · inv(B) · p"),
             Self::Sum => ("p'", "sum of the shares"),
             Self::Drawn => ("drawn", "result of the current skinning method"),
+            Self::DrawnBy(SkinningMode::Linear) => ("linear", "result of linear skinning"),
+            Self::DrawnBy(SkinningMode::Rigid) => ("rigid", "result of rigid skinning"),
+            Self::DrawnBy(SkinningMode::DualQuaternion) => ("dual q.", "result of dual quaternion skinning"),
         }
     }
 

@@ -24,7 +24,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     }
     let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| rect.contains(*at));
     let pane = pane_at(&shown, rect, pointer);
-    formula::mark(ui, &painter, pane, &shown, local);
+    formula::mark(ui, &painter, rect, &shown, local);
     let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(&shown, picked))];
     let selected = both(shown.state.selection.joint.map(PickedJoint::Model));
     for picked in selected.into_iter().flatten() {

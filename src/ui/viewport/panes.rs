@@ -16,8 +16,12 @@ pub fn pane_rects(shown: &Shown<'_>, rect: Rect) -> Vec<Rect> {
 /// The pane under a point, or else the first one.
 pub fn pane_at(shown: &Shown<'_>, rect: Rect, position: Option<Pos2>) -> Rect {
     let panes = pane_rects(shown, rect);
-    let under = position.and_then(|position| panes.iter().find(|pane| pane.contains(position)));
-    under.or(panes.first()).copied().unwrap_or(rect)
+    panes.get(pane_index(&panes, position)).copied().unwrap_or(rect)
+}
+
+/// The index of the pane under a point, or else of the first one.
+pub fn pane_index(panes: &[Rect], position: Option<Pos2>) -> usize {
+    position.and_then(|position| panes.iter().position(|pane| pane.contains(position))).unwrap_or(0)
 }
 
 /// Normalized device coordinates of a point in a pane.
