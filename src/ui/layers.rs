@@ -92,7 +92,7 @@ fn card(
         let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);
         let choices = |ui: &mut Ui| {
             for (index, title) in titles.iter().enumerate() {
-                if controls::choice(ui, clip == Some(index), title).clicked() {
+                if controls::option(ui, clip == Some(index), title) {
                     layer.clip = name_of(model, index);
                 }
             }

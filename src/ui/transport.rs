@@ -207,9 +207,8 @@ fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let button = ui.menu_button(speed_text(shown), |ui| {
         for speed in [0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0] {
             let chosen = (shown.state.playback.speed - speed).abs() < 1e-6;
-            if controls::choice(ui, chosen, &text::speed(speed)).clicked() {
+            if controls::option(ui, chosen, &text::speed(speed)) {
                 out.commands.push(Command::SetSpeed(speed));
-                ui.close();
             }
         }
     });

@@ -189,6 +189,17 @@ fn escape_closes_a_list_and_nothing_else() {
 }
 
 #[test]
+fn choosing_with_a_key_closes_the_list() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    press(&mut harness, text::CHANNEL);
+    harness.get_by_label(text::channel(Channel::Metallic)).focus();
+    harness.run();
+    assert_eq!(press_key(&mut harness, Key::Enter), [Command::SetChannel(Channel::Metallic)]);
+    assert!(!egui::Popup::is_any_open(&harness.ctx));
+}
+
+#[test]
 fn the_help_lists_every_key_and_closes() {
     let mut harness = sample_bench(WIDE);
     press_key(&mut harness, Key::Questionmark);

@@ -284,11 +284,11 @@ fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Opti
     let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate();
     let combo = combo.selected_text(&texts.policy);
     let response = combo.show_ui(ui, |ui| {
-        if controls::choice(ui, own.is_none(), &texts.default_policy).clicked() {
+        if controls::option(ui, own.is_none(), &texts.default_policy) {
             pressed = Some(None);
         }
         for (policy, text) in &texts.policies {
-            if controls::choice(ui, own == Some(policy), text).clicked() {
+            if controls::option(ui, own == Some(policy), text) {
                 pressed = Some(Some(policy.clone()));
             }
         }

@@ -66,7 +66,7 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, t
         let text = counted().find(|(filter, _)| *filter == table.filter).map_or("", |(_, text)| text);
         let response = combo.selected_text(text).show_ui(ui, |ui| {
             for (filter, text) in counted() {
-                if controls::choice(ui, filter == table.filter, text).clicked() {
+                if controls::option(ui, filter == table.filter, text) {
                     table.filter = filter;
                 }
             }

@@ -386,7 +386,7 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
             egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
         let response = combo.show_ui(ui, |ui| {
             for (index, name) in contents.motions.iter().enumerate() {
-                if controls::choice(ui, index == pairing.index, name).clicked() {
+                if controls::option(ui, index == pairing.index, name) {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
             }

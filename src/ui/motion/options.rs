@@ -182,7 +182,7 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
             .selected_text(text::rest_choice(chosen));
         let response = combo.show_ui(ui, |ui| {
             for choice in RestChoice::ALL {
-                if controls::choice(ui, choice == chosen, text::rest_choice(choice)).clicked() {
+                if controls::option(ui, choice == chosen, text::rest_choice(choice)) {
                     pressed = Some(choice);
                 }
             }
@@ -227,12 +227,12 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
     };
     let combo = egui::ComboBox::from_id_salt("unmapped").width(ui.available_width()).truncate().selected_text(text);
     let response = combo.show_ui(ui, |ui| {
-        if controls::choice(ui, playing.is_none(), text::REST).clicked() {
+        if controls::option(ui, playing.is_none(), text::REST) {
             out.commands.push(Command::SetUnmapped(Some(Unmapped::Rest)));
         }
         for (index, title) in titles.iter().enumerate().take(clips.len()) {
             let chosen = playing.is_some_and(|(clip, _)| clip == index);
-            if controls::choice(ui, chosen, title).clicked() {
+            if controls::option(ui, chosen, title) {
                 out.commands.push(plays(index, playing.is_some_and(|(_, frozen)| frozen)));
             }
         }

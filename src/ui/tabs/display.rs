@@ -129,7 +129,7 @@ fn channel(ui: &mut Ui, now: Channel, out: &mut Output) {
     let response = combo
         .show_ui(ui, |ui| {
             for channel in Channel::ALL {
-                if controls::choice(ui, channel == now, text::channel(channel)).clicked() {
+                if controls::option(ui, channel == now, text::channel(channel)) {
                     out.commands.push(Command::SetChannel(channel));
                 }
             }

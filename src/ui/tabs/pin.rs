@@ -94,7 +94,7 @@ fn goal(
             let combo = combo.selected_text(other.map(name).unwrap_or_default());
             let response = combo.show_ui(ui, |ui| {
                 for (joint, at) in others {
-                    if controls::choice(ui, other == Some(joint), &name(joint)).clicked() {
+                    if controls::option(ui, other == Some(joint), &name(joint)) {
                         *goal = at;
                     }
                 }

@@ -87,6 +87,15 @@ pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
     response
 }
 
+/// An entry of a drop-down list; returns whether it was chosen. A click would close the list anyway, a key wouldn't.
+pub fn option(ui: &mut Ui, on: bool, label: &str) -> bool {
+    let is_chosen = choice(ui, on, label).clicked();
+    if is_chosen {
+        ui.close();
+    }
+    is_chosen
+}
+
 /// A text field of one line, in the middle of its height: a field for fingers is higher than its text.
 pub fn text_field(text: &mut String) -> egui::TextEdit<'_> {
     egui::TextEdit::singleline(text).align(egui::Align2::LEFT_CENTER)
