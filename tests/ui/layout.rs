@@ -6,7 +6,9 @@ use gaitway::retarget::ClipLayer;
 use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, bench, drag, model_with_clips, motion_bench, painted, press, sample_bench};
+use crate::bench::{
+    Bench, NARROW, WIDE, bench, drag, model_with_clips, motion_bench, painted, press, press_key, sample_bench,
+};
 
 #[test]
 fn panels_fold_away_and_come_back() {
@@ -358,5 +360,20 @@ fn a_selected_joint_is_in_sight_in_the_tree() {
             .find(|clipped| is_name(&clipped.shape) && row.contains_rect(clipped.shape.visual_bounding_rect()));
         let sight = clipped.expect("the row's name is painted").clip_rect;
         assert!(sight.contains_rect(row.shrink(1.0)), "{size:?}: {row:?} in {sight:?}");
+    }
+}
+
+#[test]
+fn the_header_works_above_an_open_sheet_on_a_phone_on_its_side() {
+    let mut harness = sample_bench(ON_ITS_SIDE);
+    for sheet in [Sheet::Clips, Sheet::Inspector] {
+        harness.state_mut().panels.layout.sheet = Some(sheet);
+        harness.run();
+        let left = harness.state().viewport.right();
+        let above = harness.ctx.layer_id_at(egui::pos2(left - 40.0, 200.0)).map(|layer| layer.order);
+        assert_eq!(above, Some(egui::Order::Background), "{sheet:?} covers the viewport");
+        press(&mut harness, text::MENU);
+        assert!(egui::Popup::is_any_open(&harness.ctx), "{sheet:?}");
+        press_key(&mut harness, egui::Key::Escape);
     }
 }
