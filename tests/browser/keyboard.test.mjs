@@ -161,6 +161,13 @@ for (const renderer of BACK_ENDS)
       await eventually(async () => Number(await exposure.inputValue()) !== 0);
       await control(page, "slider", "Time").fill("0.5");
       await until(page, async () => Math.abs((await window.gaitway.state()).t - 0.5) < 0.02);
+      await control(page, "tab", "Motion").press("Enter");
+      const cell = control(page, "gridcell", /Hips/).first();
+      await cell.press("Enter");
+      // The open row's controls divide the table.
+      await until(page, () => document.querySelectorAll("[role=grid]").length === 2);
+      await cell.press("ArrowDown");
+      await until(page, () => document.activeElement?.role === "gridcell" && !/Hips/.test(document.activeElement.ariaLabel ?? ""));
     });
 
     onPage("axe finds nothing wrong", () => fragment([["model", site.data(SOLDIER)], ["motion", site.data(WALK)], ["play", 0]]), async (page) => {

@@ -290,7 +290,9 @@ function neighbourOf(target, key) {
   if (role === "tree" && isSideways) return undefined;
   if (role === "grid" && !isSideways) {
     const { parentElement: row } = target;
-    const next = step < 0 ? row?.previousElementSibling : row?.nextElementSibling;
+    // The controls of an open row lie between two grids.
+    const rows = [...(list.parentElement?.querySelectorAll("[role=row]") ?? [])];
+    const next = row === null ? undefined : rows[rows.indexOf(row) + step];
     const cells = /** @type {HTMLElement[]} */ ([...(next?.children ?? [])]);
     // A heading has one cell.
     return cells[Math.min([...(row?.children ?? [])].indexOf(target), cells.length - 1)] ?? null;
