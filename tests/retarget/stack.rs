@@ -266,8 +266,7 @@ fn far_from_the_origin_rounding_takes_no_keys() {
         let by = 5000.0 * Vec3::new(0.6, 0.0, -0.8);
         figure.set_clip(moved(&figure, &base, by));
         let far = check_baked(&figure, &moved(&figure, &other, by), &layers);
-        eprintln!("{near} {far}");
-        assert!(far < near + near / 10, "{far} keys instead of {near}");
+        assert!(far <= near, "{far} keys instead of {near}");
     }
 }
 
