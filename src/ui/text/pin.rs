@@ -27,14 +27,15 @@ pub const PIN_TO_RANGE: &str = "Use the current range";
 /// Returns the name of a pin's track under the timeline: the joint and its goal. `other` is the name of the goal if that is a joint.
 pub fn pin_name(joint: &str, goal: PinGoal, other: Option<&str>) -> String {
     let goal = match goal {
-        PinGoal::Point(_) | PinGoal::Look(_) => "point",
+        PinGoal::Point(_) => "point",
         PinGoal::Joint(..) => other.unwrap_or("joint"),
-        PinGoal::Camera => "camera",
+        PinGoal::Look(_) => "look at point",
+        PinGoal::Camera => "look at camera",
     };
     labelled(joint, goal)
 }
 
-/// Returns the same in words.
+/// Returns what a pin does, as a phrase: “LeftHand pinned to Head”.
 pub fn pin_to(joint: &str, goal: PinGoal, other: Option<&str>) -> String {
     match goal {
         PinGoal::Point(_) => format!("{joint} pinned to a point"),

@@ -42,20 +42,25 @@ pub struct WorldPose {
 
 impl WorldPose {
     pub fn new(skeleton: &Skeleton, locals: Vec<Local>, world_from_model: DQuat) -> Self {
-        let mut rotations = Vec::with_capacity(locals.len());
-        let mut positions = Vec::with_capacity(locals.len());
-        let mut affines: Vec<DAffine3> = Vec::with_capacity(locals.len());
-        for (local, parent) in locals.iter().zip(skeleton.parents()) {
-            let (world_from_parent, parent_rotation) = match parent {
-                Some(parent) => (affines[parent.get()], rotations[parent.get()]),
-                None => (DAffine3::from_quat(world_from_model), world_from_model),
-            };
-            let affine = world_from_parent * local.to_affine();
-            positions.push(affine.translation);
-            affines.push(affine);
-            rotations.push(unit(parent_rotation * local.rotation));
+        let (rotations, positions) = (vec![DQuat::IDENTITY; locals.len()], vec![DVec3::ZERO; locals.len()]);
+        let mut pose = Self { world_from_model, locals, rotations, positions };
+        let mut affines = vec![DAffine3::IDENTITY; pose.locals.len()];
+        for joint in skeleton.joints() {
+            pose.place(skeleton, joint, &mut affines);
         }
-        Self { world_from_model, locals, rotations, positions }
+        pose
+    }
+
+    /// Places a joint by its local transform. `affines` has the matrices of its ancestors, and gets its own.
+    fn place(&mut self, skeleton: &Skeleton, joint: JointIndex, affines: &mut [DAffine3]) {
+        let (world_from_parent, parent_rotation) = match skeleton.parent(joint) {
+            Some(parent) => (affines[parent.get()], self.rotation(parent)),
+            None => (DAffine3::from_quat(self.world_from_model), self.world_from_model),
+        };
+        let (joint, local) = (joint.get(), self.locals[joint.get()]);
+        affines[joint] = world_from_parent * local.to_affine();
+        self.positions[joint] = affines[joint].translation;
+        self.rotations[joint] = unit(parent_rotation * local.rotation);
     }
 
     pub fn rotation(&self, joint: JointIndex) -> DQuat {
@@ -74,6 +79,36 @@ impl WorldPose {
     /// `world_from_parent` of the joint, with scale.
     pub fn parent_frame(&self, skeleton: &Skeleton, joint: JointIndex) -> DAffine3 {
         parent_frame(skeleton, joint, self.world_from_model, |ancestor| self.locals[ancestor.get()])
+    }
+}
+
+/// A pose of some joints and their ancestors, for looking at many times of a clip. Other joints stay as they rest and have no
+/// meaning.
+#[derive(Debug)]
+pub struct PartialPose<'a> {
+    skeleton: &'a Skeleton,
+    joints: Vec<JointIndex>,
+    affines: Vec<DAffine3>,
+    pose: WorldPose,
+}
+
+impl<'a> PartialPose<'a> {
+    pub fn new(skeleton: &'a Skeleton, world_from_model: DQuat, joints: impl IntoIterator<Item = JointIndex>) -> Self {
+        Self {
+            skeleton,
+            joints: with_ancestors(skeleton, joints),
+            affines: vec![DAffine3::IDENTITY; skeleton.len()],
+            pose: WorldPose::new(skeleton, node_locals(skeleton), world_from_model),
+        }
+    }
+
+    /// Poses the joints by their local transforms.
+    pub fn update(&mut self, mut local: impl FnMut(JointIndex) -> Local) -> &WorldPose {
+        for &joint in &self.joints {
+            self.pose.locals[joint.get()] = local(joint);
+            self.pose.place(self.skeleton, joint, &mut self.affines);
+        }
+        &self.pose
     }
 }
 
@@ -106,16 +141,34 @@ pub struct Scratch {
     pose: Pose,
 }
 
+impl Scratch {
+    /// Samples a clip as the player would play it.
+    pub fn sample(&mut self, skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> &Pose {
+        self.pose.copy_from(skeleton.rest());
+        clip.sample(skeleton, time_secs, &mut self.cursor, &mut self.pose);
+        &self.pose
+    }
+}
+
 /// Samples the local transforms of a clip as the player would play it.
 pub fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32, scratch: &mut Scratch) -> Vec<Local> {
-    scratch.pose.copy_from(skeleton.rest());
-    clip.sample(skeleton, time_secs, &mut scratch.cursor, &mut scratch.pose);
-    locals_of(&scratch.pose)
+    locals_of(scratch.sample(skeleton, clip, time_secs))
 }
 
 /// The joint and its ancestors, up to the root.
 pub fn ancestry(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
     std::iter::successors(Some(joint), |&joint| skeleton.parent(joint))
+}
+
+/// Returns the joints and all their ancestors, parents first.
+pub fn with_ancestors(skeleton: &Skeleton, joints: impl IntoIterator<Item = JointIndex>) -> Vec<JointIndex> {
+    let mut is_included = vec![false; skeleton.len()];
+    for joint in joints {
+        for joint in ancestry(skeleton, joint) {
+            is_included[joint.get()] = true;
+        }
+    }
+    skeleton.joints().filter(|joint| is_included[joint.get()]).collect()
 }
 
 /// Whether `joint` is `ancestor` or one of its descendants.

@@ -37,6 +37,11 @@ impl Sole {
         center.y + self.positions(pose).map(|point| (turn * (point - center)).y).fold(f64::INFINITY, f64::min)
     }
 
+    /// The joints that the sole is attached to, repeatedly.
+    pub fn joints(&self) -> impl Iterator<Item = JointIndex> {
+        self.points.iter().map(|&(joint, _)| joint)
+    }
+
     fn positions(&self, pose: &WorldPose) -> impl Iterator<Item = DVec3> {
         self.points.iter().map(|&(joint, offset)| pose.position(joint) + pose.rotation(joint) * offset)
     }
@@ -78,14 +83,18 @@ fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
     let mut hull = Hull::new(asset, rest, foot);
     for &MeshInstance { joint, mesh, skin, joint_from_mesh } in &asset.instances {
         let skin = skin.map(|skin| &asset.skins[skin]);
-        if skin.is_none() && !hull.is_in_foot(joint) {
+        let is_in_foot = |&joint: &JointIndex| hull.is_in_foot(joint);
+        // One flag per joint of the skin.
+        let in_foot: Vec<bool> = skin.map_or_else(Vec::new, |skin| skin.joints().iter().map(is_in_foot).collect());
+        let is_outside = if skin.is_some() { !in_foot.contains(&true) } else { !hull.is_in_foot(joint) };
+        if is_outside {
             continue;
         }
         for geometry in &asset.meshes[mesh].primitives {
             for (vertex, &position) in geometry.positions.iter().enumerate() {
                 let bound = match skin {
                     None => Some((joint, joint_from_mesh.transform_point3(position))),
-                    Some(skin) => bound_to_foot(&hull, skin, &geometry.influences, vertex, position),
+                    Some(skin) => bound_to_foot(&in_foot, skin, &geometry.influences, vertex, position),
                 };
                 if let Some((joint, position)) = bound {
                     hull.add(joint, position);
@@ -99,7 +108,7 @@ fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
 /// Returns the foot's joint with the most influence on a vertex, and the vertex in its frame; `None` for vertices outside the
 /// foot.
 fn bound_to_foot(
-    hull: &Hull,
+    in_foot: &[bool],
     skin: &Skin,
     influences: &Influences,
     vertex: usize,
@@ -108,8 +117,7 @@ fn bound_to_foot(
     if influences.is_empty() {
         return None;
     }
-    let in_foot = |(joint, _): &(u16, f32)| hull.is_in_foot(skin.joints()[usize::from(*joint)]);
-    let own = influences.of_vertex(vertex).filter(in_foot);
+    let own = influences.of_vertex(vertex).filter(|&(joint, _)| in_foot[usize::from(joint)]);
     let (sum, strongest) = own.fold((0.0, (0, 0.0)), |(sum, strongest), next| {
         (sum + next.1, if next.1 > strongest.1 { next } else { strongest })
     });

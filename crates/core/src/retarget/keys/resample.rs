@@ -1,10 +1,10 @@
 //! Resamples where no single channel suffices: evaluates a function of time at the given times, then subdivides until
-//! linear interpolation follows it closely enough. And the reverse: finds as few samples as suffice.
+//! linear interpolation follows it closely enough. [`fewest`] does the reverse: it drops samples that interpolation restores.
 
 use glam::DVec3;
 
 /// Maximum number of times an interval between two given times is halved.
-const MAX_HALVINGS: u32 = 8;
+pub const MAX_HALVINGS: u32 = 8;
 
 /// Keys of one value over time, for linear interpolation.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,8 @@ impl<T> Resampled<T> {
 /// A function of time, and how its values are compared.
 pub struct Curve<V, E> {
     pub value: V,
-    /// Distance of the fourth value from the interpolation between the first two by the factor, in the unit of `tolerance`.
+    /// `error(from, to, factor, value)`: distance of `value` from the interpolation between `from` and `to`, in the unit of
+    /// `tolerance`.
     pub error: E,
     pub tolerance: f64,
 }
@@ -101,7 +102,8 @@ fn refine<T>(
     refine(curve, end, halvings + 1, keys);
 }
 
-/// Adds keys right before and after the largest jump between the last key and `end`: nothing smooth would still be off.
+/// Bisects to a jump between the last key and `end`, and adds keys on both sides of it. A smooth curve would have been close
+/// enough after [`MAX_HALVINGS`]. Another jump so close to the first remains a ramp.
 fn close_in<T>(
     curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
     end: &(f32, T),
@@ -122,7 +124,12 @@ fn close_in<T>(
             after = Some((middle_secs, value));
         }
     }
-    before.into_iter().chain(after).for_each(|key| keys.push(key));
+    let [from, to] =
+        [before.as_ref().map_or(start, |(_, value)| value), after.as_ref().map_or(&end.1, |(_, value)| value)];
+    // Anything smaller is rounding, or part of a steep curve.
+    if (curve.error)(from, from, 0.0, to) > curve.tolerance {
+        before.into_iter().chain(after).for_each(|key| keys.push(key));
+    }
 }
 
 /// Returns a time strictly between two, if there is one.
@@ -131,8 +138,8 @@ fn middle(from: f32, to: f32) -> Option<f32> {
     (from < middle && middle < to).then_some(middle)
 }
 
-/// Returns the indices of samples to keep: from each, the search goes on to the farthest for which `fits` holds, as far as
-/// doubling and halving the step tells.
+/// Returns the indices of the samples to keep, greedily: from each, the farthest for which `fits` holds, found by doubling and
+/// halving the step. Always keeps the first and the last.
 pub fn fewest(count: usize, mut fits: impl FnMut(usize, usize) -> bool) -> Vec<usize> {
     let (mut kept, mut from) = (vec![0], 0);
     while from + 1 < count {

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3, DVec4, Quat, Vec3};
 
 use crate::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Skeleton};
 use crate::retarget::math::{slerp, unit};
-use crate::retarget::pose::{Local, WorldPose, ancestry, parent_frame};
+use crate::retarget::pose::{Local, ancestry, parent_frame};
 
 /// One property of one joint over time.
 #[derive(Debug, Clone, Copy)]
@@ -93,16 +93,17 @@ impl<'a> SourceTracks<'a> {
 
     /// The joint's local transform at a time.
     pub fn local(&self, joint: JointIndex, time_secs: f32) -> Local {
-        Local {
-            translation: vector_at(&self.translations[joint.get()], time_secs),
-            rotation: rotation_at(&self.rotations[joint.get()], time_secs),
-            scale: vector_at(&self.scales[joint.get()], time_secs),
-        }
+        self.locals_at(time_secs)(joint)
     }
 
-    pub fn pose(&self, time_secs: f32, world_from_model: DQuat) -> WorldPose {
-        let locals = self.skeleton.joints().map(|joint| self.local(joint, time_secs)).collect();
-        WorldPose::new(self.skeleton, locals, world_from_model)
+    /// Returns the joints' local transforms at a time. For several joints, timelines that they share are searched once.
+    pub fn locals_at(&self, time_secs: f32) -> impl FnMut(JointIndex) -> Local {
+        let mut search = Search { time_secs, last: None };
+        move |joint| Local {
+            translation: vector(&self.translations[joint.get()], &mut search),
+            rotation: rotation(&self.rotations[joint.get()], &mut search),
+            scale: vector(&self.scales[joint.get()], &mut search),
+        }
     }
 
     /// World position of a joint, without sampling the joints beside its ancestors.
@@ -144,6 +145,7 @@ fn constant<T: Copy + PartialEq>(interpolation: Interpolation, values: &[T], zer
 }
 
 /// Two neighbouring keys and the position between them; `from == to` outside the keys.
+#[derive(Clone, Copy)]
 struct Segment {
     from: usize,
     to: usize,
@@ -163,6 +165,26 @@ fn segment_at(times: &[f32], time_secs: f32) -> Segment {
     }
 }
 
+/// Finds segments at one time.
+struct Search<'a> {
+    time_secs: f32,
+    /// Most tracks of a clip have the same times.
+    last: Option<(&'a [f32], Segment)>,
+}
+
+impl<'a> Search<'a> {
+    fn segment(&mut self, times: &'a [f32]) -> Segment {
+        if let Some((last, segment)) = self.last
+            && std::ptr::eq(last, times)
+        {
+            return segment;
+        }
+        let segment = segment_at(times, self.time_secs);
+        self.last = Some((times, segment));
+        segment
+    }
+}
+
 /// Weights of value, out-tangent, next value and next in-tangent (appendix C.4).
 fn hermite(segment: &Segment) -> [f64; 4] {
     let t = segment.factor;
@@ -172,12 +194,20 @@ fn hermite(segment: &Segment) -> [f64; 4] {
 }
 
 pub fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
+    vector(track, &mut Search { time_secs, last: None })
+}
+
+pub fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
+    rotation(track, &mut Search { time_secs, last: None })
+}
+
+fn vector<'a>(track: &Track<'a, DVec3>, search: &mut Search<'a>) -> DVec3 {
     let (times, channel) = match track {
         Track::Constant(value) => return *value,
         Track::Keys { times, channel } => (times, channel),
     };
     let (Keys::Translation(values) | Keys::Scale(values)) = &channel.keys else { return DVec3::ZERO };
-    let segment = segment_at(times, time_secs);
+    let segment = search.segment(times);
     let value = |at: usize| values[at].as_dvec3();
     match channel.interpolation {
         Interpolation::Step => value(segment.from),
@@ -192,16 +222,17 @@ pub fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
     }
 }
 
-pub fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
+fn rotation<'a>(track: &Track<'a, DQuat>, search: &mut Search<'a>) -> DQuat {
     let (times, channel) = match track {
         Track::Constant(value) => return *value,
         Track::Keys { times, channel } => (times, channel),
     };
     let Keys::Rotation(values) = &channel.keys else { return DQuat::IDENTITY };
-    let segment = segment_at(times, time_secs);
+    let segment = search.segment(times);
     let value = |at: usize| values[at].as_dquat();
     match channel.interpolation {
         Interpolation::Step => unit(value(segment.from)),
+        Interpolation::Linear if segment.factor == 0.0 => unit(value(segment.from)),
         Interpolation::Linear => slerp(unit(value(segment.from)), unit(value(segment.to)), segment.factor),
         Interpolation::CubicSpline => {
             let [p0, m0, p1, m1] = hermite(&segment);

@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
 use super::turn::largest_turn_degrees;
-use crate::anim::{Clip, JointIndex};
+use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
 use crate::retarget::math::{angle_between, degrees_between};
-use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::pose::{Local, PartialPose, Scratch, WorldPose};
 use crate::retarget::transfer::{RemovedTravel, Transfer, lowest_leg_joint, removed_travel, rotation_laws};
 
 /// Quality figures; `None` for what cannot be measured.
@@ -117,25 +117,34 @@ pub fn measure(
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet);
-    let mut scratches = [Scratch::default(), Scratch::default()];
+    let pairs = &transfer.map.pairs;
+    let mut source_pose = PartialPose::new(
+        transfer.tracks.skeleton,
+        transfer.alignment.source.world_from_model,
+        pairs.iter().map(|pair| pair.source),
+    );
+    // Each foot's joints are mapped, but for those of its sole.
+    let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
+    let targets: Vec<JointIndex> =
+        pairs.iter().map(|pair| pair.target).chain(ground_joints.iter().copied()).chain(of_soles).collect();
+    let [mut target_clip, mut unplanted_clip] = [(); 2].map(|()| PlayedClip::new(transfer, &targets));
     for (index, &time) in times.iter().enumerate() {
-        let source = transfer.source_pose(time);
-        let [scratch, unplanted_scratch] = &mut scratches;
-        let target = transfer.target_pose(measured.clip, time, scratch);
-        let unplanted = measured.unplanted.map(|clip| transfer.target_pose(clip, time, unplanted_scratch));
+        let source = source_pose.update(transfer.tracks.locals_at(time));
+        let target = target_clip.pose(measured.clip, time);
+        let unplanted = measured.unplanted.map_or(target, |clip| unplanted_clip.pose(clip, time));
         // Undoes the turning that the root options removed.
         let turn_back = DQuat::from_rotation_y(-removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
-        add_orientation_errors(&mut orientation, transfer, &source, unplanted.as_ref().unwrap_or(&target), turn_back);
-        add_direction_errors(&mut direction, &segments, &source, &target, turn_back);
-        add_direction_errors(&mut facing, &facing_segments, &source, &target, turn_back);
+        add_orientation_errors(&mut orientation, transfer, source, unplanted, turn_back);
+        add_direction_errors(&mut direction, &segments, source, target, turn_back);
+        add_direction_errors(&mut facing, &facing_segments, source, target, turn_back);
         if let Some(ground) = ground {
             let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
             penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
         }
         for foot in &mut feet {
             foot.source.push(source.position(foot.source_joint));
-            foot.target.push(with_travel(transfer, &target, foot.target_joint, &removed, index, turn_back));
-            foot.heights.push(foot.sole.lowest(&target) - soles.ground);
+            foot.target.push(with_travel(transfer, target, foot.target_joint, &removed, index, turn_back));
+            foot.heights.push(foot.sole.lowest(target) - soles.ground);
         }
     }
     let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
@@ -161,6 +170,27 @@ pub fn measure(
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)
+}
+
+/// The measured joints of the target, in the common frame.
+struct PlayedClip<'a> {
+    skeleton: &'a Skeleton,
+    scratch: Scratch,
+    pose: PartialPose<'a>,
+}
+
+impl<'a> PlayedClip<'a> {
+    fn new(transfer: &Transfer<'a>, joints: &[JointIndex]) -> Self {
+        let skeleton = transfer.target_skeleton;
+        let pose = PartialPose::new(skeleton, transfer.alignment.target.world_from_model, joints.iter().copied());
+        Self { skeleton, scratch: Scratch::default(), pose }
+    }
+
+    /// Poses the joints as the player would play a clip.
+    fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
+        let sampled = self.scratch.sample(self.skeleton, clip, time_secs);
+        self.pose.update(|joint| Local::from(&sampled.local(joint)))
+    }
 }
 
 /// The source's keys, and halfway between them.

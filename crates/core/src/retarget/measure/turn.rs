@@ -4,6 +4,7 @@ use glam::Quat;
 
 use crate::anim::{Clip, Pose, SampleCursor, Skeleton};
 use crate::retarget::map::Pair;
+use crate::retarget::pose::with_ancestors;
 
 const FRAMES_PER_SEC: f32 = 60.0;
 
@@ -11,17 +12,17 @@ const FRAMES_PER_SEC: f32 = 60.0;
 /// clip shorter than that.
 pub fn largest_turn_degrees(skeleton: &Skeleton, pairs: &[Pair], clip: &Clip) -> Option<f64> {
     let (mut pose, mut cursor) = (Pose::default(), SampleCursor::default());
-    let [mut before, mut now] = [(); 2].map(|()| Vec::with_capacity(skeleton.len()));
+    let joints = with_ancestors(skeleton, pairs.iter().map(|pair| pair.target));
+    let [mut before, mut now] = [(); 2].map(|()| vec![Quat::IDENTITY; skeleton.len()]);
     // Unit quaternions are apart by twice the sine of a quarter of the angle.
     let mut largest: Option<f32> = None;
     for frame in 0..=(clip.duration_secs() * FRAMES_PER_SEC + 1e-3) as u32 {
         pose.copy_from(skeleton.rest());
         clip.sample(skeleton, frame as f32 / FRAMES_PER_SEC, &mut cursor, &mut pose);
         std::mem::swap(&mut before, &mut now);
-        now.clear();
-        for (local, parent) in pose.locals().zip(skeleton.parents()) {
-            let parent = parent.map_or(Quat::IDENTITY, |parent| now[parent.get()]);
-            now.push((parent * local.rotation).normalize());
+        for &joint in &joints {
+            let parent = skeleton.parent(joint).map_or(Quat::IDENTITY, |parent| now[parent.get()]);
+            now[joint.get()] = (parent * pose.local(joint).rotation).normalize();
         }
         if frame > 0 {
             let turns = pairs.iter().map(|pair| {

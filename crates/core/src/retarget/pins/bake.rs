@@ -5,21 +5,13 @@ use glam::DQuat;
 use super::{Pin, PinTimes, Pinning};
 use crate::anim::{Clip, Interpolation, JointIndex, Pose, SampleCursor};
 use crate::retarget::change::track::{Target, Track, Tracks};
-use crate::retarget::keys::resample::{fewest, union};
-use crate::retarget::math::{angle_between, slerp};
+use crate::retarget::keys::limits::{BETWEEN_KEYS, BETWEEN_SAMPLES, Limits};
+use crate::retarget::keys::resample::{MAX_HALVINGS, fewest, union};
+use crate::retarget::math::slerp;
 use crate::retarget::pose::{WorldPose, is_within, locals_of};
 
-/// Largest errors of any joint: an angle, and a distance as a share of the height.
-const MAX_DEGREES: f64 = 0.05;
-const MAX_SHARE: f64 = 1e-4;
-
-/// Parts of these errors for the times between two samples, and for the samples between two keys. They add up.
-const BETWEEN_SAMPLES: f64 = 0.2;
-const BETWEEN_KEYS: f64 = 0.8;
-
-/// Longest time between samples, and how often it is halved where joints turn fast.
+/// Longest time between samples.
 const MAX_STEP_SECS: f32 = 1.0 / 60.0;
-const MAX_HALVINGS: u32 = 8;
 
 impl Pinning<'_> {
     /// Returns a clip with the pins baked in. It repeats after `period_secs`, and so do the times of the pins.
@@ -60,23 +52,17 @@ struct Sampled<'a> {
     clip: &'a Clip,
     period_secs: f64,
     times: Vec<f32>,
-    max_distance: f64,
+    limits: Limits,
     cursor: SampleCursor,
     pose: Pose,
 }
 
 impl<'a> Sampled<'a> {
     fn new(pinning: &'a Pinning<'a>, clip: &'a Clip, period_secs: f64) -> Self {
-        let rest = WorldPose::new(
-            &pinning.asset.skeleton,
-            locals_of(pinning.asset.skeleton.rest()),
-            DQuat::from_mat3(&pinning.world_from_model.matrix3.as_dmat3()),
-        );
-        let heights = || rest.positions.iter().map(|at| at.y);
-        let height = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+        let limits = Limits::new(&pinning.asset.skeleton);
         let times = close_times(clip, pinning.pins.values(), period_secs);
         let (cursor, pose) = (SampleCursor::default(), pinning.asset.skeleton.rest().clone());
-        Self { pinning, clip, period_secs, times, max_distance: MAX_SHARE * height, cursor, pose }
+        Self { pinning, clip, period_secs, times, limits, cursor, pose }
     }
 
     /// Samples the pose with all pins.
@@ -116,12 +102,12 @@ impl<'a> Sampled<'a> {
     }
 
     /// Whether `joints`, interpolated between two times, bring all joints in `below` to where they are in between, but for a
-    /// part of the largest errors.
+    /// share of the limits.
     fn is_close(
         &mut self,
         [from, to]: [f32; 2],
         between: &[f32],
-        part: f64,
+        share: f64,
         [joints, below]: [&[JointIndex]; 2],
     ) -> bool {
         let skeleton = &self.pinning.asset.skeleton;
@@ -137,10 +123,7 @@ impl<'a> Sampled<'a> {
                 locals[joint.get()].rotation = slerp(before, after, factor);
             }
             let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
-            below.iter().all(|&joint| {
-                angle_between(exact.rotation(joint), found.rotation(joint)).to_degrees() <= part * MAX_DEGREES
-                    && exact.position(joint).distance(found.position(joint)) <= part * self.max_distance
-            })
+            below.iter().all(|&joint| self.limits.share(&exact, &found, joint) <= share)
         })
     }
 }

@@ -23,7 +23,7 @@ const MAX_REPEATS: f64 = 10_000.0;
 struct Times {
     end_secs: f32,
     times: Vec<f32>,
-    /// The first times after jumps.
+    /// The first time after each jump.
     jumps: Vec<f32>,
 }
 
@@ -67,7 +67,7 @@ fn timelines(clip: &Clip) -> impl Iterator<Item = (&Vec<f32>, bool)> {
     clip.timelines().iter().zip(steps)
 }
 
-/// Returns the first time in a range for which `is_after` holds, if it holds for its end. Both ends are positive.
+/// Returns the first time in a range for which `is_after` holds, if it holds for its end. Neither end is negative.
 fn first_time([mut from, mut to]: [f32; 2], is_after: impl Fn(f32) -> bool) -> Option<f32> {
     if is_after(from) {
         return Some(from);

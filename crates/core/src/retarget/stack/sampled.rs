@@ -4,21 +4,14 @@ use glam::{DQuat, DVec3};
 
 use crate::anim::{Clip, Interpolation, JointIndex, Pose, PropertyTarget, SampleCursor, Skeleton};
 use crate::retarget::change::track::{Target, Track, Tracks, rotation};
+use crate::retarget::keys::limits::{BETWEEN_KEYS, BETWEEN_SAMPLES, Limits, MAX_TURN, ROUNDING};
 use crate::retarget::keys::resample::{Curve, Resampled, fewest, resample};
 use crate::retarget::math::{angle_between, slerp};
 use crate::retarget::pose::{WorldPose, ancestry, locals_of};
 
-/// How far any joint may turn away, in radians.
-const MAX_TURN: f64 = 0.05 * std::f64::consts::PI / 180.0;
-/// How far any joint may move away, per metre of height.
-const MAX_OFFSET_PER_METRE: f64 = 1e-4;
-/// Likewise morph weights, and scales that move no joint.
+/// Largest error of morph weights, and of scales that move no joint.
 const MAX_WEIGHT_ERROR: f64 = 1e-3;
-/// Shares of these errors: for the times between two samples, and for the samples between two keys. They add up to a little less
-/// than 1, since not all times are looked at.
-const BETWEEN_SAMPLES: f64 = 0.25;
-const BETWEEN_KEYS: f64 = 0.7;
-/// How much closer a channel is made to follow its samples as long as a joint that it moves is too far off, and when to give up.
+/// Factor on the limit of each channel that leaves a joint too far off, and the share at which to give up.
 const CLOSER: f64 = 0.6;
 const MIN_SHARE: f64 = 1e-3;
 
@@ -34,7 +27,7 @@ pub struct Poses<'a> {
     pub pose_at: &'a mut dyn FnMut(f32, &mut Pose),
 }
 
-/// The numbers of one new channel within a row.
+/// Where a new channel's numbers are within [`Sample::numbers`].
 struct Column {
     target: Target,
     start: usize,
@@ -54,14 +47,16 @@ type Samples = Resampled<Sample>;
 /// Returns the clip with the channels of the included joints replaced by the poses.
 pub fn bake(clip: &Clip, poses: Poses<'_>) -> Clip {
     let Poses { skeleton, included, times, jumps, pose_at } = poses;
-    let limits = Limits { skeleton, offset: MAX_OFFSET_PER_METRE * height(skeleton) };
-    let columns = columns(skeleton, included, limits.offset);
+    let limits = Limits::new(skeleton);
+    let columns = columns(skeleton, included, &limits);
     let value = |time| {
         let mut pose = skeleton.rest().clone();
         pose_at(time, &mut pose);
         Sample { numbers: numbers(skeleton, &columns, &pose), pose }
     };
-    let error = |from: &Sample, to: &Sample, factor: f64, at: &Sample| limits.error(&columns, [from, to], factor, at);
+    let error = |from: &Sample, to: &Sample, factor: f64, at: &Sample| {
+        largest_error(skeleton, &limits, &columns, [from, to], factor, at)
+    };
     let samples = resample(&times, &jumps, Curve { value, error, tolerance: BETWEEN_SAMPLES });
     let mut kept = Tracks::of(clip);
     kept.tracks.retain(|track| !joint_of(track.target).is_some_and(|joint| included[joint.get()]));
@@ -77,9 +72,9 @@ pub fn bake(clip: &Clip, poses: Poses<'_>) -> Clip {
         }
         let baked = tracks.build(clip.name(), skeleton);
         // The errors of a chain of joints add up, though seldom all in one direction.
-        let moves_far = limits.moves_far(&baked, &samples);
+        let is_off = is_off(skeleton, &limits, &baked, &samples);
         let is_loose = |(column, share): &(&Column, f64)| {
-            *share > MIN_SHARE && joint_of(column.target).is_some_and(|joint| moves_far[joint.get()])
+            *share > MIN_SHARE && joint_of(column.target).is_some_and(|joint| is_off[joint.get()])
         };
         let loose: Vec<bool> = columns.iter().zip(shares.iter().copied()).map(|pair| is_loose(&pair)).collect();
         if !loose.contains(&true) {
@@ -106,15 +101,7 @@ fn world(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
     WorldPose::new(skeleton, locals_of(pose), DQuat::IDENTITY)
 }
 
-/// The largest extent of the joints at rest, in metres.
-fn height(skeleton: &Skeleton) -> f64 {
-    let positions = world(skeleton, skeleton.rest()).positions;
-    let least = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let extent = positions.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max) - least;
-    Some(extent.max_element()).filter(|&height| height > 0.0 && height.is_finite()).unwrap_or(1.0)
-}
-
-fn columns(skeleton: &Skeleton, included: &[bool], offset: f64) -> Vec<Column> {
+fn columns(skeleton: &Skeleton, included: &[bool], limits: &Limits) -> Vec<Column> {
     let rest = world(skeleton, skeleton.rest());
     // Distance to the farthest joint below each.
     let mut reach = vec![0.0_f64; skeleton.len()];
@@ -132,8 +119,8 @@ fn columns(skeleton: &Skeleton, included: &[bool], offset: f64) -> Vec<Column> {
     };
     for joint in skeleton.joints().filter(|joint| included[joint.get()]) {
         let scale = rest.parent_frame(skeleton, joint).matrix3.determinant().abs().cbrt();
-        let per_reach = offset / reach[joint.get()];
-        push(Target::Translation(joint), 3, if scale > 0.0 { offset / scale } else { offset });
+        let per_reach = limits.offset(reach[joint.get()]) / reach[joint.get()];
+        push(Target::Translation(joint), 3, limits.offset(0.0) / if scale > 0.0 { scale } else { 1.0 });
         push(Target::Rotation(joint), 4, MAX_TURN.min(per_reach));
         push(Target::Scale(joint), 3, MAX_WEIGHT_ERROR.min(per_reach));
         let weights = skeleton.morph_range(joint).len();
@@ -178,7 +165,7 @@ impl Column {
         }
         let is_close = |from: usize, to: usize, at: usize| {
             let factor = f64::from(times[at] - times[from]) / f64::from(times[to] - times[from]);
-            self.error([&values[from], &values[to]], factor, &values[at]) <= limit
+            self.error([&values[from], &values[to]], factor, &values[at]) <= limit.max(self.rounding(&values[at]))
         };
         let keys = fewest(times.len(), |from, to| (from + 1..to).all(|at| is_close(from, to, at)));
         Some(self.with_keys(samples, &keys))
@@ -207,6 +194,14 @@ impl Column {
         from.zip(to).map(move |(from, to)| from + (to - from) * factor)
     }
 
+    /// Returns the part of an error that more keys don't reduce.
+    fn rounding(&self, sample: &Sample) -> f64 {
+        let Target::Translation(_) = self.target else { return 0.0 };
+        let squares = self.of(sample).iter().map(|&part| f64::from(part).powi(2));
+        // Half of what joints are allowed.
+        0.5 * ROUNDING * squares.sum::<f64>().sqrt()
+    }
+
     /// How far a value is from the one between two others, in radians for rotations.
     fn error(&self, ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
         if let Target::Rotation(_) = self.target {
@@ -217,63 +212,55 @@ impl Column {
     }
 }
 
-/// How close every joint has to be.
-struct Limits<'a> {
-    skeleton: &'a Skeleton,
-    /// In the skeleton's unit.
-    offset: f64,
+/// Returns the largest error of any joint or number between two samples, as a share of its limit.
+fn largest_error(
+    skeleton: &Skeleton,
+    limits: &Limits,
+    columns: &[Column],
+    ends: [&Sample; 2],
+    factor: f64,
+    at: &Sample,
+) -> f64 {
+    let expected = world(skeleton, &at.pose);
+    let mut locals = expected.locals.clone();
+    let mut error = 0.0_f64;
+    let vector = |column: &Column| {
+        let mut numbers = column.numbers(ends, factor);
+        DVec3::from_array(std::array::from_fn(|_| numbers.next().unwrap_or_default()))
+    };
+    for column in columns {
+        match column.target {
+            Target::Translation(joint) => locals[joint.get()].translation = vector(column),
+            Target::Rotation(joint) => locals[joint.get()].rotation = column.rotation(ends, factor),
+            Target::Scale(joint) => locals[joint.get()].scale = vector(column),
+            Target::Weights(_) | Target::Property(_) => {}
+        }
+        if let Target::Scale(_) | Target::Weights(_) = column.target {
+            error = error.max(column.error(ends, factor, at) / MAX_WEIGHT_ERROR);
+        }
+    }
+    let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
+    skeleton.joints().map(|joint| limits.share(&expected, &found, joint)).fold(error, f64::max)
 }
 
-impl Limits<'_> {
-    /// How far a joint is off, as a share of what is allowed.
-    fn share(&self, expected: &WorldPose, found: &WorldPose, joint: JointIndex) -> f64 {
-        let distance = expected.position(joint).distance(found.position(joint));
-        (distance / self.offset).max(angle_between(expected.rotation(joint), found.rotation(joint)) / MAX_TURN)
-    }
-
-    /// How far the joint or number that is farthest off is so between two samples, as a share of what is allowed.
-    fn error(&self, columns: &[Column], ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
-        let expected = world(self.skeleton, &at.pose);
-        let mut locals = expected.locals.clone();
-        let mut error = 0.0_f64;
-        let vector = |column: &Column| {
-            let mut numbers = column.numbers(ends, factor);
-            DVec3::from_array(std::array::from_fn(|_| numbers.next().unwrap_or_default()))
-        };
-        for column in columns {
-            match column.target {
-                Target::Translation(joint) => locals[joint.get()].translation = vector(column),
-                Target::Rotation(joint) => locals[joint.get()].rotation = column.rotation(ends, factor),
-                Target::Scale(joint) => locals[joint.get()].scale = vector(column),
-                Target::Weights(_) | Target::Property(_) => {}
-            }
-            if let Target::Scale(_) | Target::Weights(_) = column.target {
-                error = error.max(column.error(ends, factor, at) / MAX_WEIGHT_ERROR);
-            }
+/// Flags the joints whose error at any sample is too large, and their ancestors.
+fn is_off(skeleton: &Skeleton, limits: &Limits, clip: &Clip, samples: &Samples) -> Vec<bool> {
+    let mut is_off = vec![false; skeleton.len()];
+    let mut pose = skeleton.rest().clone();
+    let mut cursor = SampleCursor::default();
+    for (&time, sample) in samples.times.iter().zip(&samples.values) {
+        pose.copy_from(skeleton.rest());
+        clip.sample(skeleton, time, &mut cursor, &mut pose);
+        let (expected, found) = (world(skeleton, &sample.pose), world(skeleton, &pose));
+        for joint in skeleton.joints() {
+            is_off[joint.get()] |= limits.share(&expected, &found, joint) > BETWEEN_KEYS;
         }
-        let found = WorldPose::new(self.skeleton, locals, DQuat::IDENTITY);
-        self.skeleton.joints().map(|joint| self.share(&expected, &found, joint)).fold(error, f64::max)
     }
-
-    /// Flags the joints that are too far from where a sample has them in the clip, and all above them.
-    fn moves_far(&self, clip: &Clip, samples: &Samples) -> Vec<bool> {
-        let mut moves_far = vec![false; self.skeleton.len()];
-        let mut pose = self.skeleton.rest().clone();
-        let mut cursor = SampleCursor::default();
-        for (&time, sample) in samples.times.iter().zip(&samples.values) {
-            pose.copy_from(self.skeleton.rest());
-            clip.sample(self.skeleton, time, &mut cursor, &mut pose);
-            let (expected, found) = (world(self.skeleton, &sample.pose), world(self.skeleton, &pose));
-            for joint in self.skeleton.joints() {
-                moves_far[joint.get()] |= self.share(&expected, &found, joint) > BETWEEN_KEYS;
-            }
+    // Children come after their parents.
+    for joint in skeleton.joints().rev() {
+        if let Some(parent) = skeleton.parent(joint) {
+            is_off[parent.get()] |= is_off[joint.get()];
         }
-        // Children come after their parents.
-        for joint in self.skeleton.joints().rev() {
-            if let Some(parent) = self.skeleton.parent(joint) {
-                moves_far[parent.get()] |= moves_far[joint.get()];
-            }
-        }
-        moves_far
     }
+    is_off
 }

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DQuat;
 
-use super::rotation::TOLERANCE_RADIANS;
 use super::{Hips, RootPolicy, RotationLaw, Transfer};
+use crate::retarget::keys::limits::MAX_TURN;
 use crate::retarget::keys::resample::{Curve, Resampled, resample, union};
 use crate::retarget::map::RootPart;
 use crate::retarget::math::yaw_of;
@@ -80,7 +80,7 @@ fn heading(transfer: &Transfer, hips: &Hips, top: usize, laws: &[RotationLaw]) -
     let curve = Curve {
         value,
         error: |from: &f64, to: &f64, factor: f64, at: &f64| wrapped(from + factor * wrapped(to - from) - at).abs(),
-        tolerance: TOLERANCE_RADIANS,
+        tolerance: MAX_TURN,
     };
     let Resampled { times, values: mut radians } = resample(&times, &jumps, curve);
     // Unwrap, so that several turns count as several.

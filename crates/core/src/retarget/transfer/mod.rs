@@ -68,11 +68,6 @@ impl<'a> Transfer<'a> {
         self.hips_pair().map(|pair| self.source_position(pair.source, time_secs))
     }
 
-    /// The source in the common frame, without muted channels.
-    pub fn source_pose(&self, time_secs: f32) -> WorldPose {
-        self.tracks.pose(time_secs, self.alignment.source.world_from_model)
-    }
-
     /// The target in the common frame, as the player would play `clip`.
     pub fn target_pose(&self, clip: &Clip, time_secs: f32, scratch: &mut Scratch) -> WorldPose {
         let locals = clip_locals(self.target_skeleton, clip, time_secs, scratch);

@@ -8,12 +8,10 @@ use super::root_motion::{RootPolicy, root_joint_channels};
 use super::{Hips, RotationLaw, Transfer};
 use crate::anim::{Interpolation, JointIndex, Keys};
 use crate::retarget::keys::channel::NewChannel;
+use crate::retarget::keys::limits::MAX_OFFSET_PER_METRE;
 use crate::retarget::keys::resample::{resample_positions, union};
 use crate::retarget::keys::tracks::Track;
 use crate::retarget::pose::{Local, ancestry, parent_frame};
-
-/// Maximum error of resampled positions, as a share of the hips' height.
-const TOLERANCE_OF_HEIGHT: f64 = 1e-4;
 
 /// The straight line from the first to the last key of the path.
 #[derive(Debug, Clone, Copy)]
@@ -111,7 +109,7 @@ pub fn hips_channels(
     // The tolerance is in the units of the hips' parent.
     let carrier = transfer.hips_carrier().unwrap_or(joint);
     let unit_length = rest_parent_frame(transfer, carrier).matrix3.x_axis.length().max(1e-12);
-    let tolerance = TOLERANCE_OF_HEIGHT * hips.height / unit_length;
+    let tolerance = MAX_OFFSET_PER_METRE * hips.height / unit_length;
     let turning = turning_times(transfer, hips, laws);
     let times = union(turning.iter().map(Vec::as_slice).chain([path.times.as_slice()]));
     let positions = resample_positions(&times, &jumps(transfer, hips), tolerance, translation);

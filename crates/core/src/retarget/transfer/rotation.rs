@@ -14,13 +14,11 @@ use super::heading::Yaw;
 use super::{RootPolicy, Transfer, heading};
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::retarget::keys::channel::NewChannel;
+use crate::retarget::keys::limits::MAX_TURN;
 use crate::retarget::keys::resample::{Curve, Resampled, resample, union};
 use crate::retarget::keys::tracks::{SourceTracks, Track, rotation_at};
 use crate::retarget::math::{angle_between, slerp, unit};
 use crate::retarget::pose::ancestry;
-
-/// Maximum error of resampled rotations.
-pub const TOLERANCE_RADIANS: f64 = 0.05 * std::f64::consts::PI / 180.0;
 
 /// One local rotation of the source in the product.
 #[derive(Debug, Clone, Copy)]
@@ -153,7 +151,7 @@ impl<'a> RotationLaw<'a> {
         let curve = Curve {
             value: |time| self.at(time),
             error: |from: &DQuat, to: &DQuat, factor: f64, at: &DQuat| angle_between(slerp(*from, *to, factor), *at),
-            tolerance: TOLERANCE_RADIANS,
+            tolerance: MAX_TURN,
         };
         let Resampled { times, values } = resample(&times, &jumps, curve);
         let mut values: Vec<Quat> = values.into_iter().map(DQuat::as_quat).collect();
