@@ -7,6 +7,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 
@@ -16,6 +17,8 @@ const CESIUM_MAN = "khronos/CesiumMan/glTF-Binary/CesiumMan.glb";
 const CESIUM_MAN_VERTICES = 3273;
 const XBOT = "threejs/Xbot.glb";
 const DANCE = "bvh/cosc422_Dance.bvh";
+/** A PNG of one pixel. */
+const PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 /** Nothing listens there, and browsers don't block the port. */
 const CLOSED = "http://127.0.0.1:9";
 
@@ -360,6 +363,18 @@ for (const renderer of BACK_ENDS)
         await until(frame, async () => (await window.gaitway.state()).motion.includes("mine.bvh"));
         await withheld();
         assert.deepEqual(await call("open", site.data(XBOT)), nothing);
+        await withheld();
+        // The parent page can't complete a model of the user's and thereby read it.
+        const { bytes, document } = triangle({ uri: "body.bin" });
+        const lacksImage = { ...document, images: [{ uri: "skin.png" }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
+        await drop(frame, [
+          { name: "own.gltf", text: JSON.stringify(lacksImage) },
+          { name: "body.bin", url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
+        ]);
+        await whenModel(frame, "own.gltf");
+        await page.evaluate((url) => window.openBytes("skin.png", url), `data:image/png;base64,${PIXEL}`);
+        await withheld();
+        assert.deepEqual(await call("apply", { model: ["own.gltf"], motion: [] }), nothing);
         await withheld();
         // Files sent by the parent page aren't private.
         assert.equal((await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX))).error, undefined);

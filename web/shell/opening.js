@@ -34,7 +34,9 @@ let incomplete = [];
  * @returns {Promise<InspectDocument>}
  */
 export async function open(items, { as, isPrivate = true, isByHand = false } = {}) {
-  const wanted = withCompanions(toItems(items));
+  const given = toItems(items);
+  // The page around this one completes none of the user's models.
+  const wanted = isPrivate ? withCompanions(given) : given;
   await running();
   try {
     const { shown, document } = await load(wanted, as, isPrivate, isByHand);
