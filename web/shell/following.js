@@ -1,6 +1,7 @@
 // Following links: back and forward, another link typed into the address bar, and reporting what couldn't be loaded.
 import { awaitCopies, awaitFiles, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
+import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
 import { fileName, heldItems, heldMotionsAndLight, localFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
@@ -122,6 +123,7 @@ export function showMissing(problems, link, isUnchanged = false) {
 
 addEventListener("popstate", ({ state }) => {
   cancelSummary();
+  forgetCompanions();
   const visit = moveToEntry(state);
   const link = linkOfAddress();
   // An instance that is starting shows this link instead.
