@@ -47,6 +47,9 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   }
 }
 
+/** How often the user has opened something. */
+let openedCount = 0;
+
 /**
  * Opens what the user dropped or chose. The app shows errors itself.
  * @param {Openable[]} items
@@ -54,13 +57,16 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
  */
 export async function openByHand(items, options) {
   if (items.length === 0) return;
+  openedCount += 1;
+  const number = openedCount;
   try {
     await open(items, { ...options, isByHand: true });
     hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);
-    sayProblem(messageOf(error));
+    // What was opened since has its own result.
+    if (number === openedCount) sayProblem(messageOf(error));
   }
   focusCanvas();
 }
