@@ -185,7 +185,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.view_with_reduced_motion(view);
-        (self.held_camera, self.suits_follow, self.suits_feet) = (None, false, false);
+        (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
@@ -246,8 +246,7 @@ impl Editor {
                 && main.is_some()
                 && main_file(known) == main
         };
-        let closed: Vec<ModelId> =
-            self.library.models().iter().filter(is_incomplete).map(|known| known.id).collect();
+        let closed: Vec<ModelId> = self.library.models().iter().filter(is_incomplete).map(|known| known.id).collect();
         closed.iter().for_each(|&id| self.library.close(id));
         closed
     }

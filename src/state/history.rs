@@ -55,7 +55,8 @@ impl History {
             }
             self.future.clear();
             self.gesture = gesture;
-            let is_back = |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
+            let is_back =
+                |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
             if self.past.pop_if(is_back).is_some() {
                 self.gesture = None;
             }

@@ -191,7 +191,8 @@ fn a_model_takes_the_place_of_the_same_one_without_its_files() {
     assert_eq!(open(&mut editor, "two", &[]), 3, "another model of this name");
     assert_eq!(open(&mut editor, "one", &["eyes.png"]), 3);
     // With its view.
-    let camera = CameraChoice::Orbit(OrbitCamera { yaw_radians: 1.0, pitch_radians: 0.0, distance: 7.0, target: Vec3::ZERO });
+    let camera =
+        CameraChoice::Orbit(OrbitCamera { yaw_radians: 1.0, pitch_radians: 0.0, distance: 7.0, target: Vec3::ZERO });
     editor.apply(Command::SetCamera(camera));
     editor.apply(Command::SetExposure(1.0));
     let view = editor.state().clone();
