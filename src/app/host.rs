@@ -39,7 +39,7 @@ pub trait Host {
     /// Opens the gallery of samples. Called only if [`Host::has_gallery`] returns true.
     fn show_gallery(&self) {}
 
-    /// Called when a box opens that everything else waits for, and when it closes.
+    /// Called when a modal dialog opens or closes.
     fn modal_changed(&self, is_open: bool) {
         let _ = is_open;
     }

@@ -33,6 +33,8 @@ pub enum Message {
     Commands(Vec<Command>),
     /// A request failed; shows the message.
     Failed(String),
+    /// Shows a notice.
+    Notice(String),
     /// A file written in the background is ready to save.
     Save(ExportedFile),
     /// A file was saved under this name, with a remark for the user, or couldn't be.

@@ -37,7 +37,7 @@ pub struct App {
     pub(super) toast_steps: usize,
     /// A notice or an error was added since the host last heard of a change.
     pub(super) has_new_message: bool,
-    /// Whether the host was told last that a modal is open.
+    /// The last value passed to [`Host::modal_changed`].
     had_modal: bool,
     /// Motions loaded in the last frame.
     last_motions: Vec<ModelId>,
@@ -160,6 +160,7 @@ impl App {
             }
             Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),
+            Message::Notice(notice) => self.toast(notice),
             Message::Save(file) => self.host.save_file(file, &self.inbox),
             Message::Saved(Ok((name, remark))) => self.toast(saved(&name, remark.as_deref())),
             Message::Saved(Err(error)) => self.add_error(&error),
@@ -409,7 +410,6 @@ impl eframe::App for App {
         self.panels.host.can_redo = self.editor.can_redo();
         self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
         self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
-        self.panels.host.has_planted_feet = self.editor.has_planted_feet();
         self.panels.host.has_gltf = self.editor.has_gltf();
         self.expire_toast();
         self.update_motions();

@@ -24,7 +24,7 @@ pub enum Export {
     },
     /// The model with one of its clips that is retargeted, changed, below layers or pinned.
     Model {
-        /// Index among all clips of the active model; one of its own clips as it is in the file is an error.
+        /// Index among all clips of the active model; an unchanged one of its own is an error.
         clip: usize,
     },
     /// One of the clips with its skeleton, without meshes.
@@ -58,8 +58,13 @@ impl ExportedFile {
     }
 }
 
+/// Returns the active clip unless the model's file already contains it as it plays.
+pub fn derived_clip(model: &Model, state: &ViewerState) -> Option<usize> {
+    active_clip(model, state).filter(|&clip| is_derived(model, state, clip))
+}
+
 /// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or pinned.
-pub fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
+fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
     model.is_derived(clip) || has_layers(model, state) || !state.edits.pins.is_empty()
 }
 
@@ -144,7 +149,7 @@ impl Editor {
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
         if !is_derived(model, &self.state, clip) {
-            return Err("this clip is in the model's file as it is".to_owned());
+            return Err("the model's file already contains this clip".to_owned());
         }
         let borrowed = model.borrowed(clip);
         let mut baked = self.baked_clip(clip)?;

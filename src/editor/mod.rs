@@ -20,7 +20,7 @@ mod validation;
 pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
-pub use export::{Export, ExportedFile, is_derived};
+pub use export::{Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
 pub use validation::{ValidatorGroup, ValidatorReport};
@@ -64,8 +64,6 @@ pub struct Editor {
     held_camera: Option<OrbitCamera>,
     /// Whether the camera follows is chosen for each clip, since neither a view nor the user has said it.
     suits_follow: bool,
-    /// The editor has chosen what feet do, and neither a view nor the user has said it since.
-    suits_feet: bool,
     reduced_motion: reduced_motion::ReducedMotion,
     events: Vec<Event>,
     needs_redraw: bool,
@@ -94,7 +92,6 @@ impl Editor {
             aspect: DEFAULT_ASPECT,
             held_camera: None,
             suits_follow: false,
-            suits_feet: false,
             reduced_motion: reduced_motion::ReducedMotion::default(),
             events: Vec::new(),
             needs_redraw: true,
@@ -150,7 +147,6 @@ impl Editor {
         let reframes = matches!(command, Command::SetUp(_));
         let is_other_clip = matches!(command, Command::SetClip(_)) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
-        self.suits_feet &= !matches!(command, Command::SetFeet(_) | Command::Replace(_));
         let is_view = matches!(command, Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
         let view_before = if is_map_edit { self.automatic_view() } else { None };
@@ -192,6 +188,7 @@ impl Editor {
             return Err(OTHER_FILES.to_owned());
         }
         let before = self.state.clone();
+        self.suits_follow &= partial.get("follow").is_none();
         self.record(Command::Replace(Box::new(state)));
         let problems = self.retarget();
         (self.needs_redraw, self.is_changed) = (true, true);

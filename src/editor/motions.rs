@@ -212,13 +212,13 @@ impl Editor {
         }
     }
 
-    /// Returns the sentence about the retargeted clip that a model plays when it is shown for the first time: the user may have
-    /// expected its own.
-    pub(super) fn about_continued_clip(&self) -> Option<String> {
+    /// Returns a sentence about the retargeted clip that goes on playing on a newly opened model, whose own clips the user may
+    /// expect. `subject` is the model.
+    pub(super) fn about_continued_clip(&self, subject: &str) -> Option<String> {
         let (model, clip) = (self.library.active()?, self.retargeted_clip()?);
         let motion = self.library.motions().iter().find(|motion| clip.is_of(motion))?;
         let own = if model.asset.clips.is_empty() { "" } else { "; its own clips are in the clip list" };
-        Some(format!("It plays the motion borrowed from {}{own}.", short_name(&motion.source)))
+        Some(format!("{subject} plays the motion borrowed from {}{own}.", short_name(&motion.source)))
     }
 
     fn find_retargeted(&self, wanted: &ClipIdentity) -> Option<ClipChoice> {

@@ -68,7 +68,6 @@ impl Editor {
             motions if has_models => {
                 let opened = self.open_models(models, Companions { motions, map: waiting, view, is_by_hand }, admit);
                 if opened.is_ok() {
-                    self.suits_follow = is_by_hand;
                     self.suit_automatic_follow();
                 }
                 opened
@@ -110,7 +109,7 @@ impl Editor {
 
     /// Activates the first model, or the one that the view names, and lists the others. The current one stays in the list, and
     /// stays active if the new one is not admitted. The loaded motions are retargeted to the new model, unless a view or
-    /// an empty list of motions replaces them.
+    /// an empty list of motions replaces them. If the new model is the current one with files that it lacked, its view is kept.
     fn open_models(
         &mut self,
         mut models: Vec<OpenedModel>,
@@ -147,7 +146,11 @@ impl Editor {
             self.add(other);
         }
         self.library.show(id);
-        self.close_incomplete(id);
+        let completed = self.close_incomplete(id);
+        let keeps_view = before.as_ref().is_some_and(|before| completed.contains(&before.loaded.model));
+        if !keeps_view {
+            self.suits_follow = is_by_hand;
+        }
         self.close_placeholders();
         let was_loaded = before.is_some();
         self.remember(before);
@@ -155,13 +158,13 @@ impl Editor {
         self.events.extend(is_view.then_some(Event::ViewOpened));
         self.events.push(Event::ModelOpened);
         let about_motions = if keeps_motions {
-            self.state = self.view_of_new_model(origin, keeps_motions);
+            self.state = self.view_of_new_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map)
         } else {
             self.library.set_motions(motions);
             match view {
                 Some(view) => self.set_view(view),
-                None => self.state = self.view_of_new_model(origin, keeps_motions),
+                None => self.state = self.view_of_new_model(origin, keeps_motions, keeps_view),
             }
             self.state.retarget.map.extend(map);
             self.finish_view(is_view);
@@ -182,16 +185,20 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.view_with_reduced_motion(view);
-        (self.held_camera, self.suits_follow, self.suits_feet) = (None, false, false);
+        (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
-    /// Returns the default view of a new model, with the settings that a new model keeps.
-    fn view_of_new_model(&mut self, origin: String, keeps_motions: bool) -> ViewerState {
+    /// Returns the default view of a new model, with the settings that a new model keeps, or the whole view as it was.
+    fn view_of_new_model(&mut self, origin: String, keeps_motions: bool, keeps_view: bool) -> ViewerState {
         let old = std::mem::take(&mut self.state);
         let retarget = if keeps_motions { old.retarget.clone() } else { RetargetEdits::default() };
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         let sources = Sources { model: vec![origin], motion, scene: None };
+        if keeps_view {
+            let sources = Sources { scene: old.sources.scene, ..sources };
+            return ViewerState { sources, retarget, ..old };
+        }
         old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
     }
 
@@ -214,7 +221,7 @@ impl Editor {
         let dropped = self.drop_incompatible_motions();
         let about_clip = if new.is_empty() {
             self.choose_retargeted(playing);
-            self.about_continued_clip()
+            self.about_continued_clip("It")
         } else {
             let problems = self.add_motions(new.clone(), map);
             self.report(problems);
@@ -226,16 +233,22 @@ impl Editor {
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 
-    /// Closes a model that lacked files once it has been opened again with them.
-    fn close_incomplete(&mut self, id: ModelId) {
-        let Some(complete) = self.library.get(id) else { return };
-        let (source, is_own, lacks) = (&complete.source, complete.is_own, lacking(&complete.source, &complete.asset));
+    /// Closes the models that lacked files of this one, and returns them.
+    fn close_incomplete(&mut self, id: ModelId) -> Vec<ModelId> {
+        let Some(complete) = self.library.get(id) else { return Vec::new() };
+        let main_file = |model: &Model| self.files_of(model).and_then(|files| files.set.original(&files.name));
+        let (main, lacks) = (main_file(complete), lacking(complete));
+        // Many models are called “scene.gltf”.
         let is_incomplete = |known: &&Model| {
-            known.source == *source && known.is_own == is_own && lacking(&known.source, &known.asset) > lacks
+            known.source == complete.source
+                && known.is_own == complete.is_own
+                && lacking(known) > lacks
+                && main.is_some()
+                && main_file(known) == main
         };
-        if let Some(id) = self.library.models().iter().find(is_incomplete).map(|known| known.id) {
-            self.library.close(id);
-        }
+        let closed: Vec<ModelId> = self.library.models().iter().filter(is_incomplete).map(|known| known.id).collect();
+        closed.iter().for_each(|&id| self.library.close(id));
+        closed
     }
 
     /// Closes the empty stages that have waited for a model, once something else is active.
@@ -380,7 +393,8 @@ impl Editor {
         match playing {
             playing if is_first_time => {
                 self.choose_retargeted(playing);
-                about_clip = self.about_continued_clip();
+                let name = self.library.active().map(|model| short_name(&model.source)).unwrap_or_default();
+                about_clip = self.about_continued_clip(&name);
             }
             Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
             _ => {}
@@ -430,15 +444,15 @@ impl Editor {
         let images = vec![None; motion.asset.images.len()];
         let mut model = Model::new(motion.source.clone(), motion.asset.clone(), images);
         (model.origin, model.is_own) = (motion.origin.clone(), motion.is_own);
-        let companions = Companions { motions: Some(Vec::new()), map: None, view: None, is_by_hand: false };
+        let companions = Companions { motions: Some(Vec::new()), map: None, view: None, is_by_hand: true };
         (self.needs_redraw, self.is_changed) = (true, true);
         self.open_models(vec![model.into()], companions, admit)
     }
 }
 
 /// Number of images that a model lacks; the joints of an .obj count as one more.
-fn lacking(source: &str, asset: &Asset) -> usize {
-    missing_images(asset).len() + usize::from(is_jointless_obj(source, asset))
+fn lacking(model: &Model) -> usize {
+    missing_images(&model.asset).len() + usize::from(is_jointless_obj(&model.source, &model.asset))
 }
 
 fn is_jointless_obj(source: &str, asset: &Asset) -> bool {
@@ -469,9 +483,9 @@ impl Opened {
         }
         match &self.missing_images[..] {
             [] => {}
-            [image] => text += &format!(" Its image {image} is missing; drop both together."),
+            [image] => text += &format!(" Its image {image} is missing; open it as well."),
             // Not how many: warnings of one kind have a limit.
-            _ => text += " Some of its images are missing; drop all files together.",
+            _ => text += " Some of its images are missing; open them as well.",
         }
         for sentence in self.about_motions.as_deref().into_iter().chain(self.about_feet) {
             text += &format!(" {sentence}");

@@ -18,12 +18,12 @@ impl Editor {
 
     /// Whether the next undo takes back the user's edit of a joint map or of how motions are retargeted.
     pub fn can_undo_retargeting(&self) -> bool {
-        self.history.would_undo_retargeting(&self.state) && !self.history.would_undo_automatic()
+        self.history.would_undo_retargeting(&self.state) && !self.history.would_undo_automatic(&self.state)
     }
 
     /// Whether the next redo repeats such an edit.
     pub fn can_redo_retargeting(&self) -> bool {
-        self.history.would_redo_retargeting(&self.state) && !self.history.would_redo_automatic()
+        self.history.would_redo_retargeting(&self.state) && !self.history.would_redo_automatic(&self.state)
     }
 
     /// Number of steps that can be undone.

@@ -29,11 +29,6 @@ impl Editor {
         }
     }
 
-    /// Whether feet are held on the ground because a borrowed clip slid or hovered, not because the user asked for it.
-    pub fn has_planted_feet(&self) -> bool {
-        self.suits_feet && self.state.retarget.feet == Some(Feet::Plant)
-    }
-
     /// Holds the feet on the ground if the borrowed clip that plays slides or hovers more than is acceptable, in a step of its own.
     /// Returns what to tell the user about it.
     pub(super) fn suit_feet(&mut self) -> Option<&'static str> {
@@ -47,8 +42,7 @@ impl Editor {
         self.end_gesture();
         self.apply(Command::SetFeet(Some(Feet::Plant)));
         self.end_gesture();
-        self.history.mark_automatic();
-        self.suits_feet = true;
+        self.state.retarget.feet_are_automatic = true;
         Some("The feet would slide or hover, so they are held on the ground. Undo turns this off.")
     }
 }

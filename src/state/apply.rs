@@ -80,7 +80,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
-        Command::SetFeet(feet) => state.retarget.feet = feet,
+        Command::SetFeet(feet) => state.retarget.set_feet(feet),
         Command::ReconcileMaps(maps) => state.retarget.map = maps,
     }
 }

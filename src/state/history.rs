@@ -26,8 +26,8 @@ struct Gesture {
 
 #[derive(Debug)]
 enum Step {
-    /// Restores edits alone, which the user has made unless `is_automatic`.
-    Edits { before: ViewerState, is_automatic: bool },
+    /// Restores edits alone.
+    Edits(ViewerState),
     /// Restores what was loaded, with its whole view.
     View(ViewerState, SavedMotion, Loaded),
     /// Restores the list of models.
@@ -51,22 +51,15 @@ impl History {
         if before.undoable() != state.undoable() {
             let gesture = Some(Gesture { kind, has_ended: false, presses: 0 });
             if self.gesture != gesture {
-                self.push(Step::Edits { before, is_automatic: false });
+                self.push(Step::Edits(before));
             }
             self.future.clear();
             self.gesture = gesture;
             let is_back =
-                |step: &mut Step| matches!(step, Step::Edits { before, .. } if before.undoable() == state.undoable());
+                |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
             if self.past.pop_if(is_back).is_some() {
                 self.gesture = None;
             }
-        }
-    }
-
-    /// The last step was not the user's own.
-    pub fn mark_automatic(&mut self) {
-        if let Some(Step::Edits { is_automatic, .. }) = self.past.last_mut() {
-            *is_automatic = true;
         }
     }
 
@@ -147,14 +140,14 @@ impl History {
         self.future.last().is_some_and(|step| step.is_of_retargeting(state))
     }
 
-    /// Whether the last step was not the user's own.
-    pub fn would_undo_automatic(&self) -> bool {
-        self.past.last().is_some_and(Step::is_automatic)
+    /// Whether the editor made the last step, not the user.
+    pub fn would_undo_automatic(&self, state: &ViewerState) -> bool {
+        matches!(self.past.last(), Some(Step::Edits(before)) if plants_feet(before, state))
     }
 
-    /// Whether the last undone step was not.
-    pub fn would_redo_automatic(&self) -> bool {
-        self.future.last().is_some_and(Step::is_automatic)
+    /// Whether the editor made the last undone step.
+    pub fn would_redo_automatic(&self, state: &ViewerState) -> bool {
+        matches!(self.future.last(), Some(Step::Edits(after)) if plants_feet(state, after))
     }
 
     /// Undoes the last step; returns false if there is none.
@@ -177,23 +170,19 @@ impl History {
 impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
-        matches!(self, Self::Edits { before, .. }
+        matches!(self, Self::Edits(before)
             if before.retarget != state.retarget
                 || before.edits.clips != state.edits.clips
                 || before.edits.layers != state.edits.layers)
     }
 
-    fn is_automatic(&self) -> bool {
-        matches!(self, Self::Edits { is_automatic: true, .. })
-    }
-
     /// Restores what the step holds; returns the step in the opposite direction.
     fn take(self, state: &mut ViewerState, saved_motion: &mut SavedMotion, library: &mut Library) -> Self {
         match self {
-            Self::Edits { before: edits, is_automatic } => {
+            Self::Edits(edits) => {
                 let before = state.clone();
                 restore_edits(state, library.active(), &edits);
-                Self::Edits { before, is_automatic }
+                Self::Edits(before)
             }
             Self::View(view, view_motion, loaded) => {
                 let before = Self::View(state.clone(), *saved_motion, library.loaded());
@@ -209,6 +198,11 @@ impl Step {
             }
         }
     }
+}
+
+/// Whether the step from one state to the next is the editor's planting of the feet.
+fn plants_feet(before: &ViewerState, after: &ViewerState) -> bool {
+    after.retarget.feet_are_automatic && !before.retarget.feet_are_automatic
 }
 
 /// Whether undo may cover the command; whether it does depends on the groups of the state that it changes. Neither a whole

@@ -143,6 +143,16 @@ pub struct RetargetEdits {
     pub root: Option<RootOptions>,
     /// Overrides what feet do; `None` leaves it to each map.
     pub feet: Option<Feet>,
+    /// The editor planted the feet, not a view or the user. Links don't have it, so it isn't written.
+    #[serde(skip)]
+    pub feet_are_automatic: bool,
+}
+
+impl RetargetEdits {
+    /// Sets what feet do, as a view or the user says.
+    pub(super) fn set_feet(&mut self, feet: Option<Feet>) {
+        (self.feet, self.feet_are_automatic) = (feet, false);
+    }
 }
 
 /// Changes to the model itself.

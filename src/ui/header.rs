@@ -5,7 +5,7 @@ use egui::{Align, Layout, RichText, ThemePreference, Ui};
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
-use crate::editor::{ClipFormat, Export, is_derived};
+use crate::editor::{ClipFormat, Export, derived_clip};
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -158,8 +158,7 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
         let formats = ClipFormat::ALL.into_iter().filter(|format| format.fits(model));
         formats.map(move |format| (text::save_clip(format), Export::Clip { clip, format }))
     });
-    let derived = clip.filter(|&clip| is_derived(model, shown.state, clip));
-    let model_with_clip = derived.map(|clip| (text::SAVE_GLB, Export::Model { clip }));
+    let model_with_clip = derived_clip(model, shown.state).map(|clip| (text::SAVE_GLB, Export::Model { clip }));
     let others = [
         borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),
         (model.asset.format == "obj").then_some((text::SAVE_REST_POSE, Export::FullModel { posed: false })),

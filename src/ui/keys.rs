@@ -171,8 +171,8 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     // An open menu has the arrow keys and Esc, also in the frame in which Esc closes it.
     let has_popup = egui::Popup::is_any_open(context);
     let had_popup = std::mem::replace(&mut local.had_popup, has_popup);
-    let has_modal = local.host.recording.is_some() || local.motion.is_picking();
-    if has_modal || typing::is_typing(context) {
+    let blocks_keys = local.host.recording.is_some() || local.motion.is_picking();
+    if blocks_keys || typing::is_typing(context) {
         return;
     }
     shortcuts(context, out);

@@ -143,8 +143,6 @@ pub struct HostState {
     pub can_undo_retargeting: bool,
     /// The next redo repeats such an edit.
     pub can_redo_retargeting: bool,
-    /// The feet are held on the ground because a borrowed clip needs it, not because the user has said so.
-    pub has_planted_feet: bool,
     /// Counts for the last image, and frame times.
     pub drawn: Drawn,
     /// GPU memory of the shown models in bytes: geometry and images.
@@ -330,9 +328,9 @@ impl UiState {
         (self.layout.tab, self.layout.inspector_open) = (Tab::Motion, true);
     }
 
-    /// Whether a box is open that everything else waits for.
+    /// Whether a modal dialog is open.
     pub fn has_modal(&self) -> bool {
-        self.help.is_open || self.about_open || self.host.recording.is_some()
+        self.help.is_open || self.about_open || self.motion.is_picking() || self.host.recording.is_some()
     }
 
     /// Drops what was begun for a motion, whose index may now be another's.

@@ -11,12 +11,13 @@ fn timed<'a>(shown: &Shown<'a>) -> impl Iterator<Item = ([String; 2], PinTimes)>
     let Shown { library, state, .. } = *shown;
     let pins = library.active().into_iter().flat_map(|model| state.edits.pins.iter().map(move |pin| (model, pin)));
     pins.filter_map(|(model, (&joint, pin))| {
+        let times = pin.times?;
         let name = |joint| Some(title(Some(state), &model.asset, model.asset.skeleton.joint_of_source(joint)?));
         let joint = name(joint)?;
         let goal = if let PinGoal::Joint(other, _) = pin.goal { name(other) } else { None };
         let goal = goal.as_deref();
         let short = text::pin_name(tracks::short(&joint), pin.goal, goal.map(tracks::short));
-        Some(([short, text::pin_to(&joint, pin.goal, goal)], pin.times?))
+        Some(([short, text::pin_to(&joint, pin.goal, goal)], times))
     })
 }
 

@@ -74,6 +74,13 @@ pub fn refuse(problem: String) -> Result<(), JsValue> {
     Ok(())
 }
 
+/// Shows a notice of the shell's.
+#[wasm_bindgen]
+pub fn notify(notice: String) -> Result<(), JsValue> {
+    page().map_err(stopped)?.inbox.send(Message::Notice(notice));
+    Ok(())
+}
+
 /// Whether anything loaded is one of the user's local files.
 #[wasm_bindgen]
 pub fn is_private() -> Result<bool, JsValue> {

@@ -18,7 +18,7 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn gallery(this: &Shell);
 
-    /// Dims what is around the canvas while a box in it is open that everything else waits for.
+    /// Dims the page around the canvas while a modal dialog is open in it.
     #[wasm_bindgen(method, js_name = setModal)]
     pub fn set_modal(this: &Shell, is_open: bool);
 

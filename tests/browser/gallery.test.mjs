@@ -158,11 +158,52 @@ for (const renderer of BACK_ENDS)
       await card(page, last.name).click();
       await whenModel(page, last.model);
       assert.equal(await gallery(page).isVisible(), false, "the choice closes them");
-      await apply(page, { play: 0 });
-      await resize(page, PHONE.width, PHONE.height);
-      await page.evaluate(() => document.querySelector("#gallery")?.removeAttribute("hidden"));
-      await resize(page, SIDEWAYS.width, SIDEWAYS.height);
-      await gallery(page).waitFor({ state: "hidden" });
+      await page.setViewportSize(PHONE);
+      await until(page, (width) => innerWidth === width, PHONE.width);
+      assert.equal(await gallery(page).isVisible(), false);
+    });
+
+    onFirstScreen("a phone turned sideways and back shows the samples again, unless something was opened meanwhile", { viewport: PHONE }, async (page) => {
+      const turn = async () => {
+        await page.setViewportSize(SIDEWAYS);
+        await gallery(page).waitFor({ state: "hidden" });
+      };
+      await turn();
+      await page.setViewportSize(PHONE);
+      await gallery(page).waitFor({ state: "visible" });
+      await turn();
+      await drop(page, [{ name: "mine.gltf", text: triangle().text }]);
+      await whenModel(page, "mine.gltf");
+      await page.setViewportSize(PHONE);
+      await until(page, (width) => innerWidth === width, PHONE.width);
+      assert.equal(await gallery(page).isVisible(), false);
+    });
+
+    const whenInert = (/** @type {TestPage} */ page, /** @type {boolean} */ wanted) => until(page, (wanted) => /** @type {HTMLElement} */ (document.querySelector("#gallery")).inert === wanted, wanted);
+
+    onFirstScreen("the samples are inert while a modal dialog is open", { viewport: DESKTOP }, async (page) => {
+      await page.locator("canvas").focus();
+      await page.keyboard.press("?");
+      await whenInert(page, true);
+      await page.evaluate(() => document.body.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape", bubbles: true })));
+      assert.equal(await gallery(page).isVisible(), true, "Escape is the dialog's");
+      await page.keyboard.press("Escape");
+      await whenInert(page, false);
+    });
+
+    test("a restart ends a modal dialog", async () => {
+      const page = await site.page({ renderer });
+      await drop(page, [{ name: "mine.gltf", text: triangle().text }]);
+      await whenModel(page, "mine.gltf");
+      await page.locator("canvas").focus();
+      await page.keyboard.press("?");
+      await whenInert(page, true);
+      // An address has no local file: “Try again” restarts with it.
+      await page.evaluate(() => void (location.hash = "model=mine.gltf&t=0.5"));
+      await page.locator("#missing-again").click();
+      await whenModel(page, "mine.gltf");
+      await whenInert(page, false);
+      await page.finish();
     });
 
     onFirstScreen("what the user opens hides the gallery, by URL as well (phone)", { viewport: PHONE }, async (page) => {

@@ -7,6 +7,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 
@@ -16,6 +17,8 @@ const CESIUM_MAN = "khronos/CesiumMan/glTF-Binary/CesiumMan.glb";
 const CESIUM_MAN_VERTICES = 3273;
 const XBOT = "threejs/Xbot.glb";
 const DANCE = "bvh/cosc422_Dance.bvh";
+/** A PNG of one pixel. */
+const PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 /** Nothing listens there, and browsers don't block the port. */
 const CLOSED = "http://127.0.0.1:9";
 
@@ -302,21 +305,35 @@ for (const renderer of BACK_ENDS)
       await whenShown(page, FOX_VERTICES);
     });
 
-    test("answers the page around it, but tells it nothing about dropped files", async () => {
+    const NOTHING = { result: undefined, error: undefined, code: undefined };
+
+    /** Embeds a page with the fox in another one. `call` is that one's, and `withheld` checks that it learns nothing. */
+    async function embedded() {
       fs.writeFileSync(path.join(folder, "index.html"), AROUND);
       const context = await site.browser.newContext({ viewport: { width: 700, height: 500 } });
-      try {
-        const page = await context.newPage();
-        page.setDefaultTimeout(60_000);
-        const inside = `${site.address}?renderer=${renderer}#${fragment([["model", site.data(FOX)], ["embed", 1], ["play", 0]])}`;
-        await page.goto(`${servers.own.origin}/#${encodeURIComponent(inside)}`);
-        /** @type {(...request: unknown[]) => Promise<Reply>} */
-        const call = (...request) => page.evaluate((request) => window.call(...request), request);
-        await call("ready");
-        const frame = page.frames().find((frame) => frame.url().startsWith(site.address));
-        assert.ok(frame !== undefined);
-        assert.notEqual(new URL(frame.url()).origin, servers.own.origin);
+      const page = await context.newPage();
+      page.setDefaultTimeout(60_000);
+      const inside = `${site.address}?renderer=${renderer}#${fragment([["model", site.data(FOX)], ["embed", 1], ["play", 0]])}`;
+      await page.goto(`${servers.own.origin}/#${encodeURIComponent(inside)}`);
+      /** @type {(...request: unknown[]) => Promise<Reply>} */
+      const call = (...request) => page.evaluate((request) => window.call(...request), request);
+      await call("ready");
+      const frame = page.frames().find((frame) => frame.url().startsWith(site.address));
+      assert.ok(frame !== undefined);
+      assert.notEqual(new URL(frame.url()).origin, servers.own.origin);
+      const withheld = async () => {
+        for (const name of ["state", "pose", "stats", "screenshot"]) {
+          const { result, error } = await call(name);
+          assert.equal(result, undefined, name);
+          assert.match(error ?? "", /withheld/, name);
+        }
+      };
+      return { context, page, inside, call, frame, withheld };
+    }
 
+    test("answers the page around it, but tells it nothing about dropped files", async () => {
+      const { context, page, inside, call, frame, withheld } = await embedded();
+      try {
         const { embed, model } = (await call("state")).result;
         assert.deepEqual([embed, model], [true, [site.data(FOX)]]);
         assert.equal((await call("apply", { clip: "Run", t: 0.5 })).error, undefined);
@@ -335,19 +352,11 @@ for (const renderer of BACK_ENDS)
 
         await drop(frame, [{ name: "Mine.glb", url: site.data(FOX) }]);
         await whenShown(frame, FOX_VERTICES);
-        const nothing = { result: undefined, error: undefined, code: undefined };
-        const withheld = async () => {
-          for (const name of ["state", "pose", "stats", "screenshot"]) {
-            const { result, error } = await call(name);
-            assert.equal(result, undefined, name);
-            assert.match(error ?? "", /withheld/, name);
-          }
-        };
         await withheld();
-        assert.deepEqual(await call("apply", { play: 0, exposure: 1 }), nothing);
+        assert.deepEqual(await call("apply", { play: 0, exposure: 1 }), NOTHING);
         assert.match((await call("apply", { clip: "x", speed: "quickly" })).error ?? "", /^withheld/);
         // Requesting the shown files by name reveals nothing either, nor does the URL.
-        assert.deepEqual(await call("apply", { model: ["Mine.glb"], motion: [] }), nothing);
+        assert.deepEqual(await call("apply", { model: ["Mine.glb"], motion: [] }), NOTHING);
         await withheld();
         await page.evaluate((address) => document.querySelector("iframe")?.setAttribute("src", address), `${inside.split("#")[0]}#model=Mine.glb&embed=1`);
         // The address names a file that isn't there.
@@ -360,12 +369,31 @@ for (const renderer of BACK_ENDS)
         await drop(frame, [{ name: "mine.bvh", url: site.data(DANCE) }]);
         await until(frame, async () => (await window.gaitway.state()).motion.includes("mine.bvh"));
         await withheld();
-        assert.deepEqual(await call("open", site.data(XBOT)), nothing);
+        assert.deepEqual(await call("open", site.data(XBOT)), NOTHING);
         await withheld();
         // Files sent by the parent page aren't private.
         assert.equal((await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX))).error, undefined);
         await call("apply", { motion: [] });
         assert.equal((await call("pose")).result.meshes[0].positions.length, 3 * FOX_VERTICES);
+      } finally {
+        await context.close();
+      }
+    });
+
+    test("doesn't let the page around it read a dropped model by adding a file to it", async () => {
+      const { context, page, call, frame, withheld } = await embedded();
+      try {
+        const { bytes, document: plain } = triangle({ uri: "body.bin" });
+        const lacksImage = { ...plain, images: [{ uri: "skin.png" }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
+        await drop(frame, [
+          { name: "own.gltf", text: JSON.stringify(lacksImage) },
+          { name: "body.bin", url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
+        ]);
+        await whenModel(frame, "own.gltf");
+        await page.evaluate((url) => window.openBytes("skin.png", url), `data:image/png;base64,${PIXEL}`);
+        await withheld();
+        assert.deepEqual(await call("apply", { model: ["own.gltf"], motion: [] }), NOTHING);
+        await withheld();
       } finally {
         await context.close();
       }

@@ -238,28 +238,63 @@ for (const renderer of BACK_ENDS) {
       assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
     });
 
+    /** A model in three files. */
+    const inPieces = (name = "own") => {
+      const { bytes, document: plain } = triangle({ uri: `${name}.bin` });
+      const textured = { ...plain, images: [{ uri: `${name}.png` }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
+      return {
+        gltf: { name: `${name}.gltf`, text: JSON.stringify(textured) },
+        buffer: { name: `${name}.bin`, url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
+        image: { name: `${name}.png`, url: `data:image/png;base64,${PIXEL}` },
+      };
+    };
+    /** @type {(page: import("./browser.mjs").TestPage, name: string) => Promise<unknown>} */
+    const whenLacking = (page, name) => until(page, (name) => document.querySelector("#problem")?.textContent?.includes(name) === true, name);
+    /** @type {(page: import("./browser.mjs").TestPage, name: string) => Promise<void>} */
+    const whenWhole = async (page, name) => {
+      await until(page, (name) => document.querySelector("#news")?.textContent?.startsWith(`Opened ${name}: `) && document.querySelector("#problem")?.textContent === "", name);
+      await eventually(async () => (await controls(page, "button", `Close ${name}`).count()) === 1, "it replaces the one without its image");
+    };
+
     for (const order of ["a .gltf, then its files", "files, then their .gltf"])
       onPage(`puts ${order} together`, {}, async (page) => {
-        const { bytes, document: plain } = triangle({ uri: "body.bin" });
-        const textured = { ...plain, images: [{ uri: "skin.png" }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
-        const gltf = { name: "own.gltf", text: JSON.stringify(textured) };
-        const files = [
-          { name: "body.bin", url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
-          { name: "skin.png", url: `data:image/png;base64,${PIXEL}` },
-        ];
+        const { gltf, buffer, image } = inPieces();
         const isFirst = order.startsWith("a .gltf");
-        /** @type {(name: string) => Promise<unknown>} */
-        const whenLacking = (name) => until(page, (name) => document.querySelector("#problem")?.textContent?.includes(name) === true, name);
-        const [first, second, third] = isFirst ? [gltf, ...files] : [...files, gltf];
+        const [first, second, third] = isFirst ? [gltf, buffer, image] : [buffer, image, gltf];
         await drop(page, [first]);
-        await whenLacking("body.bin");
+        await whenLacking(page, "own.bin");
         await drop(page, [second]);
         // Without its image, it is shown.
-        await (isFirst ? whenModel(page, "own.gltf") : whenLacking("skin.png"));
+        await (isFirst ? whenModel(page, "own.gltf") : whenLacking(page, "own.png"));
         await drop(page, [third]);
-        await until(page, () => /^Opened own\.gltf: /.test(document.querySelector("#news")?.textContent ?? "") && document.querySelector("#problem")?.textContent === "");
-        await eventually(async () => (await controls(page, "button", "Close own.gltf").count()) === 1, "it replaces the one without its image");
+        await whenWhole(page, "own.gltf");
       });
+
+    onPage("gives a .gltf only the files that it lacks", {}, async (page) => {
+      const { gltf, buffer, image } = inPieces();
+      await drop(page, [gltf, buffer]);
+      await whenModel(page, "own.gltf");
+      await apply(page, { camera: "30,10,4,0,1,0" });
+      // Another model, which lacks nothing, while the first lacks its image.
+      const other = inPieces("other");
+      await drop(page, [other.buffer]);
+      await whenLacking(page, "other.bin");
+      await drop(page, [other.image]);
+      await whenLacking(page, "other.png");
+      await drop(page, [image]);
+      await whenWhole(page, "own.gltf");
+      assert.equal((await state(page)).camera, "30,10,4,0,1,0", "its view is kept");
+      await drop(page, [other.buffer]);
+      await whenLacking(page, "other.bin");
+      await drop(page, [other.gltf, other.image]);
+      await whenWhole(page, "other.gltf");
+    });
+
+    onPage("puts files together that are dropped without waiting", {}, async (page) => {
+      const { gltf, buffer, image } = inPieces();
+      for (const file of [gltf, buffer, image]) await drop(page, [file]);
+      await whenWhole(page, "own.gltf");
+    });
 
     onPage("shows the next model without the weights of the previous model's joint", { data: true }, async (page) => {
       await apply(page, { joint: 5, show: "grid,weights" });

@@ -164,20 +164,41 @@ for (const renderer of BACK_ENDS)
       await whenAsked(page);
       await page.locator("#bring-later").click();
       assert.equal((await state(page)).exposure, 1, "what doesn't depend on the model is applied");
-      const problem = (/** @type {string} */ text) => until(page, (text) => document.querySelector("#problem")?.textContent?.includes(text) === true, text);
-      await drop(page, [{ name: "scene.blend", text: "BLENDER" }]);
-      await whenAsked(page);
-      assert.equal(await page.locator("#bring-others").innerText(), "Brought instead: scene.blend.");
-      await page.locator("#bring-later").click();
+      const said = (/** @type {string} */ id, /** @type {string} */ text) => until(page, ([id, text]) => document.querySelector(id)?.textContent?.includes(text) === true, [id, text]);
+      for (const name of ["scene.blend", "photo.png"]) {
+        await drop(page, [{ name, text: "not a model" }]);
+        await whenAsked(page);
+        assert.equal(await page.locator("#bring-others").innerText(), `${name} couldn't be opened.`);
+        await page.locator("#bring-later").click();
+      }
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenShown(page, FOX_VERTICES);
-      await problem("The link asks for Soldier.glb (model), not for Fox.glb. Drop that file to see the shared view.");
+      await said("#news", "This link needs Soldier.glb. Open it to see the shared view.");
+      assert.equal(await page.locator("#problem").textContent(), "", "nothing went wrong");
       assert.equal(await page.locator("#bring").isVisible(), false);
       await apply(page, { exposure: 0.5 });
+      await until(page, () => location.hash.includes("exposure=0.5"));
+      await drop(page, [{ name: "scene.blend", text: "BLENDER" }]);
+      await said("#problem", "scene.blend");
+      assert.equal(await page.locator("#bring").isVisible(), false);
       await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
       await whenModel(page, "Soldier.glb");
       await until(page, async () => (await window.gaitway.state()).exposure === 1);
       await until(page, () => location.hash.includes("Soldier.glb"));
+      assert.equal(await page.locator("#bring").isVisible(), false);
+    });
+
+    onPage("what somebody opens instead of a link's files survives a restart", () => fragment([["model", "file:Soldier.glb"]]), async (page) => {
+      await whenAsked(page);
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await whenShown(page, FOX_VERTICES);
+      await apply(page, { exposure: 0.5 });
+      await page.evaluate(() => document.querySelector("canvas")?.dispatchEvent(new Event("webglcontextlost")));
+      await page.locator("#stopped-again").click();
+      await whenReady(page);
+      await whenShown(page, FOX_VERTICES);
+      assert.equal((await state(page)).exposure, 0.5);
       assert.equal(await page.locator("#bring").isVisible(), false);
     });
 

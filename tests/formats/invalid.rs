@@ -345,7 +345,7 @@ fn primitives_with_different_numbers_of_morph_targets() {
 #[test]
 fn unavailable_buffers() {
     let missing = Build::triangle().gltf("mesh%20data.bin");
-    check_bytes("model.gltf", missing, &["buffers[0].uri", "“mesh data.bin”", "drop it together"]);
+    check_bytes("model.gltf", missing, &["buffers[0].uri", "“mesh data.bin”", "open it with the model"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:text/plain;base64,%%%"), &["buffers[0].uri", "base64"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:"), &["buffers[0].uri", "comma"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:;base64,AAAA"), &["buffers[0]", "36 bytes", "found 3"]);

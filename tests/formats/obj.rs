@@ -138,7 +138,7 @@ fn invalid_weights_are_rejected_with_place_and_reason() {
 fn an_incomplete_set_says_what_to_drop() {
     let check = |files: &[(&str, &str)], wanted: &str, missing: &[&str]| {
         let problem = load(&set(files)).expect_err("not complete").to_string();
-        assert!(problem.contains(wanted) && problem.contains("drop it together"), "{problem}");
+        assert!(problem.contains(wanted) && problem.contains("open it with the model"), "{problem}");
         assert_eq!(missing_files(&set(files)), missing);
     };
     check(&[("m.obj", SQUARE), ("m.skel", TWO_JOINTS)], "“m.attach”", &["m.attach"]);

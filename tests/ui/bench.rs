@@ -88,7 +88,6 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 panels.host.can_redo = editor.can_redo();
                 panels.host.can_undo_retargeting = editor.can_undo_retargeting();
                 panels.host.can_redo_retargeting = editor.can_redo_retargeting();
-                panels.host.has_planted_feet = editor.has_planted_feet();
                 let mut output = Output::default();
                 let shown = Shown { library: editor.library(), state: editor.state(), frame: &*frame };
                 *viewport = ui::panels(ui, shown, panels, &mut output);

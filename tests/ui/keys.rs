@@ -4,9 +4,11 @@ use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
-use gaitway::ui::{KEY_TABLE, Tab, UiAction, text};
+use gaitway::ui::{KEY_TABLE, RecordingProgress, Tab, UiAction, text};
 
-use crate::bench::{Bench, WIDE, press, press_key, sample_bench};
+use crate::bench::{Bench, WIDE, motion_bench, press, press_key, sample_bench};
+use crate::header::choose;
+use crate::motion::press_row;
 
 #[test]
 fn keys_do_what_the_help_says() {
@@ -161,6 +163,52 @@ fn the_help_takes_the_focus_and_gives_it_back() {
     assert!(is_focused(&harness, text::HELP_TITLE));
     press_key(&mut harness, Key::Escape);
     assert!(is_focused(&harness, text::MENU));
+}
+
+/// The page dims what is around the canvas.
+#[test]
+fn every_modal_dialog_is_reported() {
+    type Act = fn(&mut Harness<'_, Bench>);
+    let dialogs: [(&str, Act, Act); 4] = [
+        (
+            "help",
+            |harness| drop(press_key(harness, Key::Questionmark)),
+            |harness| {
+                drop(press_key(harness, Key::Escape));
+            },
+        ),
+        (
+            "about",
+            |harness| choose(harness, text::MENU, text::ABOUT),
+            |harness| {
+                drop(press(harness, text::CLOSE_ABOUT));
+            },
+        ),
+        (
+            "picker",
+            |harness| {
+                press(harness, Tab::Motion.label());
+                press_row(harness, &text::follows("Neck", ""));
+            },
+            |harness| drop(press(harness, text::CANCEL)),
+        ),
+        (
+            "recording",
+            |harness| {
+                harness.state_mut().panels.host.recording = Some(RecordingProgress { frames_done: 1, frame_count: 2 });
+            },
+            |harness| harness.state_mut().panels.host.recording = None,
+        ),
+    ];
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    for (name, open, close) in dialogs {
+        assert!(!harness.state().panels.has_modal(), "before {name}");
+        open(&mut harness);
+        assert!(harness.state().panels.has_modal(), "{name}");
+        close(&mut harness);
+        harness.run();
+        assert!(!harness.state().panels.has_modal(), "after {name}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 // Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a
 // model that couldn't be loaded, without asking for it.
-import { button, byId, dialog, showList } from "./dom.js";
-import { companionWords } from "./held.js";
+import { button, byId, dialog, listOf, showList } from "./dom.js";
+import { companionWords, fileName } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
 
@@ -16,17 +16,48 @@ import { panel } from "./panels.js";
  * @property {LinkedFile[]} wanted The files that it waits for.
  * @property {LinkedFile[]} missing Those that the page asks for.
  * @property {Item[][]} sets The sets of files that have arrived meanwhile.
- * @property {boolean} [isPassedOver] Something else was opened instead.
+ * @property {boolean} isOwn The files were open in this entry of the history before the page was reloaded.
  */
 
-/** @type {Awaited | null} */
+/**
+ * The link whose files the page asks for.
+ * @type {Awaited | null}
+ */
 let current = null;
 
+/**
+ * A link that is no longer asked for, since another model was opened instead. Its files complete it until the next model is opened.
+ * @type {Awaited | null}
+ */
+let passedOver = null;
+
+/** The link whose files the page asks for, if any. */
 export const awaited = () => current;
+
+/** The link that files complete, if any. */
+export const completable = () => current ?? passedOver;
 
 /** Stops waiting. */
 export function forgetAwaited() {
-  current = null;
+  current = passedOver = null;
+}
+
+/** Stops asking, since another model was opened. Returns what to tell the user: it may have been the wrong file. */
+export function passOver() {
+  // Copies of files that couldn't be loaded are accepted, not asked for.
+  [current, passedOver] = [null, current !== null && current.missing.length > 0 ? current : null];
+  if (passedOver === null) return;
+  const names = passedOver.missing.map(({ name }) => fileName(name));
+  return `This link needs ${listOf(names)}. Open ${names.length === 1 ? "it" : "them"} to see the ${passedOver.isOwn ? "view as it was" : "shared view"}.`;
+}
+
+/**
+ * Some of a link's files have arrived: asks for the rest.
+ * @param {Awaited} waiting
+ * @param {LinkedFile[]} missing
+ */
+export function askForRest(waiting, missing) {
+  current = { ...waiting, missing };
 }
 
 /**
@@ -36,7 +67,8 @@ export function forgetAwaited() {
 export function awaitFiles(link) {
   dialog("bring").close();
   const wanted = filesToBring(link);
-  current = wanted.length > 0 ? { link, marked: link, wanted, missing: wanted, sets: [] } : null;
+  forgetAwaited();
+  if (wanted.length > 0) current = { link, marked: link, wanted, missing: wanted, sets: [], isOwn: isOwnEntry() };
 }
 
 /**
@@ -46,15 +78,17 @@ export function awaitFiles(link) {
  */
 export function awaitCopies(link, names) {
   const marked = publicLink(link, names);
-  current = { link, marked, wanted: filesToBring(marked), missing: current?.missing ?? [], sets: [] };
+  current = { link, marked, wanted: filesToBring(marked), missing: current?.missing ?? [], sets: [], isOwn: isOwnEntry() };
 }
+
+const isOwnEntry = () => history.state?.own === true;
 
 /** @param {string} link */
 const filesToBring = (link) => linkedFiles(link).filter(({ isToBring }) => isToBring);
 
 /**
  * Asks for the files that are missing.
- * @param {string} [others] Names of files that were brought instead.
+ * @param {string} [others] Names of other files, which couldn't be opened.
  */
 export function showAwaited(others) {
   if (current === null || current.missing.length === 0 || panel() !== null || dialog("bring").open) return;
@@ -65,11 +99,9 @@ export function showAwaited(others) {
   });
   showList("bring-files", lines);
   byId("bring-others").hidden = others === undefined;
-  byId("bring-others").textContent = `Brought instead: ${others}.`;
-  // They were open in this entry of the history before the page was reloaded.
-  const isOwn = history.state?.own === true;
-  byId("bring-again").hidden = !isOwn;
-  byId("bring-sender").hidden = isOwn;
+  byId("bring-others").textContent = others === undefined ? "" : `${others} couldn't be opened.`;
+  byId("bring-again").hidden = !current.isOwn;
+  byId("bring-sender").hidden = current.isOwn;
   dialog("bring").showModal();
   button("bring-choose").focus();
 }

@@ -40,6 +40,19 @@ export function showList(id, texts) {
   );
 }
 
+/** Names that a sentence lists; more would hide the rest of it. */
+const MAX_NAMES = 4;
+
+/**
+ * Lists names for a sentence: “a, b and c”, or the first few and how many more there are.
+ * @param {string[]} names
+ */
+export function listOf(names) {
+  const more = names.length - MAX_NAMES;
+  const listed = more > 0 ? [...names.slice(0, MAX_NAMES), `${more} more`] : names;
+  return new Intl.ListFormat("en-GB").format(listed);
+}
+
 export const canvas = () => byId("stage").querySelector("canvas");
 
 export const focusCanvas = () => canvas()?.focus({ preventScroll: true });

@@ -1,13 +1,14 @@
 // Following links: back and forward, another link typed into the address bar, and reporting what couldn't be loaded.
 import { awaitCopies, awaitFiles, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
+import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
 import { fileName, heldItems, heldMotionsAndLight, localFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
 import { panel, sayProblem } from "./panels.js";
-import { arePrivate, rememberPrivateVisit } from "./privacy.js";
+import { rememberPrivateVisit } from "./privacy.js";
 import { linkOfAddress, session, unlessStopped } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
@@ -50,8 +51,8 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
   };
   try {
     const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
-    if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, arePrivate(items));
-    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await load(motionItems, "motion", arePrivate(motionItems));
+    if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, false);
+    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await load(motionItems, "motion", false);
     if (number !== lastFollow) return;
     // The same names now mean other files.
     const meansOthers = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
@@ -122,6 +123,7 @@ export function showMissing(problems, link, isUnchanged = false) {
 
 addEventListener("popstate", ({ state }) => {
   cancelSummary();
+  forgetCompanions();
   const visit = moveToEntry(state);
   const link = linkOfAddress();
   // An instance that is starting shows this link instead.

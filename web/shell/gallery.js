@@ -4,8 +4,8 @@ import { byId, button, focusCanvas } from "./dom.js";
 import { mostSimilarLink } from "./links.js";
 
 const gallery = byId("gallery");
-/** Phones held sideways: LOW_HEIGHT in src/ui/mod.rs. */
-const lowScreen = matchMedia("(max-height: 28.125rem)");
+/** Phones held sideways: LOW_HEIGHT in src/ui/mod.rs, also in shell.css. */
+const lowScreen = matchMedia("(max-height: 450px)");
 const cards = /** @type {HTMLAnchorElement[]} */ ([...gallery.querySelectorAll("a.card")]);
 
 export function showGallery() {
@@ -17,16 +17,26 @@ export function showGallery() {
 /** For what the user opens, which needs the room. */
 export const hideGallery = () => setShown(false);
 
+/** A low screen alone hides the samples. */
+let isTooLow = false;
+
 /** @param {boolean} isShown */
 function setShown(isShown) {
+  isTooLow = false;
   if (gallery.hidden !== isShown) return;
   const hadFocus = gallery.contains(document.activeElement);
   gallery.hidden = !isShown;
   if (hadFocus && !isShown) focusCanvas();
 }
 
+/** @param {boolean} isWanted */
+function showIfHigh(isWanted) {
+  setShown(isWanted && !lowScreen.matches);
+  isTooLow = isWanted && lowScreen.matches;
+}
+
 /**
- * Dims the samples while a box in the canvas waits for an answer.
+ * Dims the samples and disables them while a modal dialog is open in the canvas.
  * @param {boolean} isInert
  */
 export function setInert(isInert) {
@@ -50,15 +60,15 @@ if (matchMedia("(pointer: coarse)").matches) {
   if (title && how) [title.textContent, how.textContent] = ["Open your character", "Choose its files"];
 }
 
-setShown(location.hash.length < 2 && parent === window && cards.length > 0 && !lowScreen.matches);
+showIfHigh(location.hash.length < 2 && parent === window && cards.length > 0);
 
 button("gallery-close").addEventListener("click", () => setShown(false));
-lowScreen.addEventListener("change", ({ matches }) => matches && setShown(false));
+lowScreen.addEventListener("change", () => showIfHigh(isTooLow || !gallery.hidden));
 // In the viewport, Escape acts on the selection there.
 addEventListener("keydown", ({ key, target }) => {
-  if (key === "Escape" && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
+  if (key === "Escape" && !gallery.inert && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
 });
-// After a click the keyboard controls the viewport; after a key press the focus stays here.
+// After a click the keyboard controls the viewport; after a key press the focus stays here, unless a low screen closes the samples.
 for (const card of cards)
   card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => {
     if (ctrlKey || metaKey || shiftKey) return;

@@ -231,7 +231,6 @@ function stopped(message) {
   const ended = current;
   session.app = current = null;
   showPanel("stopped");
-  setInert(false);
   for (const dialog of document.querySelectorAll("dialog")) dialog.close();
   button("stopped-again").focus();
   // Not from inside the instance's own call.
@@ -246,6 +245,8 @@ function end(instance) {
   cancelRecording();
   if (session.app === instance) session.app = null;
   if (current === instance) current = null;
+  // A modal dialog of the instance ends with it.
+  setInert(false);
   try {
     instance?.destroy();
   } catch {

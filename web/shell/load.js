@@ -2,7 +2,7 @@
 import { messageOf } from "./dom.js";
 import { coded } from "./errors.js";
 import { hold, holdLast, releaseNamed } from "./held.js";
-import { beginPrivate, endPrivate, forgetRejected, rememberRejected } from "./privacy.js";
+import { arePrivate, beginPrivate, endPrivate, forgetRejected, rememberRejected } from "./privacy.js";
 import { running, unlessStopped } from "./session.js";
 
 /** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
@@ -32,14 +32,14 @@ export async function read(items) {
  * Reads and shows items, and holds on to local ones.
  * @param {Item[]} items
  * @param {Role} as
- * @param {boolean} isPrivate The local files among them are the user's own.
+ * @param {boolean} isPrivate The local files among them are the user's own. Files that were so once always are.
  * @param {boolean} [isByHand] The user opens them, not a link or a script.
  * @returns {Promise<{ shown: "model" | "motion" | "light" | "map", document: InspectDocument }>}
  */
 export async function load(items, as, isPrivate, isByHand = false) {
   // A link has URLs in full; other files have to be held.
   const isLocal = items.some((item) => typeof item !== "string");
-  const isPrivateNow = isLocal && isPrivate;
+  const isPrivateNow = isLocal && (isPrivate || arePrivate(items));
   if (isPrivateNow) beginPrivate(items);
   if (isLocal) hold(items);
   try {

@@ -1,30 +1,22 @@
-// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. The files of a model may come
-// one after the other. Files that a link waits for complete it.
-import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
+// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
+// complete it.
+import { askForRest, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
-import { focusCanvas, frames, messageOf } from "./dom.js";
+import { withCompanions } from "./companions.js";
+import { focusCanvas, frames, listOf, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
-import { extensionOf, fileName, heldItems, heldMotionsAndLight, isGltf, isPartOfGltf, itemNamed, nameOf, setWith } from "./held.js";
+import { fileName, heldItems, heldMotionsAndLight, nameOf } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
-import { refuse, running } from "./session.js";
+import { running, session } from "./session.js";
 
 /** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").Openable} Openable */
 /** @typedef {import("./types.d.ts").Role} Role */
-
-/** Files that a message names. */
-const MAX_NAMES = 4;
-
-/**
- * What was opened last, if it is a .gltf without all of its files, or such files without their .gltf.
- * @type {Item[]}
- */
-let incomplete = [];
 
 /**
  * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
@@ -34,25 +26,29 @@ let incomplete = [];
  * @returns {Promise<InspectDocument>}
  */
 export async function open(items, { as, isPrivate = true, isByHand = false } = {}) {
-  const wanted = withCompanions(toItems(items));
+  const given = toItems(items);
+  // The page around this one completes none of the user's models.
+  const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
   await running();
   try {
-    const { shown, document } = await load(wanted, as, isPrivate, isByHand);
-    const lacksImages = shown === "model" && wanted.some(isGltf) && document.warnings.some(({ code }) => code === "image-missing");
-    incomplete = lacksImages ? wanted : [];
+    const { shown, document } = await load(wanted, role, isPrivate, isByHand);
     forgetProblem();
-    await completeLink(wanted, true);
+    const hint = await completeLink(wanted, shown);
     // In place of the app's notice, which says less.
     announce(shown, summarize(), document);
+    if (isByHand && hint !== undefined) session.app?.notify(hint);
     return document;
   } catch (error) {
-    const lacksFiles = wanted.some(isGltf) && codeOf(error) === "not-found";
-    incomplete = lacksFiles || wanted.every(isPartOfGltf) ? wanted : [];
-    // A motion may have arrived before its model. What is incomplete can't complete a link yet.
-    if (incomplete.length === 0) await completeLink(wanted, false);
+    const code = codeOf(error);
+    // A motion may have arrived before its model. Without all of its files, nothing completes a link.
+    if (code === "not-found") showAwaited(namesOf(wanted));
+    else if (code !== "cancelled") await completeLink(wanted);
     throw error;
   }
 }
+
+/** How often the user has opened something. */
+let openedCount = 0;
 
 /**
  * Opens what the user dropped or chose. The app shows errors itself.
@@ -61,13 +57,16 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
  */
 export async function openByHand(items, options) {
   if (items.length === 0) return;
+  openedCount += 1;
+  const number = openedCount;
   try {
     await open(items, { ...options, isByHand: true });
     hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);
-    sayProblem(messageOf(error));
+    // What was opened since has its own result.
+    if (number === openedCount) sayProblem(messageOf(error));
   }
   focusCanvas();
 }
@@ -100,30 +99,6 @@ function toItems(items) {
 const isNamedFile = (item) => item !== null && typeof item === "object" && "name" in item && typeof item.name === "string" && "content" in item && item.content instanceof Blob;
 
 /**
- * Adds what was opened before to a .skel or .attach that comes after its .obj, and to the files of a .gltf, whichever of them
- * comes first.
- * @param {Item[]} items
- * @returns {Item[]}
- */
-function withCompanions(items) {
-  if (items.length === 0) return items;
-  if (items.every(isPartOfGltf) || (items.some(isGltf) && incomplete.every(isPartOfGltf))) return joined(incomplete, items);
-  if (!items.every((item) => ["skel", "attach"].includes(extensionOf(nameOf(item))))) return items;
-  const stem = nameOf(items[0]).replace(/\.[^.]*$/, "");
-  const mesh = setWith(`${stem}.obj`);
-  if (mesh === undefined) return items;
-  const others = ["skel", "attach"].map((extension) => itemNamed(`${stem}.${extension}`)).filter((item) => item !== undefined);
-  return joined([...mesh, ...others], items);
-}
-
-/**
- * Returns the items of both lists, the later ones of the same name.
- * @param {Item[]} before
- * @param {Item[]} items
- */
-const joined = (before, items) => (before.length === 0 ? items : [...new Map([...before, ...items].map((item) => [nameOf(item), item])).values()]);
-
-/**
  * @param {"model" | "motion" | "light" | "map"} shown
  * @param {string} model The name of the active model.
  * @param {InspectDocument} document
@@ -141,12 +116,13 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
 }
 
 /**
- * Adds a set of files to those that a link waits for, and shows the link once all have arrived.
+ * Adds a set of files to those that a link waits for, and shows the link once all have arrived. Returns what to tell the user
+ * who opened another model instead.
  * @param {Item[]} items
- * @param {boolean} isShown The app shows the set.
+ * @param {"model" | "motion" | "light" | "map"} [shown] What it was, unless it couldn't be opened.
  */
-async function completeLink(items, isShown) {
-  const waiting = awaited();
+async function completeLink(items, shown) {
+  const waiting = completable();
   if (waiting === null) return;
   waiting.sets.push(items);
   const { marked, wanted, sets } = waiting;
@@ -159,9 +135,9 @@ async function completeLink(items, isShown) {
   const missing = found.filter(({ item }) => item === undefined);
   if (missing.length > 0) {
     const isOther = !found.some(({ set }) => set === items);
-    if (isShown && isOther) return passOver(waiting, items);
-    waiting.missing = missing.map(({ file }) => file);
-    return showAwaited(isOther ? namesOf(items) : undefined);
+    if (isOther && shown === "model") return passOver();
+    if (!isOther) askForRest(waiting, missing.map(({ file }) => file));
+    return void showAwaited(shown === undefined && isOther ? namesOf(items) : undefined);
   }
   const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
   const complete = linkWithFiles(marked, names);
@@ -169,22 +145,5 @@ async function completeLink(items, isShown) {
   await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotionsAndLight(complete) });
 }
 
-/**
- * Something else was opened instead of what a link waits for, on purpose or by mistake: says so, and waits on without asking,
- * but not longer than until the next file.
- * @param {import("./awaited.js").Awaited} waiting
- * @param {Item[]} items
- */
-function passOver(waiting, items) {
-  // Copies of files that couldn't be loaded are accepted, not asked for.
-  if (waiting.isPassedOver || waiting.missing.length === 0) return forgetAwaited();
-  waiting.isPassedOver = true;
-  const wanted = listOf(waiting.missing.map(({ role, name }) => `${name} (${role})`));
-  refuse(`The link asks for ${wanted}, not for ${namesOf(items)}. Drop ${waiting.missing.length === 1 ? "that file" : "those files"} to see the shared view.`);
-}
-
 /** @param {Item[]} items */
 const namesOf = (items) => listOf(items.map((item) => fileName(nameOf(item))));
-
-/** @param {string[]} names */
-const listOf = (names) => (names.length > MAX_NAMES ? [...names.slice(0, MAX_NAMES), `${names.length - MAX_NAMES} more`] : names).join(", ");

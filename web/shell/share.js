@@ -1,12 +1,9 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
-import { byId, button, dialog, field, messageOf, showList } from "./dom.js";
+import { byId, button, dialog, field, listOf, messageOf, showList } from "./dom.js";
 import { companionsOf, localFiles, shareableLink } from "./held.js";
 import { embeddedLink } from "./links.js";
 import { parts } from "./parts.js";
 import { session } from "./session.js";
-
-/** Companions of a file that are listed by name. */
-const MAX_COMPANIONS = 4;
 
 /**
  * Returns the address of the page with a link that others can open.
@@ -29,7 +26,11 @@ export function share(link) {
   const address = addressOf(link);
   const local = localFiles(link);
   byId("share-local").hidden = local.length === 0;
-  showList("share-files", local.map(({ role, name }) => `${name} (${role})${companionList(companionsOf(name))}`));
+  const lines = local.map(({ role, name }) => {
+    const companions = companionsOf(name);
+    return `${name} (${role})${companions.length === 0 ? "" : `, with ${listOf(companions)}`}`;
+  });
+  showList("share-files", lines);
   field("share-link").value = address;
   field("share-frame").value = frameHtml(addressOf(embeddedLink(link)));
   // A phone that scans the code hardly has the files, and there is no room for both.
@@ -38,12 +39,6 @@ export function share(link) {
   byId("share-said").textContent = "";
   if (!dialog("share").open) dialog("share").showModal();
   copy("share-link", "Link copied.", "");
-}
-
-/** @param {string[]} names */
-function companionList(names) {
-  const [listed, more] = [names.slice(0, MAX_COMPANIONS), names.length - MAX_COMPANIONS];
-  return listed.length === 0 ? "" : `, with ${listed.join(", ")}${more > 0 ? ` and ${more} more` : ""}`;
 }
 
 /**

@@ -103,6 +103,7 @@ export interface Bindings {
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
   refuse(problem: string): void;
+  notify(notice: string): void;
   is_private(): boolean;
   state(): string;
   pose(): string;

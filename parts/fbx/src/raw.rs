@@ -64,7 +64,7 @@ fn explain(error: &ufbx::Error, bytes: &[u8]) -> String {
         }
         ErrorType::UnsupportedVersion => {
             let version = error.info();
-            // Real ones have four digits.
+            // Other lengths come from damaged headers: every real version has four digits.
             let what = if version.len() == 4 { "this is FBX" } else { "the FBX file is damaged: it states" };
             format!(
                 "{what} version {version}, expected 3000 to 7700. Export it again, as FBX 2014 to 2020 or glTF (.glb)."

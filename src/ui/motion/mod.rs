@@ -282,7 +282,7 @@ fn body(
     let (map, tab) = (pairing.map, &mut local.motion);
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Section::Options => options::show(ui, shown, pairing, map, contents, &local.host, out),
+        Section::Options => options::show(ui, shown, pairing, map, contents, out),
         Section::Clip => clip(ui, shown, out),
         Section::Figures => figures::show(ui, shown, pairing, contents, tab),
         Section::Files => options::files(ui, shown, pairing, out),

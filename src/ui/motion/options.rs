@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use egui::{RichText, Ui};
 
 use super::{Contents, Pairing};
-use crate::editor::{ClipFormat, Export, is_derived};
+use crate::editor::{ClipFormat, Export, derived_clip};
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
-use crate::ui::{HostState, Output, Saved, Shown, UiAction, style, text};
+use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
@@ -22,7 +22,6 @@ pub(super) fn show(
     pairing: &Pairing<'_>,
     map: &JointMap,
     contents: &Contents,
-    host: &HostState,
     out: &mut Output,
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
@@ -32,7 +31,7 @@ pub(super) fn show(
     if controls::switch(ui, text::PLANT_FEET, planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
-    if host.has_planted_feet {
+    if shown.state.retarget.feet_are_automatic {
         controls::hint(ui, text::PLANTED_AUTOMATICALLY);
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
@@ -119,7 +118,7 @@ pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
 
 /// Buttons that open, save and remove files.
 pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
-    // With a reason if it is disabled.
+    // `problem` disables the button and says why.
     let button = |ui: &mut Ui, text: &str, problem: Option<&str>| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
         let response = ui.add_enabled(problem.is_none(), button);
@@ -135,11 +134,10 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
-    // The same as in the export menu.
     let clip = active_clip(pairing.model, shown.state);
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
-    let derived = clip.filter(|&clip| is_derived(pairing.model, shown.state, clip));
+    let derived = derived_clip(pairing.model, shown.state);
     let problem = if clip.is_some() { text::IS_IN_FILE } else { text::NEEDS_CLIP };
     if button(ui, text::SAVE_GLB, derived.is_none().then_some(problem))
         && let Some(clip) = derived

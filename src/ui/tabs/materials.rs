@@ -75,7 +75,7 @@ pub fn images(ui: &mut Ui, model: &Model, lists: &Lists, host: &HostState) {
     }
 }
 
-/// Where the maps don't fit beside the other facts, they take more lines.
+/// The details wrap if the list of maps is too long for one line.
 fn image_row(ui: &mut Ui, id: Id, image: &ImageText, thumbnail: Option<egui::TextureId>) {
     const GAP: f32 = 8.0;
     let palette = style::palette(ui);

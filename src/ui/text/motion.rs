@@ -293,8 +293,8 @@ pub const SAVE_GLB: &str = "Save GLB";
 pub const SHOW_SOURCE: &str = "Show source beside the model";
 /// The same button while the skeleton is shown.
 pub const HIDE_SOURCE: &str = "Hide source";
-/// Why it is disabled for a clip that the model's file has as it is.
-pub const IS_IN_FILE: &str = "The model's file has this clip as it is.";
+/// Why the button is disabled for an unchanged clip of the model's own.
+pub const IS_IN_FILE: &str = "The model's file already contains this clip.";
 /// Why buttons that save the current clip are disabled in the rest pose.
 pub const NEEDS_CLIP: &str = "Choose a clip in the clip list first.";
 /// Why the source can't be shown while one of the model's own clips is active.

@@ -8,10 +8,12 @@ use gaitway::editor::{Contents, Editor, Event};
 use gaitway::library::Model;
 use gaitway::retarget::{Feet, RootOptions, RootPart};
 use gaitway::samples;
-use gaitway::state::{CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, resolve_camera};
+use gaitway::state::{
+    CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, from_link, resolve_camera, to_link,
+};
 use glam::Vec3;
 
-use super::{any, contents, editor, motions, open, open_motion, orbit};
+use super::{any, contents, editor, id_of, motions, open, open_motion, orbit};
 
 #[test]
 fn framing_uses_the_viewports_aspect() {
@@ -106,6 +108,49 @@ fn the_camera_follows_what_travels_far_unless_the_user_says_otherwise() {
     assert!(!follows(&editor), "the user's choice is kept");
 }
 
+fn are_automatic(editor: &Editor) -> bool {
+    editor.state().retarget.feet_are_automatic
+}
+
+/// Whatever restores or replaces a view says who has planted its feet.
+#[test]
+fn who_has_planted_the_feet_belongs_to_the_view() {
+    let mut editor = editor("sample:dwarf");
+    open_by_hand(&mut editor, "sample:walk");
+    assert!(are_automatic(&editor));
+    // A link has them planted as well, but says so itself.
+    let (link, errors) = from_link(&to_link(editor.state()));
+    assert!(errors.is_empty(), "{errors:?}");
+    editor.apply(Command::Replace(Box::new(link)));
+    assert_eq!((editor.state().retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
+    // Another model has its own.
+    let mut editor = self::editor("sample:dwarf");
+    open_by_hand(&mut editor, "sample:walk");
+    editor.apply(Command::SetFeet(Some(Feet::Off)));
+    editor.apply(Command::SetFeet(Some(Feet::Plant)));
+    let dwarf = id_of(&editor, "sample:dwarf");
+    open_by_hand(&mut editor, "sample:pilot");
+    editor.activate(dwarf, &mut any).expect("fits");
+    assert_eq!((editor.state().retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
+    // A script's word counts like the user's; other keys say nothing about feet.
+    let mut editor = self::editor("sample:dwarf");
+    open_by_hand(&mut editor, "sample:walk");
+    editor.apply_partial(&serde_json::json!({ "exposure": 1 })).expect("is valid");
+    assert!(are_automatic(&editor));
+    editor.apply_partial(&serde_json::json!({ "feet": "plant" })).expect("is valid");
+    assert!(!are_automatic(&editor));
+}
+
+#[test]
+fn a_script_that_sets_follow_is_obeyed_from_then_on() {
+    let mut editor = editor("sample:pilot");
+    editor.open(Contents { is_by_hand: true, ..runner(8.0) }, None, &mut any).expect("fits");
+    editor.apply_partial(&serde_json::json!({ "follow": false })).expect("is valid");
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(!editor.state().camera_options.follow);
+}
+
 #[test]
 fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     let mut editor = editor("sample:dwarf");
@@ -116,19 +161,20 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     assert!(told.iter().any(is_told), "{told:?}");
     assert_eq!(editor.state().camera, CameraChoice::Auto, "it frames the clip as it is now");
     let is_edit = |editor: &Editor| (editor.can_undo_retargeting(), editor.can_redo_retargeting());
-    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (true, (false, false)), "not the user's edit");
+    assert_eq!((are_automatic(&editor), is_edit(&editor)), (true, (false, false)), "not the user's edit");
     assert!(editor.undo());
-    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (false, (false, false)));
+    assert_eq!((are_automatic(&editor), is_edit(&editor)), (false, (false, false)));
     editor.redo();
-    assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (true, (false, false)));
+    assert_eq!((are_automatic(&editor), is_edit(&editor)), (true, (false, false)));
     for feet in [Feet::Off, Feet::Plant] {
         editor.apply(Command::SetFeet(Some(feet)));
         editor.end_gesture();
-        assert_eq!((editor.has_planted_feet(), is_edit(&editor)), (false, (true, false)), "now it is: {feet:?}");
+        assert_eq!((are_automatic(&editor), is_edit(&editor)), (false, (true, false)), "now it is: {feet:?}");
     }
     editor.undo();
     assert!(editor.can_redo_retargeting());
     editor.undo();
+    assert_eq!((are_automatic(&editor), is_edit(&editor)), (true, (false, true)), "as before the user's edits");
     assert!(editor.undo());
     assert_eq!((editor.state().retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
     assert!(editor.undo());

@@ -83,7 +83,7 @@ fn a_new_model_that_plays_a_borrowed_motion_says_so() {
     editor.activate(id_of(&editor, "sample:mannequin"), &mut any).expect("fits");
     let events = editor.take_events();
     let [text] = notices(&events)[..] else { panic!("{events:?}") };
-    assert!(text.starts_with("It plays the motion borrowed from dance.glb"), "{text}");
+    assert!(text.starts_with("Mannequin plays the motion borrowed from dance.glb"), "{text}");
 }
 
 /// Returns the asset of a sample without its clips.

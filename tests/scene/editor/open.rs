@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
 use gaitway::asset::{Asset, Warning};
-use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export};
+use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export, ModelFiles, OpenedModel};
 use gaitway::files::{Held, open_view};
+use gaitway::formats::FileSet;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Model, Motion};
 use gaitway::samples;
-use gaitway::state::{ClipChoice, Command, Inspect, RetargetEdits, Show, UpAxis, ViewerState, from_link};
+use gaitway::state::{
+    CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, from_link,
+};
 use glam::Vec3;
 
 use super::{active, any, contents, editor, id_of, motions, notices, open, open_motion, title};
@@ -161,15 +164,42 @@ fn missing_images_are_told() {
         notices(&editor.take_events()).concat()
     };
     assert_eq!(told("a.gltf", &[]), "Opened a.gltf.");
-    assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; drop both together.");
-    let several = "Opened c.gltf. Some of its images are missing; drop all files together.";
+    assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; open it as well.");
+    let several = "Opened c.gltf. Some of its images are missing; open them as well.";
     assert_eq!(told("c.gltf", &["skin.png", "eyes.png"]), several);
-    // Opened again with more of them, it takes the place of the one without.
-    told("c.gltf", &["eyes.png"]);
-    told("c.gltf", &[]);
-    told("c.gltf", &["eyes.png"]);
-    let names: Vec<&str> = editor.library().models().iter().map(|model| &*model.source).collect();
-    assert_eq!(names, ["sample:walker", "a.gltf", "b.gltf", "c.gltf", "c.gltf"], "a worse one replaces nothing");
+}
+
+#[test]
+fn a_model_takes_the_place_of_the_same_one_without_its_files() {
+    let mut editor = editor("sample:walker");
+    // A file of this content, some of whose two images are missing.
+    let open = |editor: &mut Editor, text: &str, images: &[&str]| {
+        let mut asset = Asset::default();
+        for &uri in images {
+            asset.warnings.push(Warning::ImageMissing { uri: uri.to_owned() });
+        }
+        let model = Model::new("scene.gltf".to_owned(), asset, Vec::new());
+        let mut set = FileSet::default();
+        set.insert("scene.gltf", text.as_bytes());
+        ["skin.png", "eyes.png"].iter().filter(|name| !images.contains(name)).for_each(|&name| set.insert(name, []));
+        let files = Some(ModelFiles { set, name: "scene.gltf".to_owned() });
+        let contents = Contents { models: vec![OpenedModel { model, files }], ..Contents::default() };
+        editor.open(contents, None, &mut any).expect("fits");
+        editor.library().models().len()
+    };
+    assert_eq!(open(&mut editor, "one", &["skin.png", "eyes.png"]), 2);
+    assert_eq!(open(&mut editor, "two", &[]), 3, "another model of this name");
+    assert_eq!(open(&mut editor, "one", &["eyes.png"]), 3);
+    // With its view.
+    let camera =
+        CameraChoice::Orbit(OrbitCamera { yaw_radians: 1.0, pitch_radians: 0.0, distance: 7.0, target: Vec3::ZERO });
+    editor.apply(Command::SetCamera(camera));
+    editor.apply(Command::SetExposure(1.0));
+    let view = editor.state().clone();
+    assert_eq!(open(&mut editor, "one", &[]), 3);
+    assert_eq!(editor.state(), &view);
+    assert_eq!(open(&mut editor, "one", &["eyes.png"]), 4, "a worse one replaces nothing");
+    assert_eq!(editor.state().camera, CameraChoice::Auto, "nor has its view");
 }
 
 /// A link to a loaded model reads no files, but is presented as any other.

@@ -1,12 +1,13 @@
 //! Motions and their files: borrowing, saving, removing, and the choices if a motion doesn't fit.
 
-use egui_kittest::kittest::Queryable;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::{ClipFormat, Export};
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use super::{motion_tab, reach};
-use crate::bench::{WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
 
 #[test]
 fn borrowed_clips_are_listed_under_the_name_of_their_file() {
@@ -61,15 +62,28 @@ fn an_own_clip_can_be_saved_alone() {
     let mut harness = motion_tab();
     press(&mut harness, text::FILES);
     press(&mut harness, "Walk");
-    press(&mut harness, text::SAVE_GLB);
-    assert_eq!(harness.state().actions, []);
+    check_disabled(&mut harness, text::SAVE_GLB, text::IS_IN_FILE);
     let format = ClipFormat::Bvh;
     reach(&mut harness, text::save_clip(format));
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Clip { clip: 0, format }))]);
     harness.state_mut().editor.apply(Command::SetClip(ClipChoice::RestPose));
     harness.run();
-    reach(&mut harness, text::save_clip(format));
-    assert_eq!(harness.state().actions.len(), 1, "there is no clip");
+    for label in [text::SAVE_GLB, text::save_clip(format)] {
+        check_disabled(&mut harness, label, text::NEEDS_CLIP);
+    }
+}
+
+/// Checks that a button is disabled, and that its tooltip says why.
+fn check_disabled(harness: &mut Harness<'_, Bench>, label: &str, why: &str) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run();
+    assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label}");
+    harness.get_by_label(label).hover();
+    harness.run_steps(60);
+    assert!(harness.query_by_label(why).is_some(), "{label}: {why}");
+    // Tooltips of other controls appear after this one is gone.
+    harness.hover_at(egui::Pos2::ZERO);
+    harness.run_steps(60);
 }
 
 /// The tab shows the motion whose clip plays.

@@ -129,7 +129,7 @@ impl fmt::Display for Warning {
             }
             Self::FoundByBareName { uri, used } => write!(f, "“{uri}” was not found; “{used}” was used instead"),
             Self::ImageMissing { uri } => {
-                write!(f, "image “{uri}” is not among the files; drop it together with the model")
+                write!(f, "image “{uri}” is not among the files; open it with the model")
             }
             Self::ImageUnreadable { image, problem } => write!(f, "image {image} cannot be read: {problem}"),
             Self::MatrixNotDecomposable { node } => {

@@ -254,7 +254,7 @@ fn read_libraries(files: &FileSet, file: &str, obj: &ObjText, warnings: &mut War
     for library in &obj.libraries {
         let Some(found) = files.resolve(file, library) else {
             libraries.complete = false;
-            let problem = "it is not among the files, so its materials are grey; drop it together with the model";
+            let problem = "it is not among the files, so its materials are grey; open it with the model";
             let (place, problem) = (library.clone(), problem.to_owned());
             warnings.push(Warning::Other { code: "materials-missing", place, problem });
             continue;
