@@ -7,7 +7,7 @@ import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
-import { BACK_ENDS, apply, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
