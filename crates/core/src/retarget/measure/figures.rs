@@ -61,6 +61,9 @@ const FACING: [(Slot, Slot); 6] = [
     (Slot::RightHand, Slot::RightMiddleProximal),
 ];
 
+/// Joints that shouldn't be below the ground.
+const ON_GROUND: [Slot; 4] = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes];
+
 /// A clip of the target to measure.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredClip<'a> {
@@ -103,14 +106,9 @@ pub fn measure(
     let times = measured_times(transfer.tracks.clip);
     let (laws, _) = rotation_laws(transfer);
     let removed = removed_travel(transfer, &laws, &times);
-    let segments: Vec<(&Pair, &Pair)> =
-        compared_segments().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
-    let facing_segments: Vec<(&Pair, &Pair)> =
-        FACING.into_iter().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
-    let ground_joints: Vec<JointIndex> = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes]
-        .into_iter()
-        .filter_map(|slot| target_slots.joint(slot))
-        .collect();
+    let segments = mapped_segments(transfer, compared_segments());
+    let facing_segments = mapped_segments(transfer, FACING.into_iter());
+    let ground_joints: Vec<JointIndex> = ON_GROUND.into_iter().filter_map(|slot| target_slots.joint(slot)).collect();
     let ground = lowest_leg_joint(target_slots, &transfer.alignment.target.positions);
 
     let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
@@ -149,6 +147,7 @@ pub fn measure(
     }
     let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
     let sole_penetration = depths.reduce(f64::max);
+    let largest_turn = largest_turn_degrees(transfer.target_skeleton, pairs, measured.clip);
     let (contacts, tracks) = foot_tracks(transfer, &times, feet);
     let figures = Figures {
         limb_direction_error_degrees_mean: direction.mean(),
@@ -162,14 +161,18 @@ pub fn measure(
         ground_penetration_metres_max: penetration,
         foot_hover_metres_mean: contacts.hover,
         sole_penetration_metres_max: sole_penetration,
-        largest_turn_degrees_per_frame: largest_turn_degrees(
-            transfer.target_skeleton,
-            &transfer.map.pairs,
-            measured.clip,
-        ),
+        largest_turn_degrees_per_frame: largest_turn,
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)
+}
+
+/// Returns the segments whose ends are both mapped.
+fn mapped_segments<'a>(
+    transfer: &Transfer<'a>,
+    segments: impl Iterator<Item = (Slot, Slot)>,
+) -> Vec<(&'a Pair, &'a Pair)> {
+    segments.filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect()
 }
 
 /// The measured joints of the target, in the common frame.
