@@ -172,14 +172,18 @@ impl Editor {
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
         let about_feet = if borrows && !has_map { self.suit_feet() } else { None };
-        if was_loaded && !is_view {
-            let opened =
-                Opened { name, is_new, others, evicted, lacks_joints, missing_images, about_motions, about_feet };
+        let opened = Opened { name, is_new, others, evicted, lacks_joints, missing_images, about_motions, about_feet };
+        self.announce(&opened, was_loaded && !is_view);
+        Ok(())
+    }
+
+    /// Tells what was opened, if it took the place of another model, and what was done to its feet.
+    fn announce(&mut self, opened: &Opened, is_replacement: bool) {
+        if is_replacement {
             self.notify_undoable(opened.text());
-        } else if let Some(about_feet) = about_feet {
+        } else if let Some(about_feet) = opened.about_feet {
             self.notify_undoable(about_feet.to_owned());
         }
-        Ok(())
     }
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
