@@ -240,8 +240,8 @@ for (const renderer of BACK_ENDS) {
 
     /** A model in three files. */
     const inPieces = (name = "own") => {
-      const { bytes, document: plain } = triangle({ uri: `${name}.bin` });
-      const textured = { ...plain, images: [{ uri: `${name}.png` }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
+      const { bytes, document: plain } = triangle({ uri: `${encodeURIComponent(name)}.bin` });
+      const textured = { ...plain, images: [{ uri: `${encodeURIComponent(name)}.png` }], textures: [{ source: 0 }], materials: [{ emissiveTexture: { index: 0 } }] };
       return {
         gltf: { name: `${name}.gltf`, text: JSON.stringify(textured) },
         buffer: { name: `${name}.bin`, url: `data:application/octet-stream;base64,${bytes.toString("base64")}` },
@@ -291,9 +291,9 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage("puts files together that are dropped without waiting", {}, async (page) => {
-      const { gltf, buffer, image } = inPieces();
+      const { gltf, buffer, image } = inPieces("my own");
       for (const file of [gltf, buffer, image]) await drop(page, [file]);
-      await whenWhole(page, "own.gltf");
+      await whenWhole(page, "my own.gltf");
     });
 
     onPage("shows the next model without the weights of the previous model's joint", { data: true }, async (page) => {

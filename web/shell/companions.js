@@ -66,7 +66,7 @@ async function missingFiles(items) {
     if (typeof item === "string" || !isGltf(item)) continue;
     try {
       const { buffers = [], images = [] } = JSON.parse(await new Blob([item.content]).text());
-      for (const { uri } of [...buffers, ...images]) if (uri !== undefined && !uri.startsWith("data:")) missing.add(keyOf(uri));
+      for (const { uri } of [...buffers, ...images]) if (uri !== undefined && !uri.startsWith("data:")) missing.add(keyOf(decodeURIComponent(uri)));
     } catch {
       // Opening it reports what is wrong.
     }
