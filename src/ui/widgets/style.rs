@@ -144,15 +144,13 @@ pub const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-deriva
 #[cfg(not(target_arch = "wasm32"))]
 pub const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
-/// One font for all text, with tabular digits for columns of numbers, and egui's icons.
+/// One font for all text, with tabular digits for columns of numbers.
 fn fonts() -> FontDefinitions {
+    const NAME: &str = "Ubuntu-Light";
     let mut fonts = FontDefinitions::empty();
-    let data: [(&str, &'static [u8]); 2] = [("Ubuntu-Light", FONT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
-    for (name, bytes) in data {
-        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
-        for family in [FontFamily::Proportional, FontFamily::Monospace] {
-            fonts.families.entry(family).or_default().push(name.to_owned());
-        }
+    fonts.font_data.insert(NAME.to_owned(), Arc::new(FontData::from_static(FONT)));
+    for family in [FontFamily::Proportional, FontFamily::Monospace] {
+        fonts.families.insert(family, vec![NAME.to_owned()]);
     }
     fonts
 }
