@@ -17,7 +17,7 @@ pub const BRING: &str = "Choose files…";
 pub const NOT_OPENED: &str = "Not opened yet";
 /// What to do if a link's model couldn't be loaded.
 pub const NOT_LOADED: &str =
-    "Try the link again later, or drop a copy of the file: the rest of the link is applied to it.";
+    "Try the link again later, or drop a copy of the file, under the same name: the rest of the link is applied to it.";
 /// What to do while a model is awaited.
 pub const BRING_HERE: &str = "Drop the file anywhere, or open it. The rest of the link is kept and applied to it.";
 /// Button that empties a search field.
