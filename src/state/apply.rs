@@ -81,6 +81,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.feet = feet,
+        Command::SetContacts(contacts) => state.retarget.contacts = contacts,
         Command::ReconcileMaps(maps) => state.retarget.map = maps,
     }
 }

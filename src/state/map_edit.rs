@@ -67,7 +67,8 @@ pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize
     match edit {
         MapEdit::Load(new) => {
             map = *new;
-            (state.retarget.unmapped, state.retarget.root, state.retarget.feet) = (None, None, None);
+            (state.retarget.unmapped, state.retarget.root) = (None, None);
+            (state.retarget.feet, state.retarget.contacts) = (None, None);
         }
         MapEdit::Clear => map.joints.clear(),
         MapEdit::SwapSides => {

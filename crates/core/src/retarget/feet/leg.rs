@@ -20,7 +20,10 @@ const MIN_BEND: f64 = 0.17;
 /// A knee bent the wrong way stays so unless planting moves the foot by more than this share of the leg's length.
 const SMALL_MOVE: f64 = 0.02;
 
-/// The target joints of one leg.
+/// An elbow that is bent by less than about this sine is held by its hinge at rest, too.
+const CLEAR_BEND: f64 = 0.35;
+
+/// The target joints of one leg or, as hip, knee and ankle, the shoulder, elbow and wrist of an arm.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg {
     pub hip: JointIndex,
@@ -30,6 +33,7 @@ pub struct Leg {
     pub toes: JointIndex,
     /// Axis about which the knee bends at rest, in the frame of `hip`.
     hinge: DVec3,
+    is_arm: bool,
 }
 
 /// How thigh and shin are turned in the common frame to bring a foot to its place.
@@ -48,13 +52,28 @@ impl Leg {
         let bend = thigh.cross(shin);
         let axis = if bend.length() > MIN_BEND { bend } else { bend + MIN_BEND * DVec3::X };
         let hinge = rest.rotation(hip).conjugate() * axis.reject_from(thigh).normalize_or(DVec3::X);
-        Self { hip, knee, ankle, toes, hinge }
+        Self { hip, knee, ankle, toes, hinge, is_arm: false }
+    }
+
+    /// `joints` are shoulder, elbow and wrist; a straight arm bends forwards.
+    pub fn arm(joints: [JointIndex; 3], rest: &WorldPose) -> Self {
+        let [shoulder, elbow, wrist] = joints;
+        let upper = (rest.position(elbow) - rest.position(shoulder)).normalize_or_zero();
+        let lower = (rest.position(wrist) - rest.position(elbow)).normalize_or_zero();
+        let axis = upper.cross(lower) + MIN_BEND * upper.cross(DVec3::Z);
+        let hinge = rest.rotation(shoulder).conjugate() * axis.normalize_or(DVec3::Y);
+        Self { hip: shoulder, knee: elbow, ankle: wrist, toes: wrist, hinge, is_arm: true }
     }
 
     /// Axis about which the knee bends: across the plane of the leg, unless it is nearly straight or bent the wrong way.
     fn hinge(&self, pose: &WorldPose, thigh: DVec3, shin: DVec3) -> DVec3 {
         let at_rest = pose.rotation(self.hip) * self.hinge;
         let bend = thigh.normalize_or_zero().cross(shin.normalize_or_zero());
+        if self.is_arm {
+            // Captured arms twist where they like, so that their elbows bend about any axis.
+            let share = smooth(bend.length() / CLEAR_BEND);
+            return (share * bend.normalize_or_zero() + (1.0 - share) * at_rest).normalize_or(at_rest);
+        }
         let across = bend - bend.dot(at_rest).min(0.0) * at_rest;
         (across + MIN_BEND * at_rest).normalize_or(at_rest)
     }
@@ -88,7 +107,7 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     }
     let hinge = leg.hinge(pose, thigh, shin);
     let reach = (thigh + shin).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
-    let certainty = smooth(by.length() / (SMALL_MOVE * length));
+    let certainty = if leg.is_arm { 0.0 } else { smooth(by.length() / (SMALL_MOVE * length)) };
     let distance = goal.length().min(reach);
     let Some([swing, knee_turn]) = reach_goal([thigh, shin], hinge, goal, distance, certainty) else { return unmoved };
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }

@@ -9,6 +9,7 @@ use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
+use crate::retarget::contacts::{Bodies, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
@@ -47,6 +48,11 @@ pub struct Figures {
     pub sole_penetration_metres_max: Option<f64>,
     /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
     pub largest_turn_degrees_per_frame: Option<f64>,
+    /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
+    /// parts are solids fitted to the mesh; `None` without one.
+    pub self_penetration_share: Option<f64>,
+    /// Mean distance of the source's contacts with itself from where the target has them.
+    pub contact_error_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -61,11 +67,14 @@ const FACING: [(Slot, Slot); 6] = [
     (Slot::RightHand, Slot::RightMiddleProximal),
 ];
 
+/// Contacts of the body are looked for a bit more than 30 times per second.
+const TOUCH_STEP_SECS: f32 = 0.03;
+
 /// A clip of the target to measure.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredClip<'a> {
     pub clip: &'a Clip,
-    /// The same without planted feet, if they are planted.
+    /// The same without planted feet and kept contacts, if they are.
     pub unplanted: Option<&'a Clip>,
 }
 
@@ -96,8 +105,8 @@ impl Spread {
 /// Measures a clip and tracks its feet over time.
 pub fn measure(
     transfer: &Transfer,
-    source_slots: &Humanoid,
-    target_slots: &Humanoid,
+    bodies: Option<&Bodies>,
+    [source_slots, target_slots]: [&Humanoid; 2],
     measured: MeasuredClip,
 ) -> (Figures, Vec<FootTrack>) {
     let times = measured_times(transfer.tracks.clip);
@@ -117,6 +126,8 @@ pub fn measure(
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet);
+    let touches = bodies.filter(|bodies| bodies.target.has_mesh).map(|bodies| touches(transfer, bodies, measured.clip));
+    let touches = touches.unwrap_or_default();
     let mut scratches = [Scratch::default(), Scratch::default()];
     for (index, &time) in times.iter().enumerate() {
         let source = transfer.source_pose(time);
@@ -158,6 +169,8 @@ pub fn measure(
             &transfer.map.pairs,
             measured.clip,
         ),
+        self_penetration_share: touches.self_penetration_share(),
+        contact_error_metres_mean: touches.contact_error(),
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)
@@ -224,6 +237,24 @@ fn with_travel(
     let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
     let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
     turned + removed.horizontal(index)
+}
+
+/// Measures contacts of the body on the clip, at even steps.
+fn touches(transfer: &Transfer, bodies: &Bodies, clip: &Clip) -> TouchFigures {
+    let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
+    let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
+    let source: Vec<_> = times.iter().map(|&time| bodies.source.frames(&transfer.source_pose(time))).collect();
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, &times);
+    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let mut figures = TouchFigures::default();
+    let mut scratch = Scratch::default();
+    for (&time, touches) in times.iter().zip(bodies.touches(&times, &source)) {
+        let target = bodies.target.frames(&transfer.target_pose(clip, time, &mut scratch));
+        let yaw = removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time));
+        figures.add(bodies, &touches, &target, (DQuat::from_rotation_y(yaw), scale));
+    }
+    figures
 }
 
 fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {
