@@ -99,7 +99,7 @@ impl<'a> Retargeting<'a> {
     }
 
     fn bodies(&self) -> Option<&Bodies> {
-        self.bodies.get_or_init(|| Bodies::new(&self.transfer())).as_ref()
+        self.bodies.get_or_init(|| Bodies::new(&self.transfer(), [self.source.slots, self.model.slots])).as_ref()
     }
 
     /// Retargets the clip.

@@ -1,12 +1,14 @@
-//! Both bodies as solids, part by part, and points on the limbs, which are at corresponding places of both.
+//! The bodies of source and target as solids, part by part, with points on their limbs at corresponding places.
+
+use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
 
 use super::solid::{Place, Solid};
 use crate::anim::{JointIndex, Skeleton};
-use crate::asset::{Asset, MeshInstance, Slot};
+use crate::asset::{Asset, Humanoid, Slot};
 use crate::retarget::map::Pair;
-use crate::retarget::pose::{WorldPose, ancestry};
+use crate::retarget::pose::{WorldPose, ancestry, is_within};
 use crate::retarget::transfer::Transfer;
 
 /// Parts of one region don't touch each other: they are neighbours.
@@ -22,29 +24,29 @@ pub enum Region {
 impl Region {
     /// 0 for the left arm, 1 for the right one.
     pub fn arm(self) -> Option<usize> {
-        [Self::LeftArm, Self::RightArm].iter().position(|&arm| arm == self)
+        match self {
+            Self::LeftArm => Some(0),
+            Self::RightArm => Some(1),
+            _ => None,
+        }
     }
 
     fn is_leg(self) -> bool {
         matches!(self, Self::LeftLeg | Self::RightLeg)
     }
-
-    /// Whether points of this limb may touch a part: arms touch everything but themselves, legs only each other.
-    fn touches(self, other: Self) -> bool {
-        self != other && (!self.is_leg() || other.is_leg())
-    }
 }
 
-/// One kind of body part.
+/// One kind of body part. Lengths are shares of the body's height.
 struct Kind {
     slot: Slot,
     region: Region,
-    /// The axis leads to the first of these that is mapped; without one, as `without_end` says.
+    /// The axis leads to the first of these that is mapped.
     ends: &'static [Slot],
-    /// Without a mesh: radii to the front and to the side, and how far it extends beyond its ends, as shares of the body's height.
+    /// Without a mesh: radii to the front and to the side, and how far the part extends beyond both of its ends.
     radii: [f64; 2],
     beyond: [f64; 2],
-    /// How far points move if their limb's end does: at the part's beginning and at its end. `None` for parts without points.
+    /// How far points on it move if the end of its limb does, at the part's beginning and at its end. `None` for parts without
+    /// points.
     levers: Option<[f64; 2]>,
 }
 
@@ -90,41 +92,31 @@ const KINDS: [Kind; 17] = {
 /// Length of a part without an end, as a share of the body's height.
 const ENDLESS: f64 = 0.05;
 
-/// Points per part: heights along the axis and directions about it.
-const POINT_RINGS: usize = 4;
-const POINT_SECTORS: usize = 6;
+/// Points on each part of a limb: heights along its axis and directions about it.
+const RINGS: usize = 4;
+const SECTORS: usize = 6;
+pub const POINTS: usize = RINGS * SECTORS;
 
 /// At most about this many vertices of a body are looked at.
 const MAX_VERTICES: usize = 6000;
 
-/// A point on the surface of a limb.
-#[derive(Debug, Clone, Copy)]
-pub struct LimbPoint {
-    /// Index of its part.
-    pub part: usize,
-    pub region: Region,
-    place: Place,
-    /// How far it moves if the end of its limb does, as a share.
-    pub lever: f64,
-    /// Whether it is on a hand: what hands touch is kept.
-    pub is_hand: bool,
-}
+/// Where the parts of a body are: the positions of their joints, and their rotations away from the aligned rest.
+pub type Frames = Vec<(DVec3, DQuat)>;
 
 /// One side of the retarget. All lists are by part.
 #[derive(Debug)]
 pub struct Body {
-    joints: Vec<JointIndex>,
+    pub joints: Vec<JointIndex>,
     solids: Vec<Solid>,
     /// Rotations of the joints at the aligned rest.
     rest: Vec<DQuat>,
-    /// Of limb points, relative to their part's joint at the aligned rest.
-    points: Vec<DVec3>,
+    /// Points of the limbs' parts, relative to their joints at the aligned rest.
+    points: Vec<[DVec3; POINTS]>,
     /// Whether any solid is fitted to vertices.
     pub has_mesh: bool,
+    /// From the lowest to the highest mapped joint, in the body's own unit.
+    pub height: f64,
 }
-
-/// Where the parts of a body are: the positions of their joints, and their rotations away from the aligned rest.
-pub type Frames = Vec<(DVec3, DQuat)>;
 
 impl Body {
     pub fn frames(&self, pose: &WorldPose) -> Frames {
@@ -133,202 +125,268 @@ impl Body {
         self.joints.iter().zip(&self.rest).map(frame).collect()
     }
 
-    /// Where a limb point is.
-    pub fn point(&self, index: usize, part: usize, frames: &Frames) -> DVec3 {
+    /// Where a point of a limb is.
+    pub fn point(&self, part: usize, point: usize, frames: &Frames) -> DVec3 {
         let (position, turn) = frames[part];
-        position + turn * self.points[index]
+        position + turn * self.points[part][point]
     }
 
-    /// Returns how far a point is outside a part, and the nearest place on it; `None` if further away than `reach`.
-    pub fn locate(&self, part: usize, frames: &Frames, point: DVec3, reach: f64) -> Option<(f64, Place)> {
-        let (position, turn) = frames[part];
-        self.solids[part].locate(turn.conjugate() * (point - position), reach)
-    }
-
-    pub fn surface(&self, part: usize, frames: &Frames, place: Place) -> DVec3 {
+    pub fn surface(&self, part: usize, place: Place, frames: &Frames) -> DVec3 {
         let (position, turn) = frames[part];
         position + turn * self.solids[part].surface(place)
     }
 
-    pub fn outward(&self, part: usize, frames: &Frames, place: Place) -> DVec3 {
+    /// The direction away from a part's axis.
+    pub fn outward(&self, part: usize, place: Place, frames: &Frames) -> DVec3 {
         frames[part].1 * self.solids[part].outward(place)
     }
 }
 
-/// Source and target, part by part alike.
+/// A limb's part and another that it may touch: arms touch everything but themselves, legs only each other.
+#[derive(Debug)]
+pub struct PartPair {
+    pub limb: usize,
+    pub other: usize,
+    /// Whether the limb's part is a hand: what hands touch is kept.
+    pub is_hand: bool,
+    /// How deep the limb's points are in the other part on the target at rest.
+    pub at_rest: [f64; POINTS],
+}
+
+/// A point of a limb near or inside another part.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    /// Index into [`Bodies::pairs`].
+    pub pair: usize,
+    pub point: usize,
+    /// From the point to the other part's surface; negative inside.
+    pub distance: f64,
+    /// The nearest place on the other part.
+    pub place: Place,
+}
+
+/// Source and target with the same parts.
 #[derive(Debug)]
 pub struct Bodies {
     pub source: Body,
     pub target: Body,
-    /// The region of each part.
+    /// By part.
     pub regions: Vec<Region>,
-    /// How far each part moves if the end of its limb does, on average.
-    pub levers: Vec<f64>,
-    pub points: Vec<LimbPoint>,
-    /// Parts that each point may touch, with how deep it is in them on the target at rest.
-    pub others: Vec<Vec<(usize, f64)>>,
-    /// Of source and target, each in its own units.
-    pub heights: [f64; 2],
+    /// How far each part moves if the end of its limb does, at its beginning and end.
+    levers: Vec<[f64; 2]>,
+    /// Number of points on each body's limbs.
+    pub limb_points: u32,
+    pub pairs: Vec<PartPair>,
 }
 
 impl Bodies {
-    /// Returns `None` if no limb is mapped.
-    pub fn new(transfer: &Transfer) -> Option<Self> {
-        let (aligned, unaligned) = (&transfer.alignment.target, &transfer.alignment.unaligned_target);
-        let source_rest = &transfer.alignment.source;
-        let mapped: Vec<(&Kind, &Pair)> =
-            KINDS.iter().filter_map(|kind| Some((kind, transfer.pair(kind.slot)?))).collect();
-        let end = |kind: &Kind| kind.ends.iter().find_map(|&slot| transfer.pair(slot));
-        let height = |rest: &WorldPose, joint: fn(&Pair) -> JointIndex| {
-            let heights = transfer.map.pairs.iter().map(|pair| rest.position(joint(pair)).y);
-            let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
-            (high - low).max(1e-9)
-        };
+    /// Returns `None` if no limb is mapped. `slots` are those of source and target.
+    pub fn new(transfer: &Transfer, slots: [&Humanoid; 2]) -> Option<Self> {
+        let alignment = transfer.alignment;
+        let parts: Vec<Part> = KINDS.iter().filter_map(|kind| Part::new(kind, transfer)).collect();
         // The direction of angle 0 has to be the same for both bodies.
-        let fronts: Vec<DVec3> = mapped
-            .iter()
-            .map(|&(kind, pair)| {
-                let axis =
-                    axis(kind, pair.source, end(kind).map(|end| end.source), source_rest, &mapped, |p| p.source).0;
-                if axis.z.abs() > 0.8 { DVec3::Y } else { DVec3::Z }
-            })
-            .collect();
-        let side = |asset: &Asset, skeleton: &Skeleton, poses: [&WorldPose; 2], joint: fn(&Pair) -> JointIndex| {
-            let [rest, meshed] = poses;
-            let height = height(rest, joint);
-            let joints: Vec<JointIndex> = mapped.iter().map(|(_, pair)| joint(pair)).collect();
-            let is_mapped = |other: JointIndex| transfer.map.pairs.iter().any(|pair| joint(pair) == other);
-            let vertices = vertices(asset, skeleton, meshed, &joints, is_mapped);
-            let mut has_mesh = false;
-            let solids = mapped.iter().zip(&vertices).zip(&fronts).map(|((&(kind, pair), vertices), &front)| {
-                let (axis, length) = axis(kind, joint(pair), end(kind).map(joint), rest, &mapped, joint);
-                let turn = rest.rotation(joint(pair));
-                let points: Vec<DVec3> = vertices.iter().map(|&vertex| turn * vertex).collect();
-                let solid = Solid::around(&points, axis, front);
-                has_mesh |= solid.is_some();
-                solid.unwrap_or_else(|| {
-                    let extent = [-kind.beyond[0] * height, length.max(ENDLESS * height) + kind.beyond[1] * height];
-                    Solid::elliptic(axis, front, extent, kind.radii.map(|radius| radius * height))
-                })
-            });
-            let solids: Vec<Solid> = solids.collect();
-            let rest = joints.iter().map(|&joint| rest.rotation(joint)).collect();
-            (Body { joints, solids, rest, points: Vec::new(), has_mesh }, height)
+        let source_axis = |part: &Part| part.axis(&parts, &alignment.source, |pair| pair.source).0;
+        let fronts: Vec<DVec3> =
+            parts.iter().map(|part| if source_axis(part).z.abs() > 0.8 { DVec3::Y } else { DVec3::Z }).collect();
+        let source = Side {
+            asset: transfer.source,
+            skeleton: transfer.tracks.skeleton,
+            slots: slots[0],
+            rest: &alignment.source,
+            skinned: &alignment.source,
+            joint: |pair| pair.source,
         };
-        let (mut source, height) =
-            side(transfer.source, transfer.tracks.skeleton, [source_rest; 2], |pair| pair.source);
-        let (mut target, target_height) =
-            side(transfer.target, transfer.target_skeleton, [aligned, unaligned], |pair| pair.target);
-        let points: Vec<LimbPoint> = mapped
-            .iter()
-            .enumerate()
-            .filter_map(|(part, (kind, _))| Some((part, kind, kind.levers?)))
-            .flat_map(|(part, kind, levers)| {
-                points(part, kind.region, matches!(kind.slot, Slot::LeftHand | Slot::RightHand), levers)
-            })
-            .collect();
-        for body in [&mut source, &mut target] {
-            body.points = points.iter().map(|point| body.solids[point.part].surface(point.place)).collect();
-        }
-        let regions: Vec<Region> = mapped.iter().map(|(kind, _)| kind.region).collect();
-        let levers = mapped.iter().map(|(kind, _)| match (kind.levers, kind.region) {
-            (Some([from, to]), _) => 0.5 * (from + to),
-            (None, Region::Trunk) => 0.0,
-            (None, _) => 0.25,
-        });
-        let levers = levers.collect();
-        let rest = target.frames(unaligned);
-        let others = points.iter().enumerate().map(|(index, point)| {
-            let others = (0..regions.len()).filter(|&part| point.region.touches(regions[part]));
-            let position = target.point(index, point.part, &rest);
-            let depth = |part| target.locate(part, &rest, position, 0.0).map_or(0.0, |(distance, _)| -distance);
-            others.map(|part| (part, depth(part))).collect()
-        });
-        let others = others.collect();
-        (!points.is_empty()).then_some(Self {
-            source,
-            target,
-            regions,
-            levers,
-            points,
-            others,
-            heights: [height, target_height],
-        })
-    }
-}
-
-/// The axis of a part at rest, and its length. Heads go up, feet forward, and hands on along their arm.
-fn axis(
-    kind: &Kind,
-    joint: JointIndex,
-    end: Option<JointIndex>,
-    rest: &WorldPose,
-    mapped: &[(&Kind, &Pair)],
-    joint_of: fn(&Pair) -> JointIndex,
-) -> (DVec3, f64) {
-    let to_end = end.map_or(DVec3::ZERO, |end| rest.position(end) - rest.position(joint));
-    if let Some(axis) = to_end.try_normalize() {
-        return (axis, to_end.length());
-    }
-    let before = mapped.iter().find(|(before, _)| before.ends.contains(&kind.slot) && kind.region != Region::Trunk);
-    let axis = match before {
-        _ if kind.region == Region::Trunk => DVec3::Y,
-        Some((_, pair)) if !kind.region.is_leg() => rest.position(joint) - rest.position(joint_of(pair)),
-        _ => DVec3::Z,
-    };
-    (axis.normalize_or(DVec3::Y), 0.0)
-}
-
-/// Points of a part, evenly spread.
-fn points(part: usize, region: Region, is_hand: bool, [from, to]: [f64; 2]) -> impl Iterator<Item = LimbPoint> {
-    (0..POINT_RINGS * POINT_SECTORS).map(move |at| {
-        let share = ((at / POINT_SECTORS) as f64 + 0.5) / POINT_RINGS as f64;
-        let angle = std::f64::consts::TAU * (at % POINT_SECTORS) as f64 / POINT_SECTORS as f64;
-        LimbPoint { part, region, place: Place { share, angle }, lever: from + share * (to - from), is_hand }
-    })
-}
-
-/// Returns the vertices that follow each of the joints, or descendants of it that are not in the list, relative to the joint as
-/// `rest` turns it. Parts without a skin count if they hang on mapped joints: others are things that a character carries.
-fn vertices(
-    asset: &Asset,
-    skeleton: &Skeleton,
-    rest: &WorldPose,
-    joints: &[JointIndex],
-    is_mapped: impl Fn(JointIndex) -> bool,
-) -> Vec<Vec<DVec3>> {
-    let part_of = |joint| ancestry(skeleton, joint).find_map(|joint| joints.iter().position(|&other| other == joint));
-    let part_of: Vec<Option<usize>> = skeleton.joints().map(part_of).collect();
-    let frame = |joint: JointIndex| rest.parent_frame(skeleton, joint) * rest.locals[joint.get()].to_affine();
-    let frames: Vec<_> = skeleton.joints().map(frame).collect();
-    let mut vertices = vec![Vec::new(); joints.len()];
-    let primitives = |mesh: usize| asset.meshes[mesh].primitives.iter();
-    let total: usize =
-        asset.instances.iter().flat_map(|instance| primitives(instance.mesh)).map(|part| part.positions.len()).sum();
-    let step = total.div_ceil(MAX_VERTICES).max(1);
-    for &MeshInstance { joint, mesh, skin, joint_from_mesh } in &asset.instances {
-        let skin = skin.map(|skin| &asset.skins[skin]);
-        if skin.is_none() && !is_mapped(joint) {
-            continue;
-        }
-        for geometry in primitives(mesh) {
-            for (vertex, &position) in geometry.positions.iter().enumerate().step_by(step) {
-                let (joint, position) = match skin {
-                    None => (joint, joint_from_mesh.transform_point3(position)),
-                    Some(_) if geometry.influences.is_empty() => continue,
-                    Some(skin) => {
-                        let strongest = geometry.influences.of_vertex(vertex).max_by(|a, b| a.1.total_cmp(&b.1));
-                        let index = usize::from(strongest.map_or(0, |(joint, _)| joint));
-                        (skin.joints()[index], skin.joint_from_bind()[index].transform_point3(position))
-                    }
-                };
-                if let Some(part) = part_of[joint.get()] {
-                    let point = frames[joint.get()].transform_point3(position.as_dvec3());
-                    let top = joints[part];
-                    vertices[part].push(rest.rotation(top).conjugate() * (point - rest.position(top)));
+        let target = Side {
+            asset: transfer.target,
+            skeleton: transfer.target_skeleton,
+            slots: slots[1],
+            rest: &alignment.target,
+            skinned: &alignment.unaligned_target,
+            joint: |pair| pair.target,
+        };
+        let [source, target] = [source, target].map(|side| side.body(transfer, &parts, &fronts));
+        let regions: Vec<Region> = parts.iter().map(|part| part.kind.region).collect();
+        // Upper arms turn about their beginning.
+        let levers = parts.iter().map(|part| part.kind.levers.unwrap_or([0.0, 0.5])).collect();
+        let mut limb_points = 0;
+        let mut pairs = Vec::new();
+        for (limb, part) in parts.iter().enumerate().filter(|(_, part)| part.kind.levers.is_some()) {
+            limb_points += POINTS as u32;
+            let is_hand = matches!(part.kind.slot, Slot::LeftHand | Slot::RightHand);
+            for (other, &region) in regions.iter().enumerate() {
+                let own = part.kind.region;
+                if own != region && (!own.is_leg() || region.is_leg()) {
+                    pairs.push(PartPair { limb, other, is_hand, at_rest: [0.0; POINTS] });
                 }
             }
         }
+        let mut bodies = Self { source, target, regions, levers, limb_points, pairs };
+        let rest = bodies.target.frames(&alignment.unaligned_target);
+        for meeting in bodies.meetings(&bodies.target, &rest, 0.0) {
+            bodies.pairs[meeting.pair].at_rest[meeting.point] = -meeting.distance;
+        }
+        (!bodies.pairs.is_empty()).then_some(bodies)
     }
-    vertices
+
+    /// How far a place on a part moves if the end of its limb does, as a share.
+    pub fn lever(&self, part: usize, share: f64) -> f64 {
+        let [from, to] = self.levers[part];
+        from + share * (to - from)
+    }
+
+    /// Finds the points of limbs that are inside other parts of the same body or at most `reach` away, pair by pair.
+    pub fn meetings(&self, body: &Body, frames: &Frames, reach: f64) -> Vec<Meeting> {
+        let spheres: Vec<(DVec3, f64)> =
+            body.solids.iter().zip(frames).map(|(solid, &(at, turn))| (at + turn * solid.center, solid.bound)).collect();
+        let mut meetings = Vec::new();
+        for (index, pair) in self.pairs.iter().enumerate() {
+            let ((center, bound), (other_center, other_bound)) = (spheres[pair.limb], spheres[pair.other]);
+            if center.distance(other_center) > bound + other_bound + reach {
+                continue;
+            }
+            let (origin, turn) = frames[pair.other];
+            for point in 0..POINTS {
+                let position = turn.conjugate() * (body.point(pair.limb, point, frames) - origin);
+                if let Some((distance, place)) = body.solids[pair.other].locate(position, reach) {
+                    meetings.push(Meeting { pair: index, point, distance, place });
+                }
+            }
+        }
+        meetings
+    }
+}
+
+/// Where a point of a limb is on the surface of its part.
+pub fn place_of(point: usize) -> Place {
+    let share = ((point / SECTORS) as f64 + 0.5) / RINGS as f64;
+    Place { share, angle: TAU * (point % SECTORS) as f64 / SECTORS as f64 }
+}
+
+/// A mapped body part.
+struct Part<'a> {
+    kind: &'static Kind,
+    pair: &'a Pair,
+    /// What its axis leads to.
+    end: Option<&'a Pair>,
+}
+
+impl<'a> Part<'a> {
+    fn new(kind: &'static Kind, transfer: &Transfer<'a>) -> Option<Self> {
+        let end = kind.ends.iter().find_map(|&slot| transfer.pair(slot));
+        Some(Self { kind, pair: transfer.pair(kind.slot)?, end })
+    }
+
+    /// The axis at rest, and its length. Heads go up, feet forward, and hands on along their arm.
+    fn axis(&self, parts: &[Part], rest: &WorldPose, joint: fn(&Pair) -> JointIndex) -> (DVec3, f64) {
+        let start = rest.position(joint(self.pair));
+        let to_end = self.end.map_or(DVec3::ZERO, |end| rest.position(joint(end)) - start);
+        if let Some(axis) = to_end.try_normalize() {
+            return (axis, to_end.length());
+        }
+        let arm = parts.iter().find(|part| self.kind.region.arm().is_some() && part.kind.ends.contains(&self.kind.slot));
+        let axis = match arm {
+            Some(before) => start - rest.position(joint(before.pair)),
+            None if self.kind.region == Region::Trunk => DVec3::Y,
+            None => DVec3::Z,
+        };
+        (axis.normalize_or(DVec3::Y), 0.0)
+    }
+}
+
+/// What the body of one side is made from.
+struct Side<'a> {
+    asset: &'a Asset,
+    skeleton: &'a Skeleton,
+    slots: &'a Humanoid,
+    /// The aligned rest.
+    rest: &'a WorldPose,
+    /// The rest in which the mesh is measured.
+    skinned: &'a WorldPose,
+    joint: fn(&Pair) -> JointIndex,
+}
+
+impl Side<'_> {
+    fn body(&self, transfer: &Transfer, parts: &[Part], fronts: &[DVec3]) -> Body {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for pair in &transfer.map.pairs {
+            let y = self.rest.position((self.joint)(pair)).y;
+            (low, high) = (low.min(y), high.max(y));
+        }
+        let height = (high - low).max(1e-9);
+        let joints: Vec<JointIndex> = parts.iter().map(|part| (self.joint)(part.pair)).collect();
+        let vertices = self.vertices(transfer, &joints);
+        let mut body =
+            Body { joints, solids: Vec::new(), rest: Vec::new(), points: Vec::new(), has_mesh: false, height };
+        for ((part, vertices), &front) in parts.iter().zip(&vertices).zip(fronts) {
+            let (axis, length) = part.axis(parts, self.rest, self.joint);
+            let turn = self.rest.rotation((self.joint)(part.pair));
+            let fitted = Solid::around(&vertices.iter().map(|&vertex| turn * vertex).collect::<Vec<_>>(), axis, front);
+            body.has_mesh |= fitted.is_some();
+            let kind = part.kind;
+            let solid = fitted.unwrap_or_else(|| {
+                let to = length.max(ENDLESS * height) + kind.beyond[1] * height;
+                Solid::elliptic(axis, front, [-kind.beyond[0] * height, to], kind.radii.map(|radius| radius * height))
+            });
+            body.points.push(std::array::from_fn(|point| solid.surface(place_of(point))));
+            body.solids.push(solid);
+            body.rest.push(turn);
+        }
+        body
+    }
+
+    /// Returns the vertices that follow each part's joint or what hangs on it, relative to the joint as it is turned.
+    fn vertices(&self, transfer: &Transfer, joints: &[JointIndex]) -> Vec<Vec<DVec3>> {
+        let part_of: Vec<Option<usize>> = self.skeleton.joints().map(|joint| self.part_of(joint, joints)).collect();
+        let is_mapped = |joint| transfer.map.pairs.iter().any(|pair| (self.joint)(pair) == joint);
+        let frame = |joint: JointIndex| {
+            self.skinned.parent_frame(self.skeleton, joint) * self.skinned.locals[joint.get()].to_affine()
+        };
+        let frames: Vec<_> = self.skeleton.joints().map(frame).collect();
+        let mut total = 0;
+        for instance in &self.asset.instances {
+            total += self.asset.meshes[instance.mesh].primitives.iter().map(|part| part.positions.len()).sum::<usize>();
+        }
+        let step = total.div_ceil(MAX_VERTICES).max(1);
+        let mut vertices = vec![Vec::new(); joints.len()];
+        for instance in &self.asset.instances {
+            let skin = instance.skin.map(|skin| &self.asset.skins[skin]);
+            // Unskinned meshes below joints of their own are things that a character carries.
+            if skin.is_none() && !is_mapped(instance.joint) {
+                continue;
+            }
+            for geometry in &self.asset.meshes[instance.mesh].primitives {
+                for (vertex, &position) in geometry.positions.iter().enumerate().step_by(step) {
+                    let (joint, position) = match skin {
+                        None => (instance.joint, instance.joint_from_mesh.transform_point3(position)),
+                        Some(_) if geometry.influences.is_empty() => continue,
+                        Some(skin) => {
+                            let strongest = geometry.influences.of_vertex(vertex).max_by(|a, b| a.1.total_cmp(&b.1));
+                            let index = usize::from(strongest.map_or(0, |(joint, _)| joint));
+                            (skin.joints()[index], skin.joint_from_bind()[index].transform_point3(position))
+                        }
+                    };
+                    if let Some(part) = part_of[joint.get()] {
+                        let point = frames[joint.get()].transform_point3(position.as_dvec3());
+                        let top = joints[part];
+                        vertices[part].push(self.skinned.rotation(top).conjugate() * (point - self.skinned.position(top)));
+                    }
+                }
+            }
+        }
+        vertices
+    }
+
+    /// The part that a joint belongs to. If a hand has fingers, whatever else hangs on it is something that the character holds.
+    fn part_of(&self, joint: JointIndex, joints: &[JointIndex]) -> Option<usize> {
+        let (top, part) = ancestry(self.skeleton, joint)
+            .find_map(|top| Some((top, joints.iter().position(|&other| other == top)?)))?;
+        let is_hand = matches!(self.slots.slot(top), Some(Slot::LeftHand | Slot::RightHand));
+        let is_finger = |joint: JointIndex| joint != top && self.slots.slot(joint).is_some();
+        let has_fingers = || self.slots.0.values().any(|&finger| is_within(self.skeleton, finger, top) && finger != top);
+        let is_held = is_hand
+            && joint != top
+            && has_fingers()
+            && !ancestry(self.skeleton, joint).take_while(|&above| above != top).any(is_finger);
+        (!is_held).then_some(part)
+    }
 }

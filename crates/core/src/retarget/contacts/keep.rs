@@ -1,14 +1,15 @@
 //! Moves hands to where the source's touch, and arms out of other parts of the body: how far each wrist moves, smooth over time,
-//! and the turns of shoulder and elbow that follow in closed form. Legs stay as they are, since feet stand where they stand.
+//! and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as they are.
 
 use glam::{DQuat, DVec3};
 
-use super::body::{Bodies, Frames};
+use super::arm::Arm;
+use super::body::{Bodies, Frames, place_of};
 use super::smooth::eased;
 use super::touch::Touches;
 use crate::anim::{Clip, JointIndex, Keys, Property};
 use crate::asset::Slot;
-use crate::retarget::feet::{Leg, LegTurns, dense_times, limit_turns, solve_leg, turned_locals};
+use crate::retarget::feet::{dense_times, limb_rotations, limit_turns};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::pose::{Scratch, WorldPose};
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
@@ -26,7 +27,7 @@ const TOLERATED: f64 = 0.002;
 /// A point that is deeper than that by this share is pushed out fully.
 const CLEARLY_INSIDE: f64 = 0.003;
 
-/// How far an upper or lower arm may be turned, and how fast.
+/// How far an upper arm or forearm may be turned, and how fast.
 const MAX_TURN_DEGREES: f64 = 50.0;
 const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
 
@@ -36,8 +37,12 @@ const ARMS: [[Slot; 3]; 2] = [
     [Slot::RightUpperArm, Slot::RightLowerArm, Slot::RightHand],
 ];
 
+/// Upper arm and forearm of one arm, at each time.
+type Turns = [Vec<DQuat>; 2];
+
 /// One moment of the clip.
 struct Moment {
+    /// With the arms moved so far.
     frames: Frames,
     touches: Touches,
     /// Turn and scale.
@@ -53,109 +58,23 @@ struct Wish {
     share: f64,
 }
 
-impl Wish {
-    fn add(&mut self, by: DVec3, lever: f64, weight: f64, share: f64) {
-        self.sum += weight * lever * by;
-        self.squares += weight * lever * lever;
-        self.share = self.share.max(share);
-    }
-
-    fn fit(self) -> (DVec3, f64) {
-        if self.squares > 0.0 { (self.sum / self.squares, self.share) } else { (DVec3::ZERO, 0.0) }
-    }
+/// A point of a limb that is deeper inside another part than it may be.
+struct Overlap {
+    pair: usize,
+    point: usize,
+    excess: f64,
+    outward: DVec3,
 }
 
-/// The clip at the sampled times, and how far each wrist moves.
 struct Solver<'a> {
     bodies: &'a Bodies,
-    times: &'a [f32],
+    times: Vec<f32>,
+    /// The clip without corrections.
+    poses: Vec<WorldPose>,
     moments: Vec<Moment>,
-    /// Whether an arm can be moved.
-    movable: [bool; 2],
+    arms: [Option<Arm>; 2],
+    /// How far each wrist moves, at each time.
     moves: [Vec<DVec3>; 2],
-}
-
-impl Solver<'_> {
-    fn moved_frames(&self, at: usize) -> Frames {
-        let parts = self.moments[at].frames.iter().zip(&self.bodies.regions).zip(&self.bodies.levers);
-        let moved = parts.map(|((&(position, turn), region), lever)| {
-            (region.arm().map_or(position, |arm| position + *lever * self.moves[arm][at]), turn)
-        });
-        moved.collect()
-    }
-
-    fn point(&self, at: usize, index: usize) -> DVec3 {
-        let point = &self.bodies.points[index];
-        let move_of = |arm: usize| point.lever * self.moves[arm][at];
-        let position = self.bodies.target.point(index, point.part, &self.moments[at].frames);
-        position + point.region.arm().map_or(DVec3::ZERO, move_of)
-    }
-
-    /// Adds a wish of a part, which moves with its arm by `lever`, relative to another. Two arms share it.
-    fn wish(
-        &self,
-        wishes: &mut [Wish; 2],
-        [part, other]: [usize; 2],
-        lever: f64,
-        by: DVec3,
-        [weight, share]: [f64; 2],
-    ) {
-        let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.movable[arm]);
-        let [own, partner] = [movable(part), movable(other)];
-        let half = if own.is_some() && partner.is_some() { 0.5 } else { 1.0 };
-        if let Some(arm) = own {
-            wishes[arm].add(half * by, lever, weight, share);
-        }
-        if let Some(arm) = partner {
-            wishes[arm].add(-half * by, self.bodies.levers[other], weight, share);
-        }
-    }
-
-    /// What touches on the source should touch on the target.
-    fn touch(&self, at: usize) -> [Wish; 2] {
-        let moment = &self.moments[at];
-        let frames = self.moved_frames(at);
-        let mut wishes = [Wish::default(); 2];
-        let point = |index| self.point(at, index);
-        for (hand, part, weight, by) in self.bodies.misses(&moment.touches, point, &frames, moment.target_from_source) {
-            self.wish(&mut wishes, [hand, part], 1.0, by, [weight, weight]);
-        }
-        wishes
-    }
-
-    /// What is inside other parts, and is not on the source, should come out.
-    fn push_out(&self, at: usize) -> [Wish; 2] {
-        let moment = &self.moments[at];
-        let frames = self.moved_frames(at);
-        let target = &self.bodies.target;
-        let mut wishes = [Wish::default(); 2];
-        for (index, others) in self.bodies.others.iter().enumerate() {
-            let position = self.point(at, index);
-            for &(part, at_rest) in others {
-                let Some((distance, place)) = target.locate(part, &frames, position, 0.0) else { continue };
-                let allowed = at_rest.max(moment.target_from_source.1 * moment.touches.depth(index, part));
-                let excess = -distance - allowed - TOLERATED * self.bodies.heights[1];
-                if excess > 0.0 {
-                    let by = excess * target.outward(part, &frames, place);
-                    let share = (excess / (CLEARLY_INSIDE * self.bodies.heights[1])).min(1.0);
-                    let point = &self.bodies.points[index];
-                    self.wish(&mut wishes, [point.part, part], point.lever, by, [excess, share]);
-                }
-            }
-        }
-        wishes
-    }
-
-    fn add(&mut self, wishes: impl Fn(&Self, usize) -> [Wish; 2]) {
-        let wishes: Vec<[Wish; 2]> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
-        let limit = MAX_MOVE * self.bodies.heights[1];
-        for arm in 0..2 {
-            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| wishes[arm].fit()).collect();
-            for (by, more) in self.moves[arm].iter_mut().zip(eased(self.times, &wanted)) {
-                *by = (*by + more).clamp_length_max(limit);
-            }
-        }
-    }
 }
 
 /// Returns all channels of the clip with its contacts kept, or `None` if there is nothing to do. `resampled` lists the joints whose
@@ -166,40 +85,18 @@ pub fn kept_contacts(
     clip: &Clip,
     resampled: &[JointIndex],
 ) -> Option<Vec<NewChannel>> {
-    let times = dense_times(transfer.tracks.clip);
-    let mut scratch = Scratch::default();
-    let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
-    let (laws, _) = rotation_laws(transfer);
-    let yaw = removed_travel(transfer, &laws, &times).yaw;
-    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
-    let source: Vec<Frames> = times.iter().map(|&time| bodies.source.frames(&transfer.source_pose(time))).collect();
-    let touches = bodies.touches(&times, &source);
-    let moment = |((pose, &time), touches): ((&WorldPose, &f32), Touches)| Moment {
-        frames: bodies.target.frames(pose),
-        touches,
-        target_from_source: (DQuat::from_rotation_y(yaw.as_ref().map_or(0.0, |yaw| yaw.at(time))), scale),
-    };
-    let moments = poses.iter().zip(&times).zip(touches).map(moment).collect();
-    let rest = &transfer.alignment.target;
-    let arms: [Option<Leg>; 2] = ARMS.map(|slots| {
-        let [Some(shoulder), Some(elbow), Some(wrist)] = slots.map(|slot| transfer.pair(slot)) else { return None };
-        Some(Leg::arm([shoulder.target, elbow.target, wrist.target], rest))
-    });
-    let movable = arms.map(|arm| arm.is_some());
-    let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
-    let mut solver = Solver { bodies, times: &times, moments, movable, moves };
+    let mut solver = Solver::new(transfer, bodies, clip);
     for _ in 0..ROUNDS {
         solver.add(Solver::touch);
         solver.add(Solver::push_out);
     }
     solver.add(Solver::touch);
+    let turns = solver.turns();
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
-    for (arm, moves) in arms.iter().zip(&solver.moves) {
-        if let Some(arm) = arm
-            && moves.iter().any(|by| by.length() > MIN_MOVE * bodies.heights[1])
-        {
-            rotations.extend(arm_rotations(transfer, arm, &times, &poses, moves));
-        }
+    for (arm, turns) in solver.arms.iter().zip(&turns) {
+        let Some(arm) = arm.filter(|_| turns.iter().flatten().any(|&turn| turn != DQuat::IDENTITY)) else { continue };
+        let turns = turns.each_ref().map(Vec::as_slice);
+        rotations.extend(limb_rotations(transfer.target_skeleton, arm.joints, &solver.poses, turns));
     }
     if rotations.is_empty() {
         return None;
@@ -210,29 +107,169 @@ pub fn kept_contacts(
     let mut channels = NewChannel::of_clip(clip, resampled, is_replaced);
     for (joint, keys) in &rotations {
         let keys = keys.iter().map(|key| key.as_quat()).collect();
-        channels.push(NewChannel::resampled(*joint, times.clone(), Keys::Rotation(keys)));
+        channels.push(NewChannel::resampled(*joint, solver.times.clone(), Keys::Rotation(keys)));
     }
     Some(channels)
 }
 
-/// Local rotations of an arm's three joints at each time.
-fn arm_rotations(
-    transfer: &Transfer,
-    arm: &Leg,
-    times: &[f32],
-    poses: &[WorldPose],
-    moves: &[DVec3],
-) -> Vec<(JointIndex, Vec<DQuat>)> {
-    let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
-    let solved = poses.iter().zip(moves).map(|(pose, &by)| solve_leg(arm, pose, by, 0.0));
-    let (mut upper, mut lower): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
-    limit_turns(times, &mut upper, max_turn, max_rate);
-    limit_turns(times, &mut lower, max_turn, max_rate);
-    let mut keys: [Vec<DQuat>; 3] = Default::default();
-    for (at, pose) in poses.iter().enumerate() {
-        let turns = LegTurns { thigh: upper[at], shin: lower[at] };
-        let locals = turned_locals(arm, transfer.target_skeleton, pose, turns);
-        keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
+impl<'a> Solver<'a> {
+    fn new(transfer: &Transfer, bodies: &'a Bodies, clip: &Clip) -> Self {
+        let times = dense_times(transfer.tracks.clip);
+        let (laws, _) = rotation_laws(transfer);
+        let yaw = removed_travel(transfer, &laws, &times).yaw;
+        let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+        let source: Vec<Frames> = times.iter().map(|&time| bodies.source.frames(&transfer.source_pose(time))).collect();
+        let mut scratch = Scratch::default();
+        let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
+        let mut moments = Vec::with_capacity(times.len());
+        for ((&time, pose), touches) in times.iter().zip(&poses).zip(bodies.touches(&times, &source)) {
+            let turn = DQuat::from_rotation_y(yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
+            moments.push(Moment { frames: bodies.target.frames(pose), touches, target_from_source: (turn, scale) });
+        }
+        let arms = ARMS.map(|slots| {
+            let [Some(shoulder), Some(elbow), Some(wrist)] = slots.map(|slot| transfer.pair(slot)) else { return None };
+            Some(Arm::new([shoulder.target, elbow.target, wrist.target], &transfer.alignment.target))
+        });
+        let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
+        Self { bodies, times, poses, moments, arms, moves }
     }
-    [arm.hip, arm.knee, arm.ankle].into_iter().zip(keys).collect()
+
+    /// What touches on the source should touch on the target.
+    fn touch(&self, at: usize) -> [Wish; 2] {
+        let moment = &self.moments[at];
+        let mut wishes = [Wish::default(); 2];
+        for miss in self.bodies.misses(&moment.touches, &moment.frames, moment.target_from_source) {
+            self.wish(&mut wishes, miss.pair, 1.0, miss.by, [miss.weight; 2]);
+        }
+        wishes
+    }
+
+    /// What is inside other parts, and is not on the source, should come out.
+    fn push_out(&self, at: usize) -> [Wish; 2] {
+        let moment = &self.moments[at];
+        let mut wishes = [Wish::default(); 2];
+        for overlap in self.overlaps(moment, &moment.frames) {
+            let share = (overlap.excess / (CLEARLY_INSIDE * self.bodies.target.height)).min(1.0);
+            let lever = self.bodies.lever(self.bodies.pairs[overlap.pair].limb, place_of(overlap.point).share);
+            let by = overlap.excess * overlap.outward;
+            self.wish(&mut wishes, overlap.pair, lever, by, [overlap.excess, share]);
+        }
+        wishes
+    }
+
+    fn overlaps(&self, moment: &Moment, frames: &Frames) -> Vec<Overlap> {
+        let target = &self.bodies.target;
+        let mut overlaps = Vec::new();
+        for meeting in self.bodies.meetings(target, frames, 0.0) {
+            let pair = &self.bodies.pairs[meeting.pair];
+            let of_source = moment.target_from_source.1 * moment.touches.depth(meeting.pair, meeting.point);
+            let allowed = pair.at_rest[meeting.point].max(of_source) + TOLERATED * target.height;
+            let excess = -meeting.distance - allowed;
+            if excess > 0.0 {
+                let outward = target.outward(pair.other, meeting.place, frames);
+                overlaps.push(Overlap { pair: meeting.pair, point: meeting.point, excess, outward });
+            }
+        }
+        overlaps
+    }
+
+    /// Adds a wish of a limb's part, which moves with its wrist by `lever`, relative to another part. Two arms share it.
+    fn wish(&self, wishes: &mut [Wish; 2], pair: usize, lever: f64, by: DVec3, [weight, share]: [f64; 2]) {
+        let pair = &self.bodies.pairs[pair];
+        let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.arms[arm].is_some());
+        let (own, partner) = (movable(pair.limb), movable(pair.other));
+        let by = if own.is_some() && partner.is_some() { 0.5 * by } else { by };
+        for (arm, lever, by) in [(own, lever, by), (partner, self.bodies.lever(pair.other, 0.5), -by)] {
+            if let Some(arm) = arm {
+                wishes[arm].sum += weight * lever * by;
+                wishes[arm].squares += weight * lever * lever;
+                wishes[arm].share = share.max(wishes[arm].share);
+            }
+        }
+    }
+
+    /// Moves the wrists further, smoothly over time.
+    fn add(&mut self, wishes: fn(&Self, usize) -> [Wish; 2]) {
+        let wishes: Vec<[Wish; 2]> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
+        let limit = MAX_MOVE * self.bodies.target.height;
+        for arm in 0..2 {
+            let fit = |wish: Wish| {
+                if wish.squares > 0.0 { (wish.sum / wish.squares, wish.share) } else { (DVec3::ZERO, 0.0) }
+            };
+            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| fit(wishes[arm])).collect();
+            for (by, more) in self.moves[arm].iter_mut().zip(eased(&self.times, &wanted)) {
+                *by = (*by + more).clamp_length_max(limit);
+            }
+        }
+        for at in 0..self.times.len() {
+            let turns = [0, 1].map(|arm| self.reach(arm, at));
+            self.moments[at].frames = self.turned_frames(at, turns);
+        }
+    }
+
+    fn reach(&self, arm: usize, at: usize) -> [DQuat; 2] {
+        let by = self.moves[arm][at];
+        let is_moved = by.length() > MIN_MOVE * self.bodies.target.height;
+        let arm = self.arms[arm].filter(|_| is_moved);
+        arm.map_or([DQuat::IDENTITY; 2], |arm| arm.reach(&self.poses[at], by))
+    }
+
+    /// The target's parts with its arms turned.
+    fn turned_frames(&self, at: usize, turns: [[DQuat; 2]; 2]) -> Frames {
+        let target = &self.bodies.target;
+        let pose = &self.poses[at];
+        let mut frames = target.frames(pose);
+        for (arm, [upper, lower]) in self.arms.iter().zip(turns) {
+            let Some(arm) = arm else { continue };
+            let [shoulder, elbow, wrist] = arm.joints.map(|joint| pose.position(joint));
+            let moved_elbow = shoulder + upper * (elbow - shoulder);
+            let moved_wrist = moved_elbow + lower * (wrist - elbow);
+            let moved = [(shoulder, upper), (moved_elbow, lower), (moved_wrist, DQuat::IDENTITY)];
+            for (joint, (position, turn)) in arm.joints.iter().zip(moved) {
+                if let Some(part) = target.joints.iter().position(|other| other == joint) {
+                    frames[part] = (position, turn * frames[part].1);
+                }
+            }
+        }
+        frames
+    }
+
+    /// How both arms turn at each time, where that leaves less to be corrected than there was.
+    fn turns(&self) -> [Turns; 2] {
+        let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
+        let mut turns: [Turns; 2] = [0, 1].map(|arm| {
+            let mut turns = [Vec::new(), Vec::new()];
+            for at in 0..self.times.len() {
+                let [upper, lower] = self.reach(arm, at);
+                turns[0].push(upper);
+                turns[1].push(lower);
+            }
+            turns.each_mut().map(|turns| limit_turns(&self.times, turns, max_turn, max_rate));
+            turns
+        });
+        let mut start = 0;
+        let mut errors = [0.0; 2];
+        for at in 0..=self.times.len() {
+            let is_turned = |turn: &&Vec<DQuat>| turn.get(at).is_some_and(|&turn| turn != DQuat::IDENTITY);
+            if turns.iter().flatten().any(|turns| is_turned(&turns)) {
+                let turned = turns.each_ref().map(|arm| arm.each_ref().map(|turns| turns[at]));
+                errors[0] += self.error(at, &self.turned_frames(at, [[DQuat::IDENTITY; 2]; 2]));
+                errors[1] += self.error(at, &self.turned_frames(at, turned));
+                continue;
+            }
+            if errors[1] >= errors[0] {
+                turns.iter_mut().flatten().for_each(|turns| turns[start..at].fill(DQuat::IDENTITY));
+            }
+            (start, errors) = (at + 1, [0.0; 2]);
+        }
+        turns
+    }
+
+    /// What is left to correct at one time: missed contacts and overlaps.
+    fn error(&self, at: usize, frames: &Frames) -> f64 {
+        let moment = &self.moments[at];
+        let misses = self.bodies.misses(&moment.touches, frames, moment.target_from_source);
+        let missed: f64 = misses.iter().map(|miss| miss.weight * miss.by.length()).sum();
+        missed + self.overlaps(moment, frames).iter().map(|overlap| overlap.excess).sum::<f64>()
+    }
 }

@@ -26,8 +26,8 @@ pub struct Solid {
     /// Distances of the surface from the axis.
     radii: [[f64; SECTORS]; RINGS],
     /// A sphere around it.
-    center: DVec3,
-    bound: f64,
+    pub center: DVec3,
+    pub bound: f64,
 }
 
 /// A place on the surface of a solid.

@@ -1,164 +1,174 @@
-//! Where the source touches itself, and how far the target is from touching itself alike.
+//! Where the source touches itself with its hands, and how far the target is from touching itself alike.
 
 use glam::{DQuat, DVec3};
 
-use super::body::{Bodies, Frames};
+use super::body::{Bodies, Frames, place_of};
 use super::solid::Place;
 use crate::retarget::math::smooth;
 
 /// Surfaces that are closer than this share of the body's height begin to touch. For a person of 1.7 m: 3 cm.
 const REACH: f64 = 0.018;
 
+/// A point that moves faster over a part than this many heights of the body per second passes it: 0.5 m/s.
+const MAX_SLIDE: f64 = 0.3;
+
+/// Shorter contacts are chance.
+const MIN_SECS: f32 = 0.1;
+
 /// A point is inside a part if it is deeper by this share of the body's height than at rest: 2 mm.
 const INSIDE: f64 = 0.0012;
 
 /// A point on a hand of the source that touches a part.
 #[derive(Debug, Clone, Copy)]
-pub struct Touch {
-    pub point: usize,
-    pub part: usize,
+struct Touch {
+    pair: usize,
+    point: usize,
     place: Place,
     /// From 0 to 1.
-    pub weight: f64,
-    /// From the place to the point, if it is outside.
+    weight: f64,
+    /// From the place to the point.
     gap: DVec3,
 }
 
-/// All that touches at one time.
+/// What the source touches at one time.
 #[derive(Debug, Default)]
 pub struct Touches {
-    pub touches: Vec<Touch>,
-    /// Point and part, ascending, and how deep the point is in it.
-    depths: Vec<(usize, usize, f64)>,
+    touches: Vec<Touch>,
+    /// Pair and point, ascending, and how deep the point is inside.
+    depths: Vec<((usize, usize), f64)>,
 }
 
 impl Touches {
-    pub fn depth(&self, point: usize, part: usize) -> f64 {
-        self.depths.binary_search_by_key(&(point, part), |depth| (depth.0, depth.1)).map_or(0.0, |at| self.depths[at].2)
+    pub fn depth(&self, pair: usize, point: usize) -> f64 {
+        self.depths.binary_search_by_key(&(pair, point), |depth| depth.0).map_or(0.0, |at| self.depths[at].1)
     }
 }
 
-/// A point that moves faster over a part than this many heights of the body per second passes it: 0.5 m/s.
-const MAX_SLIDE: f64 = 0.3;
-
-/// Contacts that are shorter are not meant.
-const MIN_SECS: f32 = 0.1;
+/// A contact of the source that the target misses.
+#[derive(Debug, Clone, Copy)]
+pub struct Miss {
+    pub pair: usize,
+    /// How much the two touch, from 0 to 1.
+    pub weight: f64,
+    /// How the hand would have to move for the middles of both surfaces to meet as they do on the source.
+    pub by: DVec3,
+}
 
 impl Bodies {
     /// What touches on the source at each of the times, whose poses are given.
     pub fn touches(&self, times: &[f32], source: &[Frames]) -> Vec<Touches> {
-        let reach = REACH * self.heights[0];
-        let parts = self.regions.len();
+        let body = &self.source;
+        let reach = REACH * body.height;
         let mut found: Vec<Touches> = Vec::with_capacity(times.len());
-        // For each part that touches, each part that is touched, and each time.
-        let mut is_met = vec![false; parts * parts * times.len()];
+        let mut is_met = vec![vec![false; times.len()]; self.pairs.len()];
         for (at, frames) in source.iter().enumerate() {
+            let near = [at.saturating_sub(1), (at + 1).min(times.len() - 1)];
+            let secs = f64::from(times[near[1]] - times[near[0]]).max(1e-6);
             let mut now = Touches::default();
-            for (index, point) in self.points.iter().enumerate() {
-                let position = self.source.point(index, point.part, frames);
-                for &(part, _) in &self.others[index] {
-                    let Some((distance, place)) = self.source.locate(part, frames, position, reach) else { continue };
-                    if distance < 0.0 && self.source.has_mesh {
-                        now.depths.push((index, part, -distance));
-                    }
-                    if !point.is_hand || (distance < -reach && self.source.has_mesh) {
-                        continue;
-                    }
-                    let near = [at.saturating_sub(1), (at + 1).min(times.len() - 1)];
-                    let locals = near.map(|near| {
-                        let (origin, turn) = source[near][part];
-                        turn.conjugate() * (self.source.point(index, point.part, &source[near]) - origin)
-                    });
-                    let secs = f64::from(times[near[1]] - times[near[0]]).max(1e-6);
-                    if locals[0].distance(locals[1]) / secs > MAX_SLIDE * self.heights[0] {
-                        continue;
-                    }
-                    let surface = self.source.surface(part, frames, place);
-                    // Overlaps of the source's surfaces count as touching.
-                    let gap = if distance < 0.0 { DVec3::ZERO } else { position - surface };
-                    // How deep a guessed body is in itself says nothing.
-                    let apart = if self.source.has_mesh { distance.abs() } else { distance.max(0.0) };
-                    let weight = smooth(1.0 - apart / reach);
-                    now.touches.push(Touch { point: index, part, place, weight, gap });
-                    is_met[(point.part * parts + part) * times.len() + at] = true;
+            for meeting in self.meetings(body, frames, reach) {
+                let pair = &self.pairs[meeting.pair];
+                // How deep a guessed body is in itself says nothing.
+                let distance = if body.has_mesh { meeting.distance } else { meeting.distance.max(0.0) };
+                if distance < 0.0 {
+                    now.depths.push(((meeting.pair, meeting.point), -distance));
                 }
+                if !pair.is_hand || distance < -reach {
+                    continue;
+                }
+                let [before, after] = near.map(|near| {
+                    let (origin, turn) = source[near][pair.other];
+                    turn.conjugate() * (body.point(pair.limb, meeting.point, &source[near]) - origin)
+                });
+                if before.distance(after) > MAX_SLIDE * body.height * secs {
+                    continue;
+                }
+                // Surfaces that face the same way don't touch: it is the other side of the hand that does.
+                let facing = -body
+                    .outward(pair.limb, place_of(meeting.point), frames)
+                    .dot(body.outward(pair.other, meeting.place, frames));
+                let weight = smooth(1.0 - distance.abs() / reach) * smooth(0.5 + facing);
+                if weight <= 0.0 {
+                    continue;
+                }
+                let is_overlap = meeting.distance < 0.0 && !body.has_mesh;
+                let surface = body.surface(pair.other, meeting.place, frames);
+                let gap = if is_overlap { DVec3::ZERO } else { body.point(pair.limb, meeting.point, frames) - surface };
+                now.touches.push(Touch { pair: meeting.pair, point: meeting.point, place: meeting.place, weight, gap });
+                is_met[meeting.pair][at] = true;
             }
             found.push(now);
         }
-        for row in is_met.chunks_mut(times.len().max(1)) {
-            let mut from = 0;
-            while from < row.len() {
-                let to = (from..row.len()).find(|&at| !row[at]).unwrap_or(row.len());
-                if to > from && times[to - 1] - times[from] < MIN_SECS {
-                    row[from..to].fill(false);
-                }
-                from = to + 1;
-            }
+        for row in &mut is_met {
+            drop_short(times, row);
         }
         for (at, now) in found.iter_mut().enumerate() {
-            now.touches.retain(|touch| is_met[(self.points[touch.point].part * parts + touch.part) * times.len() + at]);
+            now.touches.retain(|touch| is_met[touch.pair][at]);
         }
         found
     }
 
-    /// Contacts of hands with other parts: hand, part, how much they touch, and how the hand would have to move on the target for
-    /// the middles of both surfaces to meet as on the source. `target_from_source` turns and scales.
-    pub fn misses(
-        &self,
-        touches: &Touches,
-        point: impl Fn(usize) -> DVec3,
-        target: &Frames,
-        (turn, scale): (DQuat, f64),
-    ) -> Vec<(usize, usize, f64, DVec3)> {
-        let mut sums: Vec<(usize, usize, f64, f64, DVec3)> = Vec::new();
-        for touch in &touches.touches {
-            let hand = self.points[touch.point].part;
-            let surface = self.target.surface(touch.part, target, touch.place);
-            let miss = surface + turn * (scale * touch.gap) - point(touch.point);
-            let at = sums.iter().position(|sum| (sum.0, sum.1) == (hand, touch.part)).unwrap_or_else(|| {
-                sums.push((hand, touch.part, 0.0, 0.0, DVec3::ZERO));
-                sums.len() - 1
-            });
-            sums[at].2 = touch.weight.max(sums[at].2);
-            sums[at].3 += touch.weight;
-            sums[at].4 += touch.weight * miss;
+    /// Returns how the target misses the source's contacts, one by one. `target_from_source` turns and scales.
+    pub fn misses(&self, touches: &Touches, target: &Frames, (turn, scale): (DQuat, f64)) -> Vec<Miss> {
+        let mut misses: Vec<Miss> = Vec::new();
+        for touches in touches.touches.chunk_by(|a, b| a.pair == b.pair) {
+            let pair = &self.pairs[touches[0].pair];
+            let (mut max, mut weights, mut sum) = (0.0_f64, 0.0, DVec3::ZERO);
+            for touch in touches {
+                let surface = self.target.surface(pair.other, touch.place, target);
+                let goal = surface + turn * (scale * touch.gap);
+                sum += touch.weight * (goal - self.target.point(pair.limb, touch.point, target));
+                weights += touch.weight;
+                max = max.max(touch.weight);
+            }
+            misses.push(Miss { pair: touches[0].pair, weight: max, by: sum / weights });
         }
-        sums.retain(|sum| sum.3 > 0.0);
-        sums.into_iter().map(|(hand, part, weight, sum, miss)| (hand, part, weight, miss / sum)).collect()
+        misses
+    }
+}
+
+/// Clears the runs of a row that are shorter than a contact.
+fn drop_short(times: &[f32], row: &mut [bool]) {
+    let mut start = 0;
+    for at in 0..=row.len() {
+        if at == row.len() || !row[at] {
+            if at > start && times[at - 1] - times[start] < MIN_SECS {
+                row[start..at].fill(false);
+            }
+            start = at + 1;
+        }
     }
 }
 
 /// Sums over the clip.
 #[derive(Debug, Default)]
 pub struct TouchFigures {
-    inside: usize,
-    points: usize,
+    inside: u32,
+    points: u32,
     miss: f64,
     weight: f64,
 }
 
 impl TouchFigures {
     pub fn add(&mut self, bodies: &Bodies, touches: &Touches, target: &Frames, target_from_source: (DQuat, f64)) {
-        let position = |index: usize| bodies.target.point(index, bodies.points[index].part, target);
-        for (_, _, weight, miss) in bodies.misses(touches, position, target, target_from_source) {
-            self.miss += weight * miss.length();
-            self.weight += weight;
+        for miss in bodies.misses(touches, target, target_from_source) {
+            self.miss += miss.weight * miss.by.length();
+            self.weight += miss.weight;
         }
-        let margin = INSIDE * bodies.heights[1];
-        for (index, others) in bodies.others.iter().enumerate() {
-            let position = position(index);
-            let is_inside = |&(part, at_rest): &(usize, f64)| {
-                let located = bodies.target.locate(part, target, position, 0.0);
-                located.is_some_and(|(distance, _)| -distance > at_rest + margin)
-            };
-            self.inside += usize::from(others.iter().any(is_inside));
-            self.points += 1;
+        // One bit per point of each part.
+        let mut inside = vec![0_u32; bodies.regions.len()];
+        for meeting in bodies.meetings(&bodies.target, target, 0.0) {
+            let pair = &bodies.pairs[meeting.pair];
+            if -meeting.distance > pair.at_rest[meeting.point] + INSIDE * bodies.target.height {
+                inside[pair.limb] |= 1 << meeting.point;
+            }
         }
+        self.inside += inside.iter().map(|points| points.count_ones()).sum::<u32>();
+        self.points += bodies.limb_points;
     }
 
     /// Share of the target's limb points that are inside other parts.
     pub fn self_penetration_share(&self) -> Option<f64> {
-        (self.points > 0).then(|| self.inside as f64 / self.points as f64)
+        (self.points > 0).then(|| f64::from(self.inside) / f64::from(self.points))
     }
 
     /// Mean distance of the target's contacts from where they are on the source.

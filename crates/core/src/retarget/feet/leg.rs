@@ -20,10 +20,7 @@ const MIN_BEND: f64 = 0.17;
 /// A knee bent the wrong way stays so unless planting moves the foot by more than this share of the leg's length.
 const SMALL_MOVE: f64 = 0.02;
 
-/// An elbow that is bent by less than about this sine is held by its hinge at rest, too.
-const CLEAR_BEND: f64 = 0.35;
-
-/// The target joints of one leg or, as hip, knee and ankle, the shoulder, elbow and wrist of an arm.
+/// The target joints of one leg.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg {
     pub hip: JointIndex,
@@ -33,7 +30,6 @@ pub struct Leg {
     pub toes: JointIndex,
     /// Axis about which the knee bends at rest, in the frame of `hip`.
     hinge: DVec3,
-    is_arm: bool,
 }
 
 /// How thigh and shin are turned in the common frame to bring a foot to its place.
@@ -52,28 +48,13 @@ impl Leg {
         let bend = thigh.cross(shin);
         let axis = if bend.length() > MIN_BEND { bend } else { bend + MIN_BEND * DVec3::X };
         let hinge = rest.rotation(hip).conjugate() * axis.reject_from(thigh).normalize_or(DVec3::X);
-        Self { hip, knee, ankle, toes, hinge, is_arm: false }
-    }
-
-    /// `joints` are shoulder, elbow and wrist; a straight arm bends forwards.
-    pub fn arm(joints: [JointIndex; 3], rest: &WorldPose) -> Self {
-        let [shoulder, elbow, wrist] = joints;
-        let upper = (rest.position(elbow) - rest.position(shoulder)).normalize_or_zero();
-        let lower = (rest.position(wrist) - rest.position(elbow)).normalize_or_zero();
-        let axis = upper.cross(lower) + MIN_BEND * upper.cross(DVec3::Z);
-        let hinge = rest.rotation(shoulder).conjugate() * axis.normalize_or(DVec3::Y);
-        Self { hip: shoulder, knee: elbow, ankle: wrist, toes: wrist, hinge, is_arm: true }
+        Self { hip, knee, ankle, toes, hinge }
     }
 
     /// Axis about which the knee bends: across the plane of the leg, unless it is nearly straight or bent the wrong way.
     fn hinge(&self, pose: &WorldPose, thigh: DVec3, shin: DVec3) -> DVec3 {
         let at_rest = pose.rotation(self.hip) * self.hinge;
         let bend = thigh.normalize_or_zero().cross(shin.normalize_or_zero());
-        if self.is_arm {
-            // Captured arms twist where they like, so that their elbows bend about any axis.
-            let share = smooth(bend.length() / CLEAR_BEND);
-            return (share * bend.normalize_or_zero() + (1.0 - share) * at_rest).normalize_or(at_rest);
-        }
         let across = bend - bend.dot(at_rest).min(0.0) * at_rest;
         (across + MIN_BEND * at_rest).normalize_or(at_rest)
     }
@@ -107,25 +88,35 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     }
     let hinge = leg.hinge(pose, thigh, shin);
     let reach = (thigh + shin).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
-    let certainty = if leg.is_arm { 0.0 } else { smooth(by.length() / (SMALL_MOVE * length)) };
+    let certainty = smooth(by.length() / (SMALL_MOVE * length));
     let distance = goal.length().min(reach);
     let Some([swing, knee_turn]) = reach_goal([thigh, shin], hinge, goal, distance, certainty) else { return unmoved };
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
 }
 
-/// Local rotations of hip, knee and ankle that turn the leg while the foot keeps its direction.
-pub fn turned_locals(leg: &Leg, skeleton: &Skeleton, pose: &WorldPose, turns: LegTurns) -> [DQuat; 3] {
-    let local = |joint: JointIndex, parent_turn: DQuat, own_turn: DQuat| {
-        let parent = pose.parent_rotation(skeleton, joint);
-        unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(joint))
-    };
+/// Local rotations of hip, knee and ankle that turn the leg in each pose while the foot keeps its direction; likewise of an arm's
+/// joints. `turns` are those of thigh and shin in the common frame.
+pub fn limb_rotations(
+    skeleton: &Skeleton,
+    [hip, knee, ankle]: [JointIndex; 3],
+    poses: &[WorldPose],
+    [thighs, shins]: [&[DQuat]; 2],
+) -> [(JointIndex, Vec<DQuat>); 3] {
     // A foot that is not parented to its shin does not turn with it, nor does such a shin with its thigh.
-    let carried = |joint: JointIndex, limb: JointIndex, turn: DQuat| {
-        if is_within(skeleton, joint, limb) { turn } else { DQuat::IDENTITY }
-    };
-    [
-        local(leg.hip, DQuat::IDENTITY, turns.thigh),
-        local(leg.knee, carried(leg.knee, leg.hip, turns.thigh), turns.shin),
-        local(leg.ankle, carried(leg.ankle, leg.knee, turns.shin), DQuat::IDENTITY),
-    ]
+    let knee_is_carried = is_within(skeleton, knee, hip);
+    let ankle_is_carried = is_within(skeleton, ankle, knee);
+    let mut rotations = [hip, knee, ankle].map(|joint| (joint, Vec::with_capacity(poses.len())));
+    for ((pose, &thigh), &shin) in poses.iter().zip(thighs).zip(shins) {
+        let parent_turns = [
+            DQuat::IDENTITY,
+            if knee_is_carried { thigh } else { DQuat::IDENTITY },
+            if ankle_is_carried { shin } else { DQuat::IDENTITY },
+        ];
+        let own_turns = [thigh, shin, DQuat::IDENTITY];
+        for (((joint, rotations), parent_turn), own_turn) in rotations.iter_mut().zip(parent_turns).zip(own_turns) {
+            let parent = pose.parent_rotation(skeleton, *joint);
+            rotations.push(unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(*joint)));
+        }
+    }
+    rotations
 }

@@ -13,7 +13,7 @@ mod width;
 
 pub use body::near;
 pub use contacts::{SourceContacts, source_contacts, source_height};
-pub use leg::{Leg, LegTurns, solve_leg, turned_locals};
+pub use leg::limb_rotations;
 pub use limit::limit_turns;
 pub use plant::{Planting, dense_times, planted_channels};
 pub use sole::{Sole, Soles};

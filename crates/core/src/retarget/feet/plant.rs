@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::body::{body_shifts, means, near};
 use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
 use super::height::{floats, hover, lower};
-use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
+use super::leg::{Leg, drop_to_reach, limb_rotations, solve_leg};
 use super::level::level_feet;
 use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
@@ -285,13 +285,9 @@ fn leg_rotations(
         let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
         limit_turns(stage.times, &mut thighs, max_turn, max_rate);
         limit_turns(stage.times, &mut shins, max_turn, max_rate);
-        let mut keys: [Vec<DQuat>; 3] = Default::default();
-        for at in own.clone() {
-            let turns = LegTurns { thigh: thighs[at], shin: shins[at] };
-            let locals = turned_locals(leg, transfer.target_skeleton, &stage.poses[at], turns);
-            keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
-        }
-        rotations.extend([leg.hip, leg.knee, leg.ankle].into_iter().zip(keys));
+        let joints = [leg.hip, leg.knee, leg.ankle];
+        let turns = [&thighs[own.clone()], &shins[own.clone()]];
+        rotations.extend(limb_rotations(transfer.target_skeleton, joints, &stage.poses[own.clone()], turns));
     }
     rotations
 }
