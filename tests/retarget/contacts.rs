@@ -56,13 +56,18 @@ fn with_hands(rig: &Rig, belly: f32, hand: f32) -> Figure {
     figure
 }
 
-/// The left hand goes to the belly and away again, twice: the upper arm hangs down and forwards, the forearm turns inwards.
-fn hand_to_belly(mut figure: Figure) -> Figure {
+/// The left hand goes to a belly of boxes and away again, twice: the upper arm hangs down and forwards, the forearm turns inwards.
+fn hand_to_belly(figure: Figure) -> Figure {
+    hand_inwards(figure, 0.5)
+}
+
+/// The same with the upper arm forwards by an angle in radians.
+fn hand_inwards(mut figure: Figure, forwards: f32) -> Figure {
     let mut clip = ClipBuilder::new("belly", &figure.asset.skeleton);
     let times: Vec<f32> = (0..=120).map(|frame| frame as f32 / 30.0).collect();
     let inwards = |time: &f32| 0.2 + 1.37 * (0.5 - 0.5 * (std::f32::consts::PI * time).cos());
     let hang =
-        |time: &f32| Quat::from_rotation_x(-0.5) * Quat::from_rotation_y(-inwards(time)) * Quat::from_rotation_z(-1.5);
+        |time: &f32| Quat::from_rotation_x(-forwards) * Quat::from_rotation_y(-inwards(time)) * Quat::from_rotation_z(-1.5);
     let keys = [times.iter().map(hang).collect(), vec![Quat::from_rotation_y(-1.57); times.len()]];
     for (slot, keys) in [Slot::LeftUpperArm, Slot::LeftLowerArm].into_iter().zip(keys) {
         clip.channel(figure.joint(slot), Interpolation::Linear, &times, Keys::Rotation(keys)).unwrap();
@@ -109,7 +114,8 @@ fn a_hand_stays_out_of_a_larger_belly_and_keeps_touching_it() {
     assert!(errors[0] > 0.05 && errors[1] < 0.5 * errors[0], "{errors:?}");
     // Nothing else changes: not the trunk, nor the direction of a hand.
     for slot in [Slot::Hips, Slot::Spine, Slot::Chest, Slot::Head, Slot::LeftUpperLeg, Slot::LeftLowerLeg] {
-        assert_eq!(keys_of(&off.clip, model.joint(slot)), keys_of(&keep.clip, model.joint(slot)), "{slot:?}");
+        let joint = model.joint(slot);
+        assert!(keys_of(&off.clip, joint) == keys_of(&keep.clip, joint), "{slot:?}");
     }
     for time in [0.0, 0.4, 1.0, 1.7, 2.6] {
         let [before, after] = [&off.clip, &keep.clip].map(|clip| model.world(clip, time));
@@ -126,10 +132,10 @@ fn a_body_like_the_source_keeps_its_clip() {
         let model = with_boxes(&Rig { size, ..Rig::default() }, 0.1);
         let (off, _) = retarget(&model, &motion, Contacts::Off);
         let (keep, figures) = retarget(&model, &motion, Contacts::Keep);
-        for joint in model.asset.skeleton.joints() {
-            assert_eq!(keys_of(&off.clip, joint), keys_of(&keep.clip, joint));
-        }
         assert!(figures.contact_error_metres_mean.unwrap() < 1e-4 * size, "{figures:?}");
+        for joint in model.asset.skeleton.joints() {
+            assert!(keys_of(&off.clip, joint) == keys_of(&keep.clip, joint), "{size}: {joint:?}");
+        }
     }
 }
 
@@ -160,7 +166,7 @@ fn the_same_input_gives_the_same_clip_and_off_is_the_default() {
     let model = with_boxes(&Rig::default(), 0.22);
     let clips = [Contacts::Keep, Contacts::Keep].map(|contacts| retarget(&model, &motion, contacts).0.clip);
     for joint in model.asset.skeleton.joints() {
-        assert_eq!(keys_of(&clips[0], joint), keys_of(&clips[1], joint));
+        assert!(keys_of(&clips[0], joint) == keys_of(&clips[1], joint), "{joint:?}");
     }
     assert_eq!(map(&model, &motion).contacts, Contacts::Off);
 }
@@ -199,7 +205,9 @@ fn without_meshes_nothing_is_said_about_penetration() {
     let motion = hand_to_belly(build(&Rig::default()));
     let (_, figures) = retarget(&build(&Rig::default()), &motion, Contacts::Keep);
     assert_eq!((figures.self_penetration_share, figures.contact_error_metres_mean), (None, None));
-    // A motion without a mesh has the proportions of an adult.
+    // A motion without a mesh has the proportions of an adult, whose belly is as deep as that of boxes, but round: the hand, beside
+    // its middle, has to go further back to touch it.
+    let motion = hand_inwards(build(&Rig::default()), 0.35);
     let (_, figures) = retarget(&with_boxes(&Rig::default(), 0.22), &motion, Contacts::Off);
     assert!(figures.self_penetration_share.is_some() && figures.contact_error_metres_mean.is_some(), "{figures:?}");
 }

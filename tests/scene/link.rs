@@ -443,6 +443,7 @@ fn bad_values_are_reported_and_skipped() {
     check_bad("root=fly", "root");
     check_bad("root=", "root");
     check_bad("feet=bare", "feet");
+    check_bad("contacts=plant", "contacts");
     check_bad("pose=3:1:2", "pose");
     check_bad("pose=3:1:2:3:4", "pose");
     check_bad("pose=hips:1:2:3", "pose");

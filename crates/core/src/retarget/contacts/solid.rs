@@ -8,6 +8,9 @@ use glam::DVec3;
 const RINGS: usize = 6;
 const SECTORS: usize = 12;
 
+/// A point at most this share of a cell before the next one belongs to that one.
+const BETWEEN: f64 = 1e-4;
+
 /// Fewer points than this are no body part.
 const MIN_POINTS: usize = 8;
 
@@ -52,8 +55,9 @@ impl Solid {
         let mut solid = Self::new(axis, front, from, to);
         for point in points {
             let (share, angle, radius) = solid.coordinates(*point);
-            let ring = ((share * RINGS as f64) as usize).min(RINGS - 1);
-            let sector = ((angle / TAU).rem_euclid(1.0) * SECTORS as f64) as usize % SECTORS;
+            // Regular meshes have vertices right between two cells, which must not depend on rounding.
+            let ring = ((share * RINGS as f64 + BETWEEN) as usize).min(RINGS - 1);
+            let sector = ((angle / TAU).rem_euclid(1.0) * SECTORS as f64 + BETWEEN) as usize % SECTORS;
             solid.radii[ring][sector] = solid.radii[ring][sector].max(radius);
         }
         fill_gaps(&mut solid.radii);
