@@ -99,7 +99,8 @@ impl<'a> Retargeting<'a> {
     }
 
     fn bodies(&self) -> Option<&Bodies> {
-        self.bodies.get_or_init(|| Bodies::new(&self.transfer(), [self.source.slots, self.model.slots])).as_ref()
+        self.bodies.get_or_init(|| { let t = std::time::Instant::now(); let b = Bodies::new(&self.transfer(), [self.source.slots, self.model.slots]);
+            if std::env::var("DBGT").is_ok() { eprintln!("BODIES {:.2} ms", t.elapsed().as_secs_f64()*1e3); } b }).as_ref()
     }
 
     /// Retargets the clip.

@@ -314,7 +314,7 @@ impl Side<'_> {
         }
         let height = (high - low).max(1e-9);
         let joints: Vec<JointIndex> = parts.iter().map(|part| (self.joint)(part.pair)).collect();
-        let vertices = self.vertices(transfer, &joints);
+        let vertices = self.vertices(transfer, parts, &joints);
         let mut body =
             Body { joints, solids: Vec::new(), rest: Vec::new(), points: Vec::new(), has_mesh: false, height };
         for ((part, vertices), &front) in parts.iter().zip(&vertices).zip(fronts) {
@@ -335,7 +335,13 @@ impl Side<'_> {
     }
 
     /// Returns the vertices that follow each part's joint or what hangs on it, relative to the joint as it is turned.
-    fn vertices(&self, transfer: &Transfer, joints: &[JointIndex]) -> Vec<Vec<DVec3>> {
+    fn vertices(&self, transfer: &Transfer, parts: &[Part], joints: &[JointIndex]) -> Vec<Vec<DVec3>> {
+        // How weights divide a trunk differs between models, so its vertices are divided at the joints.
+        let is_trunk = |part: usize| parts[part].kind.region == Region::Trunk && parts[part].kind.slot != Slot::Head;
+        let trunk: Vec<(usize, DVec3, DVec3)> = (0..parts.len())
+            .filter(|&part| is_trunk(part) && super::t("TRUNK",1.0)==1.0)
+            .map(|part| (part, self.skinned.position(joints[part]), parts[part].axis(parts, self.skinned, self.joint).0))
+            .collect();
         let part_of: Vec<Option<usize>> = self.skeleton.joints().map(|joint| self.part_of(joint, joints)).collect();
         let is_mapped = |joint| transfer.map.pairs.iter().any(|pair| (self.joint)(pair) == joint);
         let frame = |joint: JointIndex| {
@@ -367,6 +373,11 @@ impl Side<'_> {
                     };
                     if let Some(part) = part_of[joint.get()] {
                         let point = frames[joint.get()].transform_point3(position.as_dvec3());
+                        let is_above = |&&(_, start, axis): &&(usize, DVec3, DVec3)| (point - start).dot(axis) >= 0.0;
+                        let part = match trunk.first().filter(|_| is_trunk(part)) {
+                            Some(lowest) => trunk.iter().rev().find(is_above).unwrap_or(lowest).0,
+                            None => part,
+                        };
                         let top = joints[part];
                         vertices[part].push(self.skinned.rotation(top).conjugate() * (point - self.skinned.position(top)));
                     }

@@ -90,7 +90,7 @@ pub fn kept_contacts(
         solver.add(Solver::touch);
         solver.add(Solver::push_out);
     }
-    solver.add(Solver::touch);
+    if super::t("END",1.0)==0.0 { solver.add(Solver::touch); }
     let turns = solver.turns();
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
     for (arm, turns) in solver.arms.iter().zip(&turns) {
@@ -122,9 +122,11 @@ impl<'a> Solver<'a> {
         let mut scratch = Scratch::default();
         let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
         let mut moments = Vec::with_capacity(times.len());
-        for ((&time, pose), touches) in times.iter().zip(&poses).zip(bodies.touches(&times, &source)) {
+        for ((&time, pose), mut touches) in times.iter().zip(&poses).zip(bodies.touches(&times, &source)) {
             let turn = DQuat::from_rotation_y(yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
-            moments.push(Moment { frames: bodies.target.frames(pose), touches, target_from_source: (turn, scale) });
+            let frames = bodies.target.frames(pose);
+            if super::t("LIM",1.0)==1.0 { touches.limit(bodies, &frames, scale); }
+            moments.push(Moment { frames, touches, target_from_source: (turn, scale) });
         }
         let arms = ARMS.map(|slots| {
             let [Some(shoulder), Some(elbow), Some(wrist)] = slots.map(|slot| transfer.pair(slot)) else { return None };
@@ -162,7 +164,7 @@ impl<'a> Solver<'a> {
         let mut overlaps = Vec::new();
         for meeting in self.bodies.meetings(target, frames, 0.0) {
             let pair = &self.bodies.pairs[meeting.pair];
-            let of_source = moment.target_from_source.1 * moment.touches.depth(meeting.pair, meeting.point);
+            let of_source = if super::t("LIM",1.0)==1.0 {1.0} else {moment.target_from_source.1} * moment.touches.depth(meeting.pair, meeting.point);
             let allowed = pair.at_rest[meeting.point].max(of_source) + TOLERATED * target.height;
             let excess = -meeting.distance - allowed;
             if excess > 0.0 {
@@ -244,7 +246,9 @@ impl<'a> Solver<'a> {
                 turns[0].push(upper);
                 turns[1].push(lower);
             }
-            turns.each_mut().map(|turns| limit_turns(&self.times, turns, max_turn, max_rate));
+            for turns in &mut turns {
+                limit_turns(&self.times, turns, max_turn, max_rate);
+            }
             turns
         });
         let mut start = 0;
@@ -257,7 +261,7 @@ impl<'a> Solver<'a> {
                 errors[1] += self.error(at, &self.turned_frames(at, turned));
                 continue;
             }
-            if errors[1] >= errors[0] {
+            if super::t("DROP",1.0)!=0.0 && errors[1] >= errors[0] {
                 turns.iter_mut().flatten().for_each(|turns| turns[start..at].fill(DQuat::IDENTITY));
             }
             (start, errors) = (at + 1, [0.0; 2]);
@@ -270,6 +274,7 @@ impl<'a> Solver<'a> {
         let moment = &self.moments[at];
         let misses = self.bodies.misses(&moment.touches, frames, moment.target_from_source);
         let missed: f64 = misses.iter().map(|miss| miss.weight * miss.by.length()).sum();
-        missed + self.overlaps(moment, frames).iter().map(|overlap| overlap.excess).sum::<f64>()
+        let e = self.overlaps(moment, frames);
+        missed + if super::t("DROP",1.0)==2.0 { e.iter().map(|overlap| overlap.excess).fold(0.0,f64::max) } else {e.iter().map(|overlap| overlap.excess).sum::<f64>()}
     }
 }

@@ -1,6 +1,7 @@
 //! Contacts of the body with itself: where the source touches itself, and whether the target does. Bodies are approximated by
 //! one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the skeleton.
 
+pub fn t(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
 mod arm;
 mod body;
 mod keep;

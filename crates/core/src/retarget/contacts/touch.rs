@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::body::{Bodies, Frames, place_of};
+use super::body::{Bodies, Frames};
 use super::solid::Place;
 use crate::retarget::math::smooth;
 
@@ -39,6 +39,24 @@ pub struct Touches {
 }
 
 impl Touches {
+    pub fn limit(&mut self, bodies: &Bodies, target: &Frames, scale: f64) {
+        let mut depths = Vec::new();
+        for meeting in bodies.meetings(&bodies.target, target, 0.0) {
+            let depth = self.depth(meeting.pair, meeting.point) * scale;
+            depths.push(((meeting.pair, meeting.point), depth.min(-meeting.distance)));
+        }
+        if super::t("GAPLIM",0.0)==1.0 {
+            for touch in &mut self.touches {
+                let before = self.depths.binary_search_by_key(&(touch.pair, touch.point), |d| d.0).map_or(0.0, |at| self.depths[at].1) * scale;
+                if before > 0.0 {
+                    let now = depths.binary_search_by_key(&(touch.pair, touch.point), |d| d.0).map_or(0.0, |at| depths[at].1);
+                    touch.gap *= now / before;
+                }
+            }
+        }
+        self.depths = depths;
+    }
+
     pub fn depth(&self, pair: usize, point: usize) -> f64 {
         self.depths.binary_search_by_key(&(pair, point), |depth| depth.0).map_or(0.0, |at| self.depths[at].1)
     }
@@ -82,11 +100,7 @@ impl Bodies {
                 if before.distance(after) > MAX_SLIDE * body.height * secs {
                     continue;
                 }
-                // Surfaces that face the same way don't touch: it is the other side of the hand that does.
-                let facing = -body
-                    .outward(pair.limb, place_of(meeting.point), frames)
-                    .dot(body.outward(pair.other, meeting.place, frames));
-                let weight = smooth(1.0 - distance.abs() / reach) * smooth(0.5 + facing);
+                let weight = smooth(1.0 - distance.abs() / reach);
                 if weight <= 0.0 {
                     continue;
                 }
