@@ -180,7 +180,7 @@ impl Editor {
     /// # Errors
     /// The message for the user if a value or a joint map is invalid.
     pub fn apply_partial(&mut self, partial: &Value) -> Result<(), String> {
-        let (state, errors) = from_object(&self.state, partial);
+        let (mut state, errors) = from_object(&self.state, partial);
         if !errors.is_empty() {
             return Err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         }
@@ -188,7 +188,9 @@ impl Editor {
             return Err(OTHER_FILES.to_owned());
         }
         let before = self.state.clone();
+        // What it says is no longer chosen automatically.
         self.suits_follow &= partial.get("follow").is_none();
+        state.retarget.feet_are_automatic &= partial.get("feet").is_none();
         self.record(Command::Replace(Box::new(state)));
         let problems = self.retarget();
         (self.needs_redraw, self.is_changed) = (true, true);

@@ -158,13 +158,13 @@ impl Editor {
         self.events.extend(is_view.then_some(Event::ViewOpened));
         self.events.push(Event::ModelOpened);
         let about_motions = if keeps_motions {
-            self.state = self.view_of_new_model(origin, keeps_motions, keeps_view);
+            self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map)
         } else {
             self.library.set_motions(motions);
             match view {
                 Some(view) => self.set_view(view),
-                None => self.state = self.view_of_new_model(origin, keeps_motions, keeps_view),
+                None => self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view),
             }
             self.state.retarget.map.extend(map);
             self.finish_view(is_view);
@@ -188,13 +188,14 @@ impl Editor {
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
-        let view = self.view_with_reduced_motion(view);
+        let mut view = self.view_with_reduced_motion(view);
+        view.retarget.feet_are_automatic = false;
         (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
-    /// Returns the default view of a new model, with the settings that a new model keeps, or the whole view as it was.
-    fn view_of_new_model(&mut self, origin: String, keeps_motions: bool, keeps_view: bool) -> ViewerState {
+    /// Returns the view of an opened model: the default one, with the settings that a new model keeps, or the whole view as it was.
+    fn view_of_opened_model(&mut self, origin: String, keeps_motions: bool, keeps_view: bool) -> ViewerState {
         let old = std::mem::take(&mut self.state);
         let retarget = if keeps_motions { old.retarget.clone() } else { RetargetEdits::default() };
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));

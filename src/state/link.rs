@@ -154,7 +154,7 @@ const KEYS: &[Key] = &[
         write_some(root_text),
         "horizontal:, vertical: or yaw: with keep, in-place or freeze, and extract"
     ),
-    Key { name: "feet", repeatable: false, read: read_feet, write: write_feet, reset: reset_feet },
+    key!("feet", retarget.feet, read_some(read_feet), write_some(feet_text), "off or plant"),
     key!("scene", sources.scene, read_index, write_index, "a scene's index"),
     key!("clip", playhead.clip, read_clip, write_clip, "a clip's name or index"),
     key!("t", playhead.time_secs, finite, write_number, "seconds"),

@@ -15,6 +15,7 @@ use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, OpenError, Role, open_items, open_view};
+use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
 use crate::samples;
@@ -65,6 +66,18 @@ pub async fn apply(partial: String) -> Result<String, JsValue> {
         return settled(promise).await.map(|_| report(&[], &[])).map_err(malformed);
     }
     Ok(open_state(&page, state.or_sample(samples::WALKER), false, false).await?)
+}
+
+/// Returns what the files of a set refer to and what isn't among them: relative URIs, percent-decoded. Ignores URLs.
+#[wasm_bindgen]
+pub fn missing_files(items: Array) -> Result<Vec<String>, JsValue> {
+    let mut files = FileSet::default();
+    for item in items_of(items).map_err(malformed)? {
+        if let Item::File(name, bytes) = item {
+            files.insert(name, bytes);
+        }
+    }
+    Ok(formats::missing_files(&files))
 }
 
 /// Shows why the shell refused a request.

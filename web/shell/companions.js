@@ -1,6 +1,8 @@
 // Joins files that are opened one after the other with those they belong to: the files of a .gltf in any order, and the .skel
 // and .attach of an .obj after it.
-import { extensionOf, fileName, isGltf, isPartOfGltf, itemNamed, nameOf, setWith } from "./held.js";
+import { extensionOf, isGltf, isPartOfGltf, itemNamed, nameOf, setWith } from "./held.js";
+import { readOrReport } from "./load.js";
+import { running } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").Role} Role */
@@ -31,7 +33,12 @@ let turn = Promise.resolve(NOTHING);
  * @param {Item[]} items
  * @param {Role} as
  */
-export const withCompanions = (items, as) => (turn = turn.then(() => joined({ items, as })));
+export function withCompanions(items, as) {
+  const next = () => joined({ items, as });
+  // Whatever became of the one before.
+  turn = turn.then(next, next);
+  return turn;
+}
 
 /**
  * @param {Opening} opening
@@ -61,25 +68,19 @@ async function joined(opening) {
  * @param {Item[]} items
  */
 async function missingFiles(items) {
-  const missing = new Set();
-  for (const item of items) {
-    if (typeof item === "string" || !isGltf(item)) continue;
-    try {
-      const { buffers = [], images = [] } = JSON.parse(await new Blob([item.content]).text());
-      for (const { uri } of [...buffers, ...images]) if (uri !== undefined && !uri.startsWith("data:")) missing.add(keyOf(decodeURIComponent(uri)));
-    } catch {
-      // Opening it reports what is wrong.
-    }
-  }
-  for (const item of items) missing.delete(keyOf(nameOf(item)));
-  return missing;
+  const app = await running();
+  // Of the others, the names are enough.
+  const described = items.map((item) => (typeof item === "string" || isGltf(item) ? item : { name: item.name, content: new ArrayBuffer(0) }));
+  // Opening them reports what is wrong.
+  const read = await readOrReport(described, () => {});
+  return new Set(app.missing_files(read).map(keyOf));
 }
 
 /**
  * The program ignores folders and case as well (`FileSet::resolve`).
  * @param {string} path
  */
-const keyOf = (path) => fileName(path.replaceAll("\\", "/")).toLowerCase();
+const keyOf = (path) => path.split(/[/\\]/).at(-1)?.toLowerCase();
 
 /**
  * Adds the .obj to a .skel or .attach, and the other of the two.

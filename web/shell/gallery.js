@@ -17,12 +17,12 @@ export function showGallery() {
 /** For what the user opens, which needs the room. */
 export const hideGallery = () => setShown(false);
 
-/** A low screen alone hides the samples. */
-let isTooLow = false;
+/** They are wanted, and only a low screen hides them. */
+let isHiddenByHeight = false;
 
 /** @param {boolean} isShown */
 function setShown(isShown) {
-  isTooLow = false;
+  isHiddenByHeight = false;
   if (gallery.hidden !== isShown) return;
   const hadFocus = gallery.contains(document.activeElement);
   gallery.hidden = !isShown;
@@ -32,7 +32,7 @@ function setShown(isShown) {
 /** @param {boolean} isWanted */
 function showIfHigh(isWanted) {
   setShown(isWanted && !lowScreen.matches);
-  isTooLow = isWanted && lowScreen.matches;
+  isHiddenByHeight = isWanted && lowScreen.matches;
 }
 
 /**
@@ -63,7 +63,7 @@ if (matchMedia("(pointer: coarse)").matches) {
 showIfHigh(location.hash.length < 2 && parent === window && cards.length > 0);
 
 button("gallery-close").addEventListener("click", () => setShown(false));
-lowScreen.addEventListener("change", () => showIfHigh(isTooLow || !gallery.hidden));
+lowScreen.addEventListener("change", () => showIfHigh(isHiddenByHeight || !gallery.hidden));
 // In the viewport, Escape acts on the selection there.
 addEventListener("keydown", ({ key, target }) => {
   if (key === "Escape" && !gallery.inert && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);

@@ -102,6 +102,7 @@ export interface Bindings {
   open(items: ReadItem[], role: Role, isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
+  missing_files(items: ReadItem[]): string[];
   refuse(problem: string): void;
   notify(notice: string): void;
   is_private(): boolean;

@@ -120,18 +120,12 @@ pub(super) fn write_clip(clip: &ClipChoice) -> Written {
     }
 }
 
-pub(super) fn read_feet(state: &mut ViewerState, text: &str) -> Read {
-    let Some(feet) = from_word(&FEET, text) else { return Read::Bad("off or plant") };
-    state.retarget.set_feet(Some(feet));
-    Read::Done
+pub(super) fn read_feet(text: &str) -> Option<Feet> {
+    from_word(&FEET, text)
 }
 
-pub(super) fn write_feet(state: &ViewerState) -> Written {
-    state.retarget.feet.map_or(Written::Unset, |feet| Written::Text(word_of(&FEET, &feet)))
-}
-
-pub(super) fn reset_feet(state: &mut ViewerState) {
-    state.retarget.set_feet(None);
+pub(super) fn feet_text(feet: &Feet) -> String {
+    word_of(&FEET, feet)
 }
 
 pub(super) fn flag_text(flag: bool) -> &'static str {

@@ -5,22 +5,15 @@ use egui::Ui;
 use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{Channel, Command, Inspect, Show, active_clip, active_variant};
+use crate::state::{COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
-
-const MODES: [(SkinningMode, &str); 3] = [
-    (SkinningMode::Linear, "Linear"),
-    (SkinningMode::Rigid, text::RIGID),
-    (SkinningMode::DualQuaternion, text::DUAL_QUATERNION),
-];
 
 /// The full name of a skinning method.
 pub fn title(mode: SkinningMode) -> &'static str {
     match mode {
-        SkinningMode::Linear => "Linear",
-        SkinningMode::Rigid => text::RIGID,
         SkinningMode::DualQuaternion => "Dual quaternion",
+        SkinningMode::Linear | SkinningMode::Rigid => text::skinning_method(mode),
     }
 }
 
@@ -80,7 +73,8 @@ fn variants(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
 fn skinning(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
     controls::section(ui, "SKINNING");
-    if let Some(mode) = controls::segmented(ui, Some(state.display.skinning), &MODES) {
+    let methods = COMPARED_SKINNING.map(|mode| (mode, text::skinning_method(mode)));
+    if let Some(mode) = controls::segmented(ui, Some(state.display.skinning), &methods) {
         out.commands.push(Command::SetSkinning(mode));
     }
     ui.add_space(2.0);

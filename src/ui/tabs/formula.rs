@@ -103,14 +103,17 @@ fn character_in<'a>(shown: &Shown<'a>, pane: usize) -> Option<&'a Character> {
     if shown.frame.comparison.is_some() { characters.get(pane) } else { characters.first() }
 }
 
-/// Marks the vertex with a dot and its number in the pane under the pointer.
-pub fn mark(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
+/// Marks the vertex with a dot and its number in a pane, given its index and rectangle.
+pub fn mark(
+    ui: &Ui,
+    painter: &Painter,
+    (index, pane): (usize, Rect),
+    shown: &Shown<'_>,
+    local: &mut UiState,
+) -> Option<()> {
     let choice =
         local.vertex_probe.vertex(shown).filter(|_| local.vertex_probe.is_on(shown) && !shown.state.page.embed)?;
-    let pointer = ui.input(|input| input.pointer.hover_pos());
-    let panes = pane_rects(shown, rect);
-    let index = pane_index(&panes, pointer);
-    let (model, character, pane) = (shown.library.active()?, character_in(shown, index)?, panes[index]);
+    let (model, character) = (shown.library.active()?, character_in(shown, index)?);
     let formula = &mut local.vertex_probe.formula;
     if !vertex_formula(model, character, choice, formula) {
         return None;

@@ -117,9 +117,7 @@ impl FormulaRow {
             Self::Share => ("share", "w · T · inv(B) · p"),
             Self::Sum => ("p'", "sum of the shares"),
             Self::Drawn => ("drawn", "result of the current skinning method"),
-            Self::DrawnBy(SkinningMode::Linear) => ("linear", "result of linear skinning"),
-            Self::DrawnBy(SkinningMode::Rigid) => ("rigid", "result of rigid skinning"),
-            Self::DrawnBy(SkinningMode::DualQuaternion) => ("dual q.", "result of dual quaternion skinning"),
+            Self::DrawnBy(method) => (skinning_method(method), "drawn by this skinning method"),
         }
     }
 
@@ -150,6 +148,16 @@ pub const NO_VARIANT: &str = "The file's own materials";
 pub const RIGID: &str = "Rigid";
 /// Skinning method: dual quaternions, abbreviated to fit.
 pub const DUAL_QUATERNION: &str = "Dual quat.";
+
+/// Returns the short name of a skinning method.
+pub fn skinning_method(mode: SkinningMode) -> &'static str {
+    match mode {
+        SkinningMode::Linear => "Linear",
+        SkinningMode::Rigid => RIGID,
+        SkinningMode::DualQuaternion => DUAL_QUATERNION,
+    }
+}
+
 /// Switch that shows the three skinning methods side by side.
 pub const COMPARE_SKINNING: &str = "Compare all three";
 /// Switch in the Motion tab that shows the motion in its different rest poses side by side.

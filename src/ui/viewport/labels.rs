@@ -4,7 +4,7 @@ use egui::{Painter, Rect, Ui, pos2, vec2};
 
 use super::hover::partner;
 use super::legend;
-use super::panes::{pane_at, pane_rects, to_screen};
+use super::panes::{pane_index, pane_rects, to_screen};
 use crate::frame::PickedJoint;
 use crate::state::{Comparison, compared_rests, source_on_stage, title};
 use crate::ui::tabs::{display, formula};
@@ -23,8 +23,10 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
         return;
     }
     let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| rect.contains(*at));
-    let pane = pane_at(&shown, rect, pointer);
-    formula::mark(ui, &painter, rect, &shown, local);
+    let panes = pane_rects(&shown, rect);
+    let index = pane_index(&panes, pointer);
+    let pane = panes[index];
+    formula::mark(ui, &painter, (index, pane), &shown, local);
     let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(&shown, picked))];
     let selected = both(shown.state.selection.joint.map(PickedJoint::Model));
     for picked in selected.into_iter().flatten() {

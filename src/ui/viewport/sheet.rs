@@ -34,9 +34,9 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         ui.ctx().request_repaint();
         return;
     };
-    // Without its real size, egui would move the area to where its default size fits, and take presses beside the sheet.
     let area = Area::new(Id::unique(("sheet", sheet as u8))).order(Order::Middle).fixed_pos(rect.min);
-    area.default_size(rect.size()).constrain(false).show(ui.ctx(), |ui| {
+    // egui would move a new area to where its default size fits, and so take presses beside the sheet.
+    area.constrain(false).show(ui.ctx(), |ui| {
         background(ui, rect);
         // The whole sheet takes the pointer, so that nothing under it moves.
         ui.allocate_rect(rect, egui::Sense::click_and_drag());

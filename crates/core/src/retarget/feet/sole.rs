@@ -83,11 +83,10 @@ fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
     let mut hull = Hull::new(asset, rest, foot);
     for &MeshInstance { joint, mesh, skin, joint_from_mesh } in &asset.instances {
         let skin = skin.map(|skin| &asset.skins[skin]);
-        let is_in_foot = |&joint: &JointIndex| hull.is_in_foot(joint);
-        // One flag per joint of the skin.
-        let in_foot: Vec<bool> = skin.map_or_else(Vec::new, |skin| skin.joints().iter().map(is_in_foot).collect());
-        let is_outside = if skin.is_some() { !in_foot.contains(&true) } else { !hull.is_in_foot(joint) };
-        if is_outside {
+        // One flag per joint that moves the mesh.
+        let movers = skin.map_or(std::slice::from_ref(&joint), Skin::joints);
+        let in_foot: Vec<bool> = movers.iter().map(|&joint| hull.is_in_foot(joint)).collect();
+        if !in_foot.contains(&true) {
             continue;
         }
         for geometry in &asset.meshes[mesh].primitives {

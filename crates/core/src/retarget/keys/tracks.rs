@@ -232,6 +232,7 @@ fn rotation<'a>(track: &Track<'a, DQuat>, search: &mut Search<'a>) -> DQuat {
     let value = |at: usize| values[at].as_dquat();
     match channel.interpolation {
         Interpolation::Step => unit(value(segment.from)),
+        // Exactly at a key, where most times are that anyone asks for.
         Interpolation::Linear if segment.factor == 0.0 => unit(value(segment.from)),
         Interpolation::Linear => slerp(unit(value(segment.from)), unit(value(segment.to)), segment.factor),
         Interpolation::CubicSpline => {

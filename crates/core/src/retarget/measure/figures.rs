@@ -121,7 +121,7 @@ pub fn measure(
         transfer.alignment.source.world_from_model,
         pairs.iter().map(|pair| pair.source),
     );
-    // Each foot's joints are mapped, but for those of its sole.
+    // The feet themselves are mapped; joints of their soles may not be.
     let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
     let targets: Vec<JointIndex> =
         pairs.iter().map(|pair| pair.target).chain(ground_joints.iter().copied()).chain(of_soles).collect();
