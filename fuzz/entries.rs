@@ -6,7 +6,9 @@
 #![allow(dead_code)]
 
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, prepare, read_hdr};
+use gaitway::formats::{
+    Early, FileSet, LoadOptions, convert, early, load, load_with, missing_files, prepare, read_hdr,
+};
 use gaitway::retarget::JointMapFile;
 use gaitway::state::{from_link, to_link};
 
@@ -26,8 +28,17 @@ pub const ENTRIES: [Entry; 9] = [
     ("hdr", hdr),
 ];
 
-/// A .glb, or a .gltf whose data is inside.
+/// A .glb, or a .gltf whose data is inside; also as if its images had not arrived.
 pub fn gltf(bytes: &[u8]) {
+    match early(bytes) {
+        Some(Early::Wait(needed)) => assert!(needed > bytes.len()),
+        Some(Early::Ready(glb)) => {
+            assert!(glb.len() <= bytes.len());
+            let awaiting = LoadOptions { awaits_images: true, ..LoadOptions::default() };
+            let _ = load_with(&one("model.glb", &glb), &awaiting);
+        }
+        None => {}
+    }
     check_model(&one("model.gltf", bytes));
 }
 

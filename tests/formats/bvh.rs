@@ -32,7 +32,7 @@ Frame Time: 0.5
 1 2 3 90 0 0 30 40 50
 ";
 
-const METRES: LoadOptions = LoadOptions { bvh_unit_metres: Some(1.0), bvh_z_up: Some(false) };
+const METRES: LoadOptions = LoadOptions { bvh_unit_metres: Some(1.0), bvh_z_up: Some(false), awaits_images: false };
 
 fn read_bvh(text: &str) -> Result<Asset, LoadError> {
     load_with(&one("walk.bvh", text.as_bytes().to_vec()), &METRES)
@@ -376,7 +376,7 @@ fn real_files_have_known_contents() {
         let text = asset.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
         assert_eq!(text.contains("up axis"), z_up, "{path}: {text}");
         assert_eq!(text.contains("3069 frames are announced, 3070"), path.contains("Boxing"), "{text}");
-        let told = LoadOptions { bvh_unit_metres: Some(unit_metres as f32), bvh_z_up: Some(z_up) };
+        let told = LoadOptions { bvh_unit_metres: Some(unit_metres as f32), bvh_z_up: Some(z_up), ..METRES };
         let bytes = std::fs::read(data.join(path)).expect("readable");
         let again = load_with(&one("again.bvh", bytes), &told).expect("readable");
         for (guessed, told) in asset.skeleton.rest().locals().zip(again.skeleton.rest().locals()) {

@@ -3,6 +3,7 @@
 mod behaviour;
 mod bvh;
 mod draco;
+mod early;
 mod file_sets;
 mod fuzz;
 mod hdr;

@@ -139,6 +139,7 @@ pub fn generated() -> Vec<(&'static str, Vec<u8>)> {
         ("animated.glb", Build::animated("translation", &[0.0, 1.0, 2.0], "VEC3", 3, &moved).glb()),
         ("pointers.glb", crate::pointer::pointers().glb()),
         ("textured.glb", crate::behaviour::textured_square().glb()),
+        ("large-image.glb", crate::early::large_image().glb()),
         ("walk.bvh", crate::bvh::TWO_JOINTS.into()),
     ]
 }

@@ -14,7 +14,7 @@ use glam::{Affine3A, Quat, Vec3};
 use crate::build_gltf::one;
 use crate::skeletons::joint;
 
-const METRES: LoadOptions = LoadOptions { bvh_unit_metres: Some(1.0), bvh_z_up: Some(false) };
+const METRES: LoadOptions = LoadOptions { bvh_unit_metres: Some(1.0), bvh_z_up: Some(false), awaits_images: false };
 
 fn world(asset: &Asset, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
     let (mut pose, mut world) = (asset.skeleton.rest().clone(), Vec::new());

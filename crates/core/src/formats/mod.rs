@@ -36,7 +36,7 @@ use std::collections::BTreeSet;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
-pub use gltf::{WriteError, pointer_to};
+pub use gltf::{Early, WriteError, early, pointer_to};
 pub use hdr::{HdrError, is_hdr, read_hdr};
 #[cfg(not(target_arch = "wasm32"))]
 pub use prepare::prepare;
@@ -79,13 +79,16 @@ pub const GLTF_EXTENSIONS: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 /// Extensions of other files with a skeleton or clips, in lower case.
 pub const OTHER_MOTION_EXTENSIONS: [&str; 4] = ["bvh", "fbx", "npz", "x"];
 
-/// What a file does not state but the user may know.
+/// What a file does not state but the user may know, and what it still lacks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LoadOptions {
     /// Metres per unit of a .bvh. `None` guesses it from the skeleton's size.
     pub bvh_unit_metres: Option<f32>,
     /// Whether Z is up in a .bvh (else Y). `None` guesses it from the rest pose and the motion.
     pub bvh_z_up: Option<bool>,
+    /// The images of a glTF have not arrived yet: they stay empty, which is reported, and a buffer may end before them. See
+    /// [`early`].
+    pub awaits_images: bool,
 }
 
 /// Loads the only model in a set of files. A set with none, or with several, is an error that lists what was found.
@@ -204,7 +207,7 @@ fn read(
     } else if is_obj(name, bytes) {
         obj::load(files, name, bytes, on_images)
     } else {
-        gltf::load(files, name, bytes, on_images)
+        gltf::load(files, name, bytes, options, on_images)
     }
 }
 

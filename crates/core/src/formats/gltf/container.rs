@@ -9,6 +9,8 @@ pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
     pub is_glb: bool,
+    /// The images have not arrived yet; see [`LoadOptions`](crate::formats::LoadOptions).
+    pub awaits_images: bool,
     /// Byte offset of the first chunk whose kind occurred before.
     repeated_chunk: Option<usize>,
 }
@@ -27,6 +29,50 @@ impl Container<'_> {
 const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 
+/// The beginning of a GLB, up to its binary chunk.
+pub struct Beginning<'a> {
+    /// Without the binary chunk.
+    pub container: Container<'a>,
+    /// Byte offset of the binary chunk's data.
+    pub binary_at: usize,
+    /// Of the whole file, as its header says.
+    pub length: usize,
+}
+
+/// Reads the JSON of a file of which only the `start` is there, or returns how many bytes that takes. `None` if it is no GLB, or
+/// has no binary chunk after its JSON.
+pub fn begin(start: &[u8]) -> Option<Result<Beginning<'_>, usize>> {
+    if !start.starts_with(&b"glTF"[..start.len().min(4)]) {
+        return None;
+    }
+    let header = |at: usize| word(start, at).zip(word(start, at + 4));
+    let Some(((_, length), (size, kind))) = header(4).zip(header(12)) else { return Some(Err(20)) };
+    let end = (size as usize).checked_add(20)?;
+    let binary_at = end.checked_add(8).filter(|&at| kind == JSON_CHUNK && at <= length as usize)?;
+    let Some((_, kind)) = header(end) else { return Some(Err(binary_at)) };
+    let container = Container {
+        json: without_bom(&start[20..end]),
+        binary: None,
+        is_glb: true,
+        awaits_images: true,
+        repeated_chunk: None,
+    };
+    (kind == BINARY_CHUNK).then_some(Ok(Beginning { container, binary_at, length: length as usize }))
+}
+
+/// Returns a GLB that ends inside its binary chunk, whose data is at `binary_at`, with the lengths corrected.
+pub fn shortened(start: &[u8], binary_at: usize) -> Vec<u8> {
+    let mut bytes = start.to_vec();
+    for (at, length) in [(8, start.len()), (binary_at - 8, start.len() - binary_at)] {
+        bytes[at..at + 4].copy_from_slice(&(length as u32).to_le_bytes());
+    }
+    bytes
+}
+
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..at.checked_add(4)?)?.try_into().ok().map(u32::from_le_bytes)
+}
+
 pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
     let invalid = |place: &str, expected: &str, found: String| LoadError::Invalid {
         file: file.to_owned(),
@@ -37,13 +83,16 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
     if !bytes.starts_with(b"glTF") {
         return match other_content(bytes) {
             Some(found) => Err(invalid("", "a GLB, which begins with “glTF”, or JSON, which begins with “{”", found)),
-            None => Ok(Container { json: without_bom(bytes), binary: None, is_glb: false, repeated_chunk: None }),
+            None => Ok(Container {
+                json: without_bom(bytes),
+                binary: None,
+                is_glb: false,
+                awaits_images: false,
+                repeated_chunk: None,
+            }),
         };
     }
-    let word = |at: usize| {
-        let four = bytes.get(at..at.checked_add(4)?)?;
-        Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
-    };
+    let word = |at| word(bytes, at);
     let header = || invalid("GLB header", "12 bytes", format!("{}", bytes.len()));
     let (version, length) = word(4).zip(word(8)).ok_or_else(header)?;
     match version {
@@ -70,7 +119,7 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         at += 8 + size;
     }
     let json = json.ok_or_else(|| invalid("GLB", "a JSON chunk", "none".to_owned()))?;
-    Ok(Container { json: without_bom(json), binary, is_glb: true, repeated_chunk })
+    Ok(Container { json: without_bom(json), binary, is_glb: true, awaits_images: false, repeated_chunk })
 }
 
 /// Returns what a file without the header of a GLB contains; `None` for anything that may be JSON. Truncated or misspelt

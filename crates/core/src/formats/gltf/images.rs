@@ -5,6 +5,7 @@ use gltf::json;
 use imagesize::ImageType;
 
 use super::accessor::Accessors;
+use super::container::Container;
 use super::data;
 use crate::asset::{Image, SharedBytes, Warning, Warnings};
 use crate::formats::FileSet;
@@ -17,14 +18,18 @@ pub const AVIF: &str = "image/avif";
 pub fn images(
     files: &FileSet,
     file: &str,
+    container: &Container,
     accessors: &Accessors,
     warnings: &mut Warnings,
 ) -> Result<Vec<Image>, Problem> {
     let mut images = Vec::with_capacity(accessors.document.root.images.len());
     for (index, image) in accessors.document.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
-        let bytes = image_bytes(files, file, accessors, image, &place, warnings)
-            .or_else(|problem| problem.leave_out("image", "the image is left out", warnings).map(|()| None))?;
+        let bytes = match container.awaits_images {
+            true => None,
+            false => image_bytes(files, file, accessors, image, &place, warnings)
+                .or_else(|problem| problem.leave_out("image", "the image is left out", warnings).map(|()| None))?,
+        };
         let name = match (image.name.as_deref().unwrap_or_default(), &image.uri) {
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),

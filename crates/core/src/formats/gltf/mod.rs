@@ -9,6 +9,7 @@ mod data;
 pub(super) mod decoded;
 mod document;
 mod draco;
+mod early;
 mod extensions;
 mod humanoid;
 mod images;
@@ -32,13 +33,14 @@ mod write;
 
 use crate::asset::{Asset, AssetParts, Image, Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::formats::{FileSet, LoadError};
+use crate::formats::{FileSet, LoadError, LoadOptions};
 use accessor::{Accessors, Bytes};
 use container::Container;
 use document::{Document, size};
 use gltf::json::Root;
 
 pub(super) use data::find as find_file;
+pub use early::{Early, early};
 pub(super) use images::image_header;
 pub use pointer::pointer_to;
 pub use write::WriteError;
@@ -72,9 +74,11 @@ pub(super) fn load(
     files: &FileSet,
     file: &str,
     bytes: &[u8],
+    options: &LoadOptions,
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
-    let container = container::open(file, bytes)?;
+    let mut container = container::open(file, bytes)?;
+    container.awaits_images = options.awaits_images;
     let document = Document::read(file, &container)?;
     let mut warnings = Warnings::default();
     container.warn(&mut warnings);
@@ -84,6 +88,9 @@ pub(super) fn load(
     for problem in conversion.into_iter().flat_map(|conversion| &conversion.warnings) {
         // The text names the place.
         warnings.push(Warning::Other { code: "conversion", place: String::new(), problem: problem.clone() });
+    }
+    if container.awaits_images {
+        warnings.push(Warning::ImagesAwaited);
     }
     build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
 }
@@ -101,7 +108,7 @@ fn build(
     let accessors = Accessors::new(document, buffers);
     let materials = materials::materials(document, &mut warnings)?;
     let textures = materials::textures(document, &mut warnings)?;
-    let images = images::images(files, file, &accessors, &mut warnings)?;
+    let images = images::images(files, file, container, &accessors, &mut warnings)?;
     on_images(&images);
     let variants = variants::names(root, &mut warnings)?;
     let meshes = meshes::meshes(&accessors, &materials, variants.len(), &mut warnings)?;
@@ -199,7 +206,7 @@ fn resolve_buffer<'a>(
     };
     let found = bytes.as_slice().len();
     let byte_length = size(buffer.byte_length);
-    if found < byte_length {
+    if found < byte_length && !container.awaits_images {
         return Err(Problem::new(place, format!("{byte_length} bytes (byteLength)"), found));
     }
     Ok(Some(bytes))
