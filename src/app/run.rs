@@ -9,7 +9,7 @@ use super::save::saved;
 use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Reply, ScriptCall, device};
-use crate::editor::{Admit, Contents, Editor};
+use crate::editor::{Admit, Contents, Editor, OpenedModel};
 use crate::files::{Role, set_largest_image, set_texture_formats};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::texture_formats;
@@ -125,6 +125,16 @@ impl App {
     /// If the model doesn't fit on the device.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
         self.opening(|editor, admit| editor.open(contents, view, admit))
+    }
+
+    /// Completes a model that was opened before its images had arrived.
+    ///
+    /// # Errors
+    /// If it doesn't fit on the device with them.
+    pub fn complete(&mut self, id: ModelId, opened: OpenedModel) -> Result<(), String> {
+        self.panels.forget_images();
+        self.context.request_repaint();
+        self.editor.complete(id, opened, &mut |model| self.viewport.admit(model))
     }
 
     fn opening(&mut self, open: impl FnOnce(&mut Editor, Admit<'_>) -> Result<(), String>) -> Result<(), String> {

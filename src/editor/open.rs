@@ -364,6 +364,21 @@ impl Editor {
         }
     }
 
+    /// Completes a model that was opened before its images had arrived, if it is still loaded. Neither the view nor the history
+    /// changes.
+    ///
+    /// # Errors
+    /// The message for the user if the model, now active, cannot be shown with them.
+    pub fn complete(&mut self, id: ModelId, opened: OpenedModel, admit: Admit<'_>) -> Result<(), String> {
+        let OpenedModel { model, files } = opened;
+        self.library.complete(id, model);
+        if let Some(shelved) = self.shelf.get_mut(&id) {
+            shelved.files = files;
+        }
+        self.needs_redraw = true;
+        self.library.active().filter(|model| model.id == id).map_or(Ok(()), admit)
+    }
+
     /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted
     /// to it. A model that was never active plays the retargeted clip that is active.
     ///
@@ -457,7 +472,9 @@ impl Editor {
 
 /// Number of images that a model lacks; the joints of an .obj count as one more.
 fn lacking(model: &Model) -> usize {
-    missing_images(&model.asset).len() + usize::from(is_jointless_obj(&model.source, &model.asset))
+    let is_awaiting = model.asset.warnings.0.contains(&Warning::ImagesAwaited);
+    let images = if is_awaiting { model.asset.images.len() } else { missing_images(&model.asset).len() };
+    images + usize::from(is_jointless_obj(&model.source, &model.asset))
 }
 
 fn is_jointless_obj(source: &str, asset: &Asset) -> bool {

@@ -141,6 +141,11 @@ impl ModelUploader {
 }
 
 impl GpuModel {
+    /// Whether this is the model with the images that it has now.
+    pub fn is_of(&self, model: &Model) -> bool {
+        self.id == model.id && Arc::ptr_eq(&self.asset, &model.asset)
+    }
+
     /// Returns the images of the asset, and whether sampling decodes them from sRGB; `None` for those that no material uses.
     pub fn images(&self) -> impl Iterator<Item = Option<(&wgpu::TextureView, bool)>> {
         let find =

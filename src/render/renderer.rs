@@ -174,10 +174,12 @@ impl Renderer {
         }
     }
 
-    /// Uploads a model's geometry and textures, unless it is already uploaded.
+    /// Uploads a model's geometry and textures, unless it is already uploaded as it is.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, model: &Model) -> Result<(), UploadError> {
-        if !self.models.iter().any(|known| known.id == model.id) {
-            self.models.push(self.uploader.upload(device, queue, model)?);
+        if !self.models.iter().any(|known| known.is_of(model)) {
+            let uploaded = self.uploader.upload(device, queue, model)?;
+            self.models.retain(|known| known.id != model.id);
+            self.models.push(uploaded);
         }
         Ok(())
     }

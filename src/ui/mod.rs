@@ -337,6 +337,12 @@ impl UiState {
     pub fn on_motions_changed(&mut self) {
         self.motion.other_motions();
     }
+
+    /// Drops what is shown about a model's images, which have only now arrived.
+    pub fn forget_images(&mut self) {
+        self.lists = tabs::Lists::default();
+        self.host.thumbnails_of = None;
+    }
 }
 
 /// Screens narrower than this get sheets instead of side panels.

@@ -119,6 +119,14 @@ impl Library {
         ModelId(self.next_id)
     }
 
+    /// Gives a model that was added before its images had arrived those of its `complete` file. Nothing else about it changes.
+    pub fn complete(&mut self, id: ModelId, complete: Model) {
+        let mut models = self.models.iter_mut().chain(&mut self.closed);
+        if let Some(model) = models.find(|model| model.id == id) {
+            model.complete(complete);
+        }
+    }
+
     /// Evicts closed models, then the oldest others, down to [`Library::MAX_MODELS`]. Returns the evicted models that
     /// were listed.
     pub fn trim(&mut self) -> Vec<Model> {

@@ -97,6 +97,11 @@ impl Model {
         }
     }
 
+    /// Takes images and warnings from the same model, read from its complete file.
+    pub(super) fn complete(&mut self, complete: Self) {
+        (self.asset, self.images, self.findings) = (complete.asset, complete.images, OnceLock::new());
+    }
+
     /// Number of playable clips: the asset's own, then the borrowed ones.
     pub fn clip_count(&self) -> usize {
         self.asset.clips.len() + self.borrowed.len()
