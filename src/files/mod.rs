@@ -6,6 +6,7 @@ mod address;
 mod decode;
 #[cfg(not(target_arch = "wasm32"))]
 mod disk;
+mod early;
 mod error;
 mod images;
 mod open;
@@ -25,6 +26,7 @@ pub use address::raw_address;
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
 pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, read_paths};
+pub use early::EarlyWatch;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
 pub use error::{ErrorCode, OpenError};

@@ -12,9 +12,9 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
 use super::page::{Page, page, state_of_link};
-use crate::app::{App, Message, Reply, ScriptCall};
+use crate::app::{App, Loads, Message, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
-use crate::files::{ErrorCode, Held, Item, OpenError, Role, open_items, open_view};
+use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
@@ -156,6 +156,28 @@ pub async fn begin() -> Result<(), JsValue> {
     with_app(&page, App::begin).map_err(stopped)
 }
 
+/// Waits for the images of the model that [`run`](super::page::run) has shown without them, if so. Resolves to why they can't be
+/// shown: then the model stays as it is. To an empty text if they can be, or if the user cancels it.
+#[wasm_bindgen]
+pub async fn complete() -> String {
+    let Ok(page) = page() else { return String::new() };
+    let Some((model, rest)) = page.rest.take() else { return String::new() };
+    page.loads.start();
+    let rest = unless_cancelled(&page, rest).await;
+    if page.loads.is_latest(Loads::FIRST) {
+        page.inbox.send(Message::OpenFailedSilently);
+    }
+    let completed = match rest {
+        None => Ok(()),
+        Some(Err(problem)) => Err(problem),
+        Some(Ok((mut contents, _, problems))) => match contents.models.pop() {
+            Some(opened) if problems.is_empty() => with_app(&page, |app| app.complete(model, opened)).flatten(),
+            _ => Err(problems.join("\n")),
+        },
+    };
+    completed.err().unwrap_or_default()
+}
+
 /// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
 /// the rest pose; `isEmpty` is true without a model.
 #[wasm_bindgen]
@@ -243,14 +265,13 @@ struct Opened {
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
-    let latest = RefCell::new(Progress::default());
+    let latest = RefCell::new(progress_of("", 0, 0));
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        let opening = Progress { name: name.to_owned(), received_bytes, total_bytes };
         // What is in memory is read at once: a frame that shows it would only delay it.
         if received_bytes > 0 && page.loads.is_latest(number) {
-            page.inbox.send(Message::OpenProgress(opening.clone()));
+            page.inbox.send(progress_of(name, received_bytes, total_bytes));
         }
-        latest.replace(opening);
+        latest.replace(progress_of(name, received_bytes, total_bytes));
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
     let read = async {
@@ -262,26 +283,21 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             }
             Request::View { state, with_model, current_motions, environments, .. } => {
                 let held = Held { motions: &current_motions, environments: &environments };
-                let opened = open_view(*state, with_model, held, &progress).await;
+                let opened = open_view(*state, with_model, held, &progress, None).await;
                 opened.map(|(contents, state)| (contents, Some(Box::new(state))))
             }
         }
     };
-    let cancelled = Promise::new(&mut |cancel, _| _ = page.cancel_load.replace(Some(cancel)));
-    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> =
-        match select(pin!(read), JsFuture::from(cancelled)).await {
-            Either::Left((opened, _)) => opened,
-            Either::Right(_) => {
-                // The last bytes may have arrived together with the click.
-                page.inbox.send(Message::OpenFailedSilently);
-                return Err(Refusal::cancelled("Opening was cancelled."));
-            }
-        };
+    let Some(opened) = unless_cancelled(page, read).await else {
+        // The last bytes may have arrived together with the click.
+        page.inbox.send(Message::OpenFailedSilently);
+        return Err(Refusal::cancelled("Opening was cancelled."));
+    };
     if !page.loads.is_latest(number) {
         return Err(Refusal::cancelled("something else was opened in the meantime"));
     }
     // Names what is opened or has failed, in the frame that shows it.
-    page.inbox.send(Message::OpenProgress(latest.take()));
+    page.inbox.send(latest.into_inner());
     match opened {
         Ok((contents, state)) => {
             let shown = show(page, contents, state, shell_reports).await;
@@ -294,6 +310,19 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             Err(Refusal { code, message })
         }
     }
+}
+
+/// Awaits a load; `None` if the user cancels it.
+async fn unless_cancelled<T>(page: &Page, load: impl Future<Output = T>) -> Option<T> {
+    let cancelled = Promise::new(&mut |cancel, _| _ = page.cancel_load.replace(Some(cancel)));
+    match select(pin!(load), JsFuture::from(cancelled)).await {
+        Either::Left((loaded, _)) => Some(loaded),
+        Either::Right(_) => None,
+    }
+}
+
+pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> Message {
+    Message::OpenProgress(Progress { name: name.to_owned(), received_bytes, total_bytes })
 }
 
 /// Hands opened files to the app; resolves once they are on screen. The shell reports the problems of links, and only

@@ -1,18 +1,22 @@
 //! Starting and destroying an instance on a canvas.
 
 use std::cell::{Cell, RefCell};
+use std::future::poll_fn;
+use std::pin::{Pin, pin};
+use std::rc::Rc;
+use std::task::Poll;
 
 use egui::ThemePreference;
-use futures_util::future::try_join;
+use futures_util::future::{Either, select};
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
-use super::calls::with_app;
+use super::calls::{progress_of, with_app};
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
-use crate::editor::{Contents, ExportedFile};
+use crate::editor::{Contents, ExportedFile, short_name};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Model, ModelId};
 use crate::samples;
@@ -27,12 +31,19 @@ pub(super) struct Page {
     pub loads: Loads,
     /// Cancels the latest load.
     pub cancel_load: RefCell<Option<js_sys::Function>>,
+    /// The model that is shown without its images, and what resolves to its complete file.
+    pub rest: RefCell<Option<(ModelId, Rest)>>,
 }
+
+/// The first contents with their view and the problems.
+pub(super) type First = (Contents, ViewerState, Vec<String>);
+
+pub(super) type Rest = Pin<Box<dyn Future<Output = Result<First, String>>>>;
 
 thread_local! {
     /// The shell may end an instance that is still starting.
     static IS_DESTROYED: Cell<bool> = const { Cell::new(false) };
-    static PAGE: RefCell<Option<std::rc::Rc<Page>>> = const { RefCell::new(None) };
+    static PAGE: RefCell<Option<Rc<Page>>> = const { RefCell::new(None) };
 }
 
 /// Installs the panic and device hooks. Nothing is drawn before the shell calls [`run`].
@@ -50,7 +61,7 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to a JSON list of problems; call [`super::calls::begin`] next. Rejects, and leaves nothing
+/// requested, to a JSON list of problems; call [`super::calls::begin`] and [`super::calls::complete`] next. Rejects, and leaves nothing
 /// behind, if no device is available, nothing could be opened or the model doesn't fit on the device.
 #[wasm_bindgen]
 pub async fn run(
@@ -62,21 +73,38 @@ pub async fn run(
     shell: Shell,
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
-    let has_arrived = Cell::new(false);
-    let first = async {
-        let contents = first_contents(&link, items, motion_items, is_private, &shell).await;
-        has_arrived.set(true);
-        contents
+    let first: Rc<RefCell<Option<First>>> = Rc::default();
+    let all = {
+        let (shell, early) = (shell.clone(), first.clone());
+        Box::pin(async move { first_contents(&link, items, motion_items, is_private, &shell, &early).await })
     };
     // Request the files first: the network takes longest. Meanwhile, create the device and rehearse.
-    let app = async {
+    let shown = pin!(async {
         start_app(canvas, &shell).await?;
-        if has_arrived.get() { Ok(()) } else { rehearse(&*page()?).await }
-    };
+        if first.borrow().is_none() {
+            rehearse(&*page()?).await?;
+        }
+        // Nothing has to wake it: it is polled after what fills the slot.
+        poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, String>(first)))).await
+    });
     let started = async {
-        let ((contents, state, problems), ()) = try_join(first, app).await?;
+        let ((contents, state, problems), rest) = match select(all, shown).await {
+            Either::Left((all, shown)) => {
+                first.replace(Some(all?));
+                (shown.await?, None)
+            }
+            Either::Right((early, rest)) => (early?, Some(rest as Rest)),
+        };
         let page = page()?;
-        with_app(&page, |app| app.open(contents, Some(state)))??;
+        let name = contents.models.first().map(|opened| short_name(&opened.model.source));
+        let shown = with_app(&page, |app| {
+            app.open(contents, Some(state))?;
+            Ok::<_, String>(app.library().active().map(|model| model.id))
+        });
+        if let (Some(model), Some(rest), Some(name)) = (shown??, rest, name) {
+            page.rest.replace(Some((model, rest)));
+            page.inbox.send(progress_of(&name, 0, 0));
+        }
         page.inbox.wake();
         Ok::<_, String>(problems)
     };
@@ -89,7 +117,7 @@ pub async fn run(
 
 async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<(), String> {
     let runner = eframe::WebRunner::new();
-    let started = std::rc::Rc::new(RefCell::new(None));
+    let started = Rc::new(RefCell::new(None));
     let start = started.clone();
     let host = Box::new(PageHost { shell: shell.clone() });
     let create: eframe::AppCreator<'static> = Box::new(move |cc| {
@@ -103,26 +131,35 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         return Err("Gaitway was stopped".to_owned());
     }
     let (inbox, context) = started.borrow_mut().take().ok_or("Gaitway couldn't start")?;
-    let (loads, cancel_load) = (Loads::default(), RefCell::default());
-    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load };
-    PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
+    let (loads, cancel_load, rest) = (Loads::default(), RefCell::default(), RefCell::default());
+    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load, rest };
+    PAGE.with_borrow_mut(|slot| *slot = Some(Rc::new(page)));
     Ok(())
 }
 
-/// Loads the first contents: the items, otherwise the files of the link. Returns them with their view and the problems. If the
-/// model cannot be opened, falls back to the skeleton of the first motion that can, then to an empty stage.
+/// Loads the first contents: the items, otherwise the files of the link. If the model cannot be opened, falls back to the
+/// skeleton of the first motion that can, then to an empty stage. `early` receives the same without images, if that helps.
 async fn first_contents(
     link: &str,
     items: Array,
     motion_items: Array,
     is_private: bool,
     shell: &Shell,
-) -> Result<(Contents, ViewerState, Vec<String>), String> {
+    early: &RefCell<Option<First>>,
+) -> Result<First, String> {
     let wanted = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
-    let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
-    match open_wanted(&wanted, items, motion_items, &progress).await {
+    let progress = |name: &str, received: u64, total: u64| match page() {
+        // The model is shown, and nothing else has been opened since.
+        Ok(page) if page.loads.is_latest(Loads::FIRST) => page.inbox.send(progress_of(name, received, total)),
+        _ => shell.progress(name, received as f64, total as f64),
+    };
+    let show_early = |model: Model| {
+        let contents = Contents { models: vec![model.into()], motions: Some(Vec::new()), ..Contents::default() };
+        early.replace(Some((contents, wanted.clone(), Vec::new())));
+    };
+    match open_wanted(&wanted, items, motion_items, &progress, &show_early).await {
         Ok((mut contents, view)) => {
             let problems = std::mem::take(&mut contents.problems);
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
@@ -140,6 +177,7 @@ async fn open_wanted(
     items: Vec<Item>,
     motion_items: Vec<Item>,
     progress: &dyn Fn(&str, u64, u64),
+    show_early: &dyn Fn(Model),
 ) -> Result<(Contents, ViewerState), OpenError> {
     let (mut models, mut motions, mut environments, mut problem) = (Vec::new(), Vec::new(), Vec::new(), None);
     if !items.is_empty() {
@@ -158,7 +196,8 @@ async fn open_wanted(
         }
     }
     let held = Held { motions: &motions, environments: &environments };
-    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), held, progress).await?;
+    let early = motions.is_empty().then_some(show_early);
+    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), held, progress, early).await?;
     contents.models.extend(models);
     let is_wanted = |held: &Environment| wanted.lighting.environment == EnvironmentChoice::File(held.origin.clone());
     let light = environments.iter().position(is_wanted).map(|at| environments.swap_remove(at));
@@ -171,7 +210,7 @@ async fn open_fallback(
     wanted: ViewerState,
     mut problems: Vec<String>,
     progress: &dyn Fn(&str, u64, u64),
-) -> Result<(Contents, ViewerState, Vec<String>), String> {
+) -> Result<First, String> {
     let mut models = Vec::new();
     for motion in &wanted.sources.motion {
         match open_items(vec![Item::Address(motion.into())], Role::Model, progress).await {
@@ -198,7 +237,7 @@ pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     state.or_sample(samples::WALKER)
 }
 
-pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {
+pub(super) fn page() -> Result<Rc<Page>, String> {
     PAGE.with_borrow(Clone::clone).ok_or_else(|| "Gaitway has not started yet".to_owned())
 }
 

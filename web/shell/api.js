@@ -2,7 +2,7 @@
 import { takeNews } from "./load.js";
 import { open } from "./opening.js";
 import { parts } from "./parts.js";
-import { running, session, unlessStopped } from "./session.js";
+import { running, session, unlessStopped, whenComplete } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 
@@ -22,7 +22,7 @@ export const gaitway = {
   samples: JSON.parse(samples),
   parts,
   get ready() {
-    return session.started.then(() => undefined);
+    return whenComplete();
   },
   open: (items, { as } = {}) => open(items, { as }),
   state: () => ask("state"),
@@ -33,6 +33,7 @@ export const gaitway = {
     takeNews(await unlessStopped(app, app.apply(JSON.stringify(partial ?? null))));
   },
   async screenshot() {
+    await whenComplete();
     const app = await running();
     return new Blob([await unlessStopped(app, app.screenshot())], { type: "image/png" });
   },

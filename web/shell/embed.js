@@ -5,7 +5,7 @@ import { messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
 import { open } from "./opening.js";
 import { isPrivate, seenPrivate } from "./privacy.js";
-import { session } from "./session.js";
+import { whenComplete } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 /**
@@ -68,5 +68,5 @@ export function answerParent() {
     }
   });
   addEventListener("gaitway:change", () => tell("change"));
-  session.started.then(() => tell("ready"), () => tell("failed"));
+  whenComplete().then(() => tell("ready"), () => tell("failed"));
 }

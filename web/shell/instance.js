@@ -95,7 +95,7 @@ async function start(renderer) {
     const files = await Promise.all(sets.map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
     if (problem === null) {
-      keepOffline(programFiles(attempt));
+      session.completed.then(() => keepOffline(programFiles(attempt)));
       return;
     }
     problems.push(problem);
@@ -143,12 +143,15 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   }
   session.app = bindings;
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
+  // Not before: decoding and uploading images would delay the first picture without them.
+  const completed = (session.completed = Promise.race([bindings.complete(), aborted]).catch(() => ""));
   // Only a rehearsal: without it, files open a little later.
   whenIdle(async () => session.app === bindings && (await bindings.rehearse_opening().catch(() => {})));
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);
   showAwaited();
+  completed.then((problem) => session.app === bindings && problem !== "" && showMissing([problem], link));
   if (session.askedLink !== null) follow(session.askedLink);
   return null;
 }

@@ -26,6 +26,12 @@ export const session = {
    * @type {Promise<void>}
    */
   started: Promise.resolve(),
+  /**
+   * Resolves once the first model has its images, which may arrive after the first image is on screen, or to why it hasn't
+   * got them. Each start replaces it.
+   * @type {Promise<string>}
+   */
+  completed: Promise.resolve(""),
   /** Why the last instance stopped. */
   stopReason: /** @type {string | null} */ (null),
   /**
@@ -42,6 +48,9 @@ export async function running() {
   if (session.app === null) throw coded("lost-device", `Gaitway has stopped: ${session.stopReason}`);
   return session.app;
 }
+
+/** Resolves once the first image is on screen and its model is complete. */
+export const whenComplete = () => session.started.then(() => session.completed).then(() => {});
 
 /**
  * Returns an answer of the running instance, or rejects when the instance stops before it can give one.

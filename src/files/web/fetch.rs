@@ -10,7 +10,13 @@ use crate::files::source::Reading;
 /// A site that sends nothing for this long has given up.
 const MAX_SILENT_SECS: u32 = 20;
 
-pub async fn fetch(url: &str, name: &str, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
+/// Calls `on_bytes` with all that has arrived, whenever more of it has.
+pub async fn fetch(
+    url: &str,
+    name: &str,
+    reading: &mut Reading<'_>,
+    on_bytes: &dyn Fn(&[u8]),
+) -> Result<Vec<u8>, OpenError> {
     (reading.progress)(name, 0, 0);
     let unreachable = || OpenError::Unreachable { url: url.to_owned() };
     let window = web_sys::window().ok_or_else(unreachable)?;
@@ -49,6 +55,7 @@ pub async fn fetch(url: &str, name: &str, reading: &mut Reading<'_>) -> Result<V
         value.copy_to(&mut bytes[start..]);
         let received = bytes.len() as u64;
         (reading.progress)(name, received, if received > total { 0 } else { total });
+        on_bytes(&bytes);
     }
     Ok(bytes)
 }

@@ -4,6 +4,7 @@ mod fetch;
 mod images;
 mod parts;
 
+use std::cell::RefCell;
 use std::ffi::OsStr;
 
 use gaitway_part::Answer;
@@ -11,33 +12,39 @@ use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
 
 use super::source::{Content, Located, Progress, Reading, Source};
-use super::{Held, Item, OpenError, Role, open, raw_address, view};
+use super::{EarlyWatch, Held, Item, OpenError, Role, open, raw_address, view};
 use crate::asset::{Asset, Image};
 use crate::editor::Contents;
 use crate::formats::Preparation;
-use crate::library::ImageData;
+use crate::library::{ImageData, Model};
 use crate::samples;
 use crate::state::ViewerState;
 
 /// Opens one set of items.
 pub async fn open_items(items: Vec<Item>, role: Role, progress: Progress<'_>) -> Result<Contents, OpenError> {
-    open::open_items(&Web, items, role, progress).await
+    open::open_items(&Web::default(), items, role, progress).await
 }
 
 /// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. See
-/// `view` for the details.
+/// `view` for the details. `show_early` is called once nothing but the model's images is missing, if they take longer.
 pub async fn open_view(
     view: ViewerState,
     with_model: bool,
     held: Held<'_>,
     progress: Progress<'_>,
+    show_early: Option<&dyn Fn(Model)>,
 ) -> Result<(Contents, ViewerState), OpenError> {
-    view::open_view(&Web, view, with_model, held, progress).await
+    let early = show_early.and_then(|show| EarlyWatch::of(&view, show));
+    view::open_view(&Web { early: early.into() }, view, with_model, held, progress).await
 }
 
-struct Web;
+#[derive(Default)]
+struct Web<'a> {
+    /// Shows the only file that is opened before its images have arrived.
+    early: RefCell<Option<EarlyWatch<'a>>>,
+}
 
-impl Source for Web {
+impl Source for Web<'_> {
     /// The absolute URL.
     type Place = String;
     /// The URL of the file that refers to others.
@@ -77,7 +84,8 @@ impl Source for Web {
     }
 
     async fn read(&self, url: &String, name: &str, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
-        fetch::fetch(url, name, reading).await
+        let on_bytes = |bytes: &[u8]| self.early.borrow_mut().iter_mut().for_each(|early| early.notice(name, bytes));
+        fetch::fetch(url, name, reading, &on_bytes).await
     }
 
     async fn read_beside(
@@ -87,7 +95,7 @@ impl Source for Web {
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError> {
         let Some(url) = absolute(&escaped(path), Some(base)) else { return Ok(None) };
-        match fetch::fetch(&url, path, reading).await {
+        match fetch::fetch(&url, path, reading, &|_| ()).await {
             // Some hosts answer with an HTML page instead of an error.
             Ok(bytes) => Ok(Some(bytes).filter(|bytes| !is_html(bytes))),
             Err(error @ OpenError::TooLarge { .. }) => Err(error),

@@ -35,7 +35,7 @@ pub async fn convert(preparation: &Preparation, reading: &mut Reading<'_>) -> Re
 pub async fn download(part: Part, reading: &mut Reading<'_>) -> Result<Vec<u8>, String> {
     let url = part_url(part.name()).and_then(|url| absolute(&url, None));
     let url = url.ok_or("this page was built without it")?;
-    fetch::fetch(&url, part.title(), reading).await.map_err(|problem| problem.to_string())
+    fetch::fetch(&url, part.title(), reading, &|_| ()).await.map_err(|problem| problem.to_string())
 }
 
 /// Starts a part in a separate worker; [`finish`] waits for it.

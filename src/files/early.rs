@@ -1,0 +1,78 @@
+//! A model shown before its images have arrived. It is replaced once its file is complete; see `Editor::complete`.
+
+use crate::anim::TextureSlot;
+use crate::asset::Asset;
+use crate::editor::container_of;
+use crate::formats::{Early, FileSet, LoadOptions, early, load_named};
+use crate::library::{ImageData, Model};
+use crate::state::{EnvironmentChoice, MotionMap, ViewerState};
+
+/// Watches the download of a model for the moment from which it can be shown.
+pub struct EarlyWatch<'a> {
+    /// What a view lists to open the file again.
+    origin: String,
+    show: &'a dyn Fn(Model),
+    /// Nothing can be done with fewer bytes.
+    needed_bytes: usize,
+}
+
+impl<'a> EarlyWatch<'a> {
+    /// Returns a watch that calls `show` at most once; `None` if a view's model isn't all that it downloads.
+    pub fn of(view: &ViewerState, show: &'a dyn Fn(Model)) -> Option<Self> {
+        let [model] = &view.sources.model[..] else { return None };
+        let is_all = view.sources.motion.is_empty()
+            && !view.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)))
+            && !matches!(view.lighting.environment, EnvironmentChoice::File(_));
+        // A sample may consist of several files, and an archive does.
+        let is_file = !model.starts_with("sample:") && container_of(model) == model;
+        (is_all && is_file).then(|| Self { origin: model.clone(), show, needed_bytes: 0 })
+    }
+
+    /// Must be called with all that has arrived of the file `name`, whenever more of it has.
+    pub fn notice(&mut self, name: &str, bytes: &[u8]) {
+        if bytes.len() < self.needed_bytes {
+            return;
+        }
+        self.needed_bytes = match early(bytes) {
+            Some(Early::Wait(bytes)) => bytes,
+            Some(Early::Ready(glb)) => {
+                // Errors are those of the complete file.
+                open(&self.origin, name, glb).into_iter().for_each(self.show);
+                usize::MAX
+            }
+            None => usize::MAX,
+        };
+    }
+}
+
+fn open(origin: &str, name: &str, glb: Vec<u8>) -> Option<Model> {
+    let mut files = FileSet::default();
+    files.insert(name, glb);
+    let asset = load_named(&files, name, &LoadOptions { awaits_images: true, ..LoadOptions::default() }).ok()?;
+    let images = stand_ins(&asset);
+    Some(Model::new(origin.to_owned(), asset, images))
+}
+
+/// Returns a texel for each image. With a texture in its place, a surface already has the shaders that it keeps.
+fn stand_ins(asset: &Asset) -> Vec<Option<ImageData>> {
+    let mut images = vec![None; asset.images.len()];
+    for material in &asset.materials {
+        for slot in TextureSlot::ALL {
+            let texture = material.texture(slot).and_then(|reference| asset.textures.get(reference.texture));
+            if let Some(image) = texture.and_then(|texture| images.get_mut(texture.image?)) {
+                image.get_or_insert_with(|| ImageData::Rgba8 { width: 1, height: 1, pixels: texel(slot).into() });
+            }
+        }
+    }
+    images
+}
+
+fn texel(slot: TextureSlot) -> [u8; 4] {
+    match slot {
+        TextureSlot::Normal | TextureSlot::ClearcoatNormal => [128, 128, 255, 255],
+        // Rough, not metallic and not occluded.
+        TextureSlot::MetallicRoughness => [255, 255, 0, 255],
+        TextureSlot::Emissive | TextureSlot::Matcap | TextureSlot::ShadingShift => [0, 0, 0, 255],
+        _ => [255; 4],
+    }
+}
