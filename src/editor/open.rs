@@ -243,13 +243,13 @@ impl Editor {
         let Some(complete) = self.library.get(id) else { return Vec::new() };
         let main_file = |model: &Model| self.files_of(model).and_then(|files| files.set.original(&files.name));
         let (main, lacks) = (main_file(complete), lacking(complete));
-        // Many models are called “scene.gltf”.
+        // Many models are called “scene.gltf”. One that awaits its images has no file yet, but its whole URL as a name.
         let is_incomplete = |known: &&Model| {
             known.source == complete.source
                 && known.is_own == complete.is_own
                 && lacking(known) > lacks
                 && main.is_some()
-                && main_file(known) == main
+                && (awaits_images(known) || main_file(known) == main)
         };
         let closed: Vec<ModelId> = self.library.models().iter().filter(is_incomplete).map(|known| known.id).collect();
         closed.iter().for_each(|&id| self.library.close(id));
@@ -470,10 +470,14 @@ impl Editor {
     }
 }
 
+/// Whether a model is shown without its images, which have not arrived.
+fn awaits_images(model: &Model) -> bool {
+    model.asset.warnings.0.contains(&Warning::ImagesAwaited)
+}
+
 /// Number of images that a model lacks; the joints of an .obj count as one more.
 fn lacking(model: &Model) -> usize {
-    let is_awaiting = model.asset.warnings.0.contains(&Warning::ImagesAwaited);
-    let images = if is_awaiting { model.asset.images.len() } else { missing_images(&model.asset).len() };
+    let images = if awaits_images(model) { model.asset.images.len() } else { missing_images(&model.asset).len() };
     images + usize::from(is_jointless_obj(&model.source, &model.asset))
 }
 
