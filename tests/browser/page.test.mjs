@@ -270,6 +270,17 @@ for (const renderer of BACK_ENDS) {
         await whenWhole(page, "own.gltf");
       });
 
+    onPage("names the .gltf that lacks a file, not the file that was dropped last", {}, async (page) => {
+      const { gltf, buffer, image } = inPieces();
+      await drop(page, [gltf]);
+      await whenLacking(page, "own.bin");
+      await drop(page, [image]);
+      await page.locator("#mirror").getByText("Couldn't open own.gltf").waitFor({ state: "attached" });
+      await whenLacking(page, "own.bin");
+      await drop(page, [buffer]);
+      await whenModel(page, "own.gltf");
+    });
+
     onPage("gives a .gltf only the files that it lacks", {}, async (page) => {
       const { gltf, buffer, image } = inPieces();
       await drop(page, [gltf, buffer]);

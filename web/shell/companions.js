@@ -96,8 +96,12 @@ function withMesh(items) {
 }
 
 /**
- * Returns the items of both lists, the later ones of the same name.
+ * Returns the items of both lists, the later ones of the same name. The .gltf comes last: a failure is titled by the last file that
+ * was read.
  * @param {Item[]} before
  * @param {Item[]} items
  */
-const merged = (before, items) => [...new Map([...before, ...items].map((item) => [nameOf(item), item])).values()];
+function merged(before, items) {
+  const all = [...new Map([...before, ...items].map((item) => [nameOf(item), item])).values()];
+  return all.sort((one, other) => Number(isGltf(one)) - Number(isGltf(other)));
+}
