@@ -12,7 +12,10 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
         return;
     }
     let height = icon_size(ui, ICON_SIZE).y + 4.0;
-    let strip = Rect::from_min_size(rect.min + vec2(10.0, 10.0), vec2(rect.width() - 20.0, height));
+    // The viewport reaches under the corner of a sheet at its side.
+    let sheet = local.layout.sheet_rect.filter(|sheet| sheet.left() > rect.left());
+    let right = sheet.map_or(rect.right(), |sheet| sheet.left());
+    let strip = Rect::from_min_size(rect.min + vec2(10.0, 10.0), vec2(right - rect.left() - 20.0, height));
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     // Translucent, legible over any scene.
     let fill = style::palette(ui).panel.gamma_multiply(0.86);
