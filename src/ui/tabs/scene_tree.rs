@@ -148,7 +148,9 @@ impl SceneTree {
         let asset = &model.asset;
         let hidden = &shown.state.edits.hidden;
         let mut is_folded = false;
-        let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, false]);
+        // The few rows that a search leaves bring the card of the joint closer.
+        let is_searching = !self.search.is_empty();
+        let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, is_searching]);
         if let Some(offset) = self.scroll_offset(ui, shown, asset, rows) {
             area = area.vertical_scroll_offset(offset);
         }
