@@ -109,11 +109,23 @@ fn a_hand_is_pinned_to_another_joint() {
 #[test]
 fn a_head_looks_at_the_camera_or_a_point() {
     let mut harness = selected(WIDE, HEAD);
-    choice(&mut harness, text::LOOK, text::LOOK_AT_CAMERA);
+    choice(&mut harness, text::LOOK, text::LOOK_CAMERA);
     assert_eq!(pin_of(&harness, HEAD), Some(Pin { goal: PinGoal::Camera, times: None }));
-    choice(&mut harness, text::LOOK, text::LOOK_AT_POINT);
+    choice(&mut harness, text::LOOK, text::LOOK_POINT);
     assert!(matches!(pin_of(&harness, HEAD), Some(Pin { goal: PinGoal::Look(_), .. })));
     assert!(harness.query_by_label(text::PINNED_TO).is_none());
+}
+
+#[test]
+fn a_coordinate_that_rounds_to_zero_has_no_sign() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    let goal = PinGoal::Point(Vec3::new(-0.002, 1.0, -0.0));
+    harness.state_mut().editor.apply(Command::SetPin { joint: LEFT_HAND, pin: Some(Pin { goal, times: None }) });
+    harness.run();
+    let texts: Vec<_> = painted(&harness).into_iter().map(|(text, ..)| text).collect();
+    // A field is painted as three texts.
+    let numbers: Vec<_> = texts.windows(2).filter(|texts| texts[1] == " m").map(|texts| &texts[0]).collect();
+    assert_eq!(numbers, ["0.00", "1.00", "0.00"]);
 }
 
 /// A joint that isn't at the end of two bones has no such choice.

@@ -52,6 +52,11 @@ pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
     ui.horizontal(|ui| {
         for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
             let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).prefix(name).suffix(" m");
+            // Values that round to zero have no sign.
+            let field = field.custom_formatter(|value, decimals| {
+                let value = egui::emath::round_to_decimals(value, 2) + 0.0;
+                egui::emath::format_with_decimals_in_range(value, decimals)
+            });
             let field = field.update_while_editing(false);
             is_changed |= controls::sized(ui, [80.0, 26.0], field).accessible_name(name.trim_end()).changed();
         }

@@ -43,8 +43,8 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, ou
     let chosen = if is_head {
         let goals = [
             (None, text::NOT_PINNED),
-            (Some(PinGoal::Look(point_now)), text::LOOK_AT_POINT),
-            (Some(PinGoal::Camera), text::LOOK_AT_CAMERA),
+            (Some(PinGoal::Look(point_now)), text::LOOK_POINT),
+            (Some(PinGoal::Camera), text::LOOK_CAMERA),
         ];
         ui.label(text::LOOK);
         controls::segmented_about(ui, text::LOOK, Some(now), &goals)
@@ -128,5 +128,6 @@ fn times(ui: &mut Ui, shown: &Shown<'_>, model: &Model, times: &mut Option<PinTi
 pub fn rounded(model: &Model, at: Vec3) -> Vec3 {
     let size = model.rest_bounds().diagonal().clamp(1e-3, 1e6);
     let steps = 10_f32.powf(3.0 - size.log10().floor());
-    (steps * at).round() / steps
+    // Zero has no sign in fields and links.
+    (steps * at).round() / steps + Vec3::ZERO
 }

@@ -6,7 +6,11 @@ use crate::retarget::{PinGoal, PinTimes};
 /// Label of the choice of where the selected joint is held.
 pub const PIN: &str = "Pin";
 /// Label of the choice of what the selected joint looks at.
-pub const LOOK: &str = "Look";
+pub const LOOK: &str = "Look at";
+/// Choice: the joint looks at a fixed point.
+pub const LOOK_POINT: &str = "Point";
+/// Choice: the joint looks at the camera.
+pub const LOOK_CAMERA: &str = "Camera";
 /// Choice: the joint follows the clip.
 pub const NOT_PINNED: &str = "Off";
 /// Choice: the joint stays at a point.
