@@ -102,10 +102,10 @@ impl Plugin for Mirror {
 /// `group` for a menu, list or dialog), `name` and `rect` (left, top, width and height in points), and where they apply:
 /// `in` (the `id` of the innermost group around it), `value`, `description`, `now`, `min` and `max`, `checked` (`true`, `false` or
 /// `mixed`), `expanded`, `disabled`, `focusable`, `level`, `at` and `of` (its place in a list and the list's length, from 1),
-/// `row` (equal in the cells of a table's row).
+/// `row` (equal in the cells of a table's row), `list` (the name of the group of radio buttons that it is in).
 pub fn entries(update: &TreeUpdate) -> Vec<Value> {
     let nodes = update.nodes.iter().map(|(id, node)| (*id, node)).collect();
-    let mut list = List { nodes, entries: Vec::new(), row: None };
+    let mut list = List { nodes, entries: Vec::new(), row: None, radio_group: None };
     if let Some(tree) = &update.tree {
         list.add(tree.root, None, false);
     }
@@ -138,9 +138,11 @@ struct List<'a> {
     /// Bounds of the last tree row in the same layout. ARIA allows no controls in a row, so its buttons are left out; keys replace
     /// them: arrows expand the row, others act on the selection.
     row: Option<Rect>,
+    /// Name of the radio group around.
+    radio_group: Option<&'a str>,
 }
 
-impl List<'_> {
+impl<'a> List<'a> {
     /// Adds a node and its descendants. Text inside a control is the control's name; a menu is a child of the control that opened it.
     fn add(&mut self, id: NodeId, group: Option<NodeId>, is_in_control: bool) {
         let Some(node) = self.nodes.get(&id).copied() else { return };
@@ -165,8 +167,12 @@ impl List<'_> {
             Some(_) => (group, true),
             None => (group, is_in_control),
         };
-        let row = self.row;
+        let (row, radio_group) = (self.row, self.radio_group);
+        if node.role() == Role::RadioGroup {
+            self.radio_group = node.label();
+        }
         node.children().iter().for_each(|child| self.add(*child, group, is_in_control));
+        self.radio_group = radio_group;
         if role.is_none() {
             // The last row of a scrolled tree reaches under what comes below the tree.
             self.row = row;
@@ -209,6 +215,7 @@ impl List<'_> {
         set("at", node.position_in_set().map(|at| (at + 1).into()));
         set("of", node.size_of_set().map(Value::from));
         set("row", node.row_index().map(Value::from));
+        set("list", self.radio_group.filter(|_| role == "radio").map(Value::from));
         set("rect", node.bounds().map(|rect| json!([rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0])));
         entry
     }

@@ -154,7 +154,12 @@ for (const renderer of BACK_ENDS)
       // Arrow keys move the program's focus, and the keyboard follows.
       await control(page, "tab", "Scene").press("ArrowRight");
       await until(page, () => document.activeElement?.getAttribute("aria-label") === "Display");
+      await eventually(async () => (await control(page, "tab", "Display").getAttribute("aria-selected")) === "true");
+      await control(page, "tab", "Display").press("Home");
+      await eventually(async () => (await control(page, "tab", "Scene").getAttribute("aria-selected")) === "true");
       await control(page, "tab", "Camera").press("Enter");
+      const light = page.locator("#mirror").getByRole("radiogroup", { name: "Light", exact: true });
+      await light.getByRole("radio").first().waitFor({ state: "attached" });
       const exposure = control(page, "slider", /Exposure/);
       await exposure.press("ArrowRight");
       await until(page, async () => (await window.gaitway.state()).exposure !== 0);

@@ -75,6 +75,26 @@ fn the_button_below_a_scrolled_tree_is_listed() {
     }
 }
 
+#[test]
+fn radio_buttons_are_in_a_group_named_by_its_topic() {
+    let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    for (tab, topics) in [
+        (Tab::Display, vec![text::SKINNING, text::MOTION_SOURCE]),
+        (Tab::Camera, vec![text::BACKGROUND, text::LIGHT, text::TONE_MAP, text::UP_AXIS]),
+        (Tab::Motion, vec![text::MOTION_PART]),
+    ] {
+        harness.state_mut().panels.layout.tab = tab;
+        harness.run();
+        let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+        let entries = entries(&update);
+        let radios = entries.iter().filter(|entry| entry["role"] == "radio");
+        let named: BTreeSet<&str> = radios.map(|radio| radio["list"].as_str().expect("a group")).collect();
+        assert!(topics.iter().all(|topic| named.contains(topic)), "{topics:?} in {named:?}");
+    }
+}
+
 /// Minimum height of a control for fingers, as in web/theme.css.
 const TOUCH: f64 = 44.0;
 

@@ -9,9 +9,9 @@
 const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", img: "div", progressbar: "div" };
 /** The role that ARIA requires around another one. */
 const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "radiogroup", gridcell: "grid" });
-/** Accessible names of these lists. */
-const NAMES = { tablist: "Inspector", tree: "Nodes", radiogroup: "Choices", grid: "Joints and their sources" };
-const IN_LIST = Object.keys(NAMES).map((role) => `[role=${role}]`).join();
+/** Accessible names of these lists; radio buttons bring their group's. */
+const NAMES = { tablist: "Inspector", tree: "Nodes", grid: "Joints and their sources" };
+const IN_LIST = Object.values(LISTS).map((role) => `[role=${role}]`).join();
 /** Keys that an element handles itself, by its `type`. */
 const OWN_KEYS = {
   button: /^(Enter| )$/,
@@ -111,7 +111,7 @@ export class Mirror {
       update(element, entry);
       let parent = this.#elements.get(entry.in ?? "") ?? this.root;
       const list = LISTS[/** @type {keyof typeof LISTS} */ (entry.role)];
-      if (list !== undefined) parent = listIn(parent, list, ends);
+      if (list !== undefined) parent = listIn(parent, list, ends, entry.list);
       if (entry.row !== undefined) parent = listIn(parent, "row", ends, String(entry.row));
       const next = nextIn(parent, ends);
       if (next !== element) parent.insertBefore(element, next);
@@ -173,7 +173,10 @@ export class Mirror {
     const isCommand = ctrlKey || metaKey;
     const next = isCommand ? undefined : neighbourOf(target, key);
     if (next !== undefined) {
-      if (event.type === "keydown") next?.focus();
+      if (event.type === "keydown") {
+        next?.focus();
+        if (next?.dataset.role === "tab") next.click();
+      }
       event.preventDefault();
       return;
     }
@@ -246,9 +249,9 @@ const nextIn = (parent, ends) => ends.get(parent)?.nextSibling ?? (ends.has(pare
 /**
  * Returns the list of a role at the place where the next element goes.
  * @param {HTMLElement} parent
- * @param {keyof typeof NAMES | "row"} role
+ * @param {keyof typeof NAMES | "radiogroup" | "row"} role
  * @param {Ends} ends
- * @param {string} [key] Distinguishes adjacent lists of the same role.
+ * @param {string} [key] Distinguishes adjacent lists of the same role; the name of a radio group.
  */
 function listIn(parent, role, ends, key = "") {
   /** @param {Node | null | undefined} node */
@@ -259,7 +262,7 @@ function listIn(parent, role, ends, key = "") {
   const list = asList(next) ?? document.createElement("div");
   list.setAttribute("role", role);
   list.dataset.key = key;
-  if (role !== "row") list.setAttribute("aria-label", NAMES[role]);
+  if (role !== "row") list.setAttribute("aria-label", role === "radiogroup" ? key : NAMES[role]);
   if (list !== next) parent.insertBefore(list, next);
   ends.set(parent, list);
   return list;
@@ -277,15 +280,20 @@ function chooseStop(list) {
 }
 
 /**
- * Returns the element that an arrow key leads to in a list, null at its end; undefined for other keys and outside lists. In a tree,
- * left and right are left to the rows, which they collapse and expand.
+ * Returns the element that an arrow key leads to in a list, or Home and End among tabs, null at its end; undefined for other keys
+ * and outside lists. In a tree, left and right are left to the rows, which they collapse and expand.
  * @param {EventTarget | null} target
  * @param {string} key
  */
 function neighbourOf(target, key) {
   const list = target instanceof HTMLElement ? target.closest(IN_LIST) : null;
   const step = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1 }[key];
-  if (!(target instanceof HTMLElement) || list === null || step === undefined) return undefined;
+  if (!(target instanceof HTMLElement) || list === null) return undefined;
+  const items = itemsOf(list);
+  const end = { Home: 0, End: -1 }[key];
+  // Elsewhere these keys are the program's.
+  if (end !== undefined && list.role === "tablist") return items.at(end) ?? null;
+  if (step === undefined) return undefined;
   const [role, isSideways] = [list.getAttribute("role"), key === "ArrowLeft" || key === "ArrowRight"];
   if (role === "tree" && isSideways) return undefined;
   if (role === "grid" && !isSideways) {
@@ -297,7 +305,6 @@ function neighbourOf(target, key) {
     // A heading has one cell.
     return cells[Math.min([...(row?.children ?? [])].indexOf(target), cells.length - 1)] ?? null;
   }
-  const items = itemsOf(list);
   return items[items.indexOf(target) + step] ?? null;
 }
 

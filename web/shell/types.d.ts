@@ -77,6 +77,7 @@ export interface MirrorEntry {
   at?: number;
   of?: number;
   row?: number;
+  list?: string;
   /** Left, top, width and height in CSS pixels. */
   rect?: [number, number, number, number];
 }

@@ -259,7 +259,7 @@ fn head(
         (Section::Figures, text::FIT),
         (Section::Files, text::FILES),
     ];
-    if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
+    if let Some(part) = controls::segmented(ui, text::MOTION_PART, Some(local.motion.part), &parts) {
         local.motion.part = part;
     }
     ui.add_space(2.0);

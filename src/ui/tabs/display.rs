@@ -6,7 +6,7 @@ use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant};
-use crate::ui::controls::{self, SliderSettings};
+use crate::ui::controls::{self, SliderSettings, capitals};
 use crate::ui::{Output, Shown, text};
 
 /// The full name of a skinning method.
@@ -72,9 +72,9 @@ fn variants(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
 
 fn skinning(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
-    controls::section(ui, "SKINNING");
+    controls::section(ui, capitals!(text::SKINNING));
     let methods = COMPARED_SKINNING.map(|mode| (mode, text::skinning_method(mode)));
-    if let Some(mode) = controls::segmented(ui, Some(state.display.skinning), &methods) {
+    if let Some(mode) = controls::segmented(ui, text::SKINNING, Some(state.display.skinning), &methods) {
         out.commands.push(Command::SetSkinning(mode));
     }
     ui.add_space(2.0);
@@ -164,7 +164,7 @@ fn special_overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let show = shown.state.display.show;
     let Some(model) = shown.library.active().filter(|_| !shown.library.motions().is_empty()) else { return };
-    controls::section(ui, "MOTION SOURCE");
+    controls::section(ui, capitals!(text::MOTION_SOURCE));
     #[derive(Clone, Copy, PartialEq)]
     enum Place {
         Away,
@@ -177,7 +177,7 @@ fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         (true, true) => Place::Over,
     };
     let places = [(Place::Away, "Hidden"), (Place::Beside, "Beside"), (Place::Over, "Over")];
-    if let Some(place) = controls::segmented(ui, Some(place), &places) {
+    if let Some(place) = controls::segmented(ui, text::MOTION_SOURCE, Some(place), &places) {
         let (source, over) = (place != Place::Away, place == Place::Over);
         out.commands.push(Command::SetShow(Show { source, over, ..show }));
     }

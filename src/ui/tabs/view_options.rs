@@ -7,7 +7,7 @@ use crate::state::{
     Background, CameraChoice, Command, EnvironmentChoice, KeyLight, LightSetup, OrbitCamera, ToneMap, UpAxis,
     ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
-use crate::ui::controls::{self, SliderSettings};
+use crate::ui::controls::{self, SliderSettings, capitals};
 use crate::ui::{Output, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
 
 /// Settings of saved images and videos.
@@ -52,10 +52,10 @@ const MAX_PICTURE_SIZE: u32 = 4096;
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let aspect = local.viewport.aspect;
     camera(ui, shown, aspect, out);
-    controls::section(ui, "BACKGROUND");
+    controls::section(ui, capitals!(text::BACKGROUND));
     background(ui, shown.state.display.background, out);
     light(ui, shown, out);
-    controls::section(ui, "UP AXIS OF THE FILE");
+    controls::section(ui, capitals!(text::UP_AXIS));
     let axes = [
         (UpAxis::X, "X"),
         (UpAxis::Y, "Y"),
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         (UpAxis::MinusY, "−Y"),
         (UpAxis::MinusZ, "−Z"),
     ];
-    if let Some(up) = controls::segmented(ui, Some(shown.state.edits.up), &axes) {
+    if let Some(up) = controls::segmented(ui, text::UP_AXIS, Some(shown.state.edits.up), &axes) {
         out.commands.push(Command::SetUp(up));
     }
     ui.add_space(2.0);
@@ -77,7 +77,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
 fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: &mut Output) {
     controls::section(ui, "IMAGE AND VIDEO");
     let sizes = [([1280, 720], "720p"), ([1920, 1080], "1080p"), ([3840, 2160], "4K"), ([1080, 1080], text::SQUARE)];
-    if let Some(size) = controls::segmented(ui, Some(settings.size), &sizes) {
+    if let Some(size) = controls::segmented(ui, text::PICTURE_SIZE, Some(settings.size), &sizes) {
         settings.size = size;
     }
     ui.horizontal(|ui| {
@@ -260,7 +260,7 @@ fn background(ui: &mut Ui, now: Background, out: &mut Output) {
         (Background::Blurred, text::BLURRED),
         (Background::Transparent, text::NO_BACKGROUND),
     ];
-    if let Some(kind) = controls::segmented(ui, Some(now), &kinds) {
+    if let Some(kind) = controls::segmented(ui, text::BACKGROUND, Some(now), &kinds) {
         out.commands.push(Command::SetBackground(kind));
     }
     if is_color && ui.color_edit_button_srgb(&mut color).accessible_name("Background colour").changed() {

@@ -5,6 +5,8 @@ use crate::editor::ClipFormat;
 use crate::retarget::{RestChoice, Verdict};
 
 // Parts of the tab
+/// Choice of the part.
+pub const MOTION_PART: &str = "Part of the Motion tab";
 /// Part of the tab: the joint table.
 pub const JOINTS: &str = "Joints";
 /// Part of the tab: the retargeting options.

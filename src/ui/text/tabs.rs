@@ -158,6 +158,10 @@ pub fn skinning_method(mode: SkinningMode) -> &'static str {
     }
 }
 
+/// Choice of the skinning method.
+pub const SKINNING: &str = "Skinning";
+/// Choice of where the motion's own character is shown.
+pub const MOTION_SOURCE: &str = "Motion source";
 /// Switch that shows the three skinning methods side by side.
 pub const COMPARE_SKINNING: &str = "Compare all three";
 /// Switch in the Motion tab that shows the motion in its different rest poses side by side.
@@ -259,6 +263,8 @@ pub const SIDE: &str = "Side";
 pub const TOP: &str = "Top";
 /// Switch that moves the camera along with the character.
 pub const FOLLOW: &str = "Follow character";
+/// Choice of the file's up axis.
+pub const UP_AXIS: &str = "Up axis of the file";
 /// The Z axis, in the choice of the file's up axis.
 pub const UP_Z: &str = "Z";
 /// Exposure slider, in stops.
@@ -299,8 +305,12 @@ pub const BLURRED: &str = "Blurred";
 pub const STUDIO: &str = "Studio";
 /// A single colour, in the choice of background.
 pub const COLOR: &str = "Colour";
+/// Choice of what is behind the model.
+pub const BACKGROUND: &str = "Background";
 /// A transparent background, in the choice of background.
 pub const NO_BACKGROUND: &str = "None";
+/// Choice of the size of saved images and videos.
+pub const PICTURE_SIZE: &str = "Image size";
 /// Preset of 1080 × 1080 pixels, in the choice of image size.
 pub const SQUARE: &str = "Square";
 /// Switch that saves images without the background.

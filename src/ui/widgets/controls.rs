@@ -136,19 +136,19 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
 }
 
 /// Buttons of equal width, of which one is selected, in as many rows as their texts need; returns the value of the one that
-/// was pressed.
-pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
-    segmented_about(ui, "", chosen, choices)
+/// was pressed. The topic is the accessible name of their group.
+pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, topic: &str, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
+    segments(ui, chosen, choices, Segments::Choice { topic, is_named: false })
 }
 
-/// Like [`segmented`], with a topic that makes the accessible names of the buttons unambiguous.
+/// Like [`segmented`], but each button's accessible name begins with the topic, because the labels alone are ambiguous.
 pub fn segmented_about<T: Copy + PartialEq>(
     ui: &mut Ui,
-    about: &str,
+    topic: &str,
     chosen: Option<T>,
     choices: &[(T, &str)],
 ) -> Option<T> {
-    segments(ui, chosen, choices, Segments::Choice { about })
+    segments(ui, chosen, choices, Segments::Choice { topic, is_named: true })
 }
 
 /// The tabs of a panel, of which one is open, above a line; returns the one that was pressed. Some have a badge: a text about
@@ -177,8 +177,8 @@ fn columns(ui: &Ui, width: f32, texts: &mut dyn ExactSizeIterator<Item = &str>) 
 /// What a row of segments is.
 #[derive(Clone, Copy)]
 enum Segments<'a, T> {
-    /// Values to choose from, with the topic of [`segmented_about`].
-    Choice { about: &'a str },
+    /// Values to choose from. `is_named`: the topic is part of each accessible name.
+    Choice { topic: &'a str, is_named: bool },
     /// Tabs, with their badges.
     Tabs { badge: &'a dyn Fn(T) -> Option<String> },
 }
@@ -189,15 +189,30 @@ fn segments<T: Copy + PartialEq>(
     choices: &[(T, &str)],
     row: Segments<'_, T>,
 ) -> Option<T> {
+    let Segments::Choice { topic, .. } = row else { return segments_in(ui, chosen, choices, row) };
+    let group = egui::UiBuilder::new().accessibility_role(Role::RadioGroup);
+    ui.scope_builder(group, |ui| {
+        ui.ctx().accesskit_node_builder(ui.unique_id(), |node| node.set_label(topic));
+        segments_in(ui, chosen, choices, row)
+    })
+    .inner
+}
+
+fn segments_in<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    chosen: Option<T>,
+    choices: &[(T, &str)],
+    row: Segments<'_, T>,
+) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
     let (width, height) = (ui.available_width(), row_height(ui, ROW_HEIGHT));
     let (role, about, font, columns) = match row {
-        Segments::Choice { about } => {
+        Segments::Choice { topic, is_named } => {
             let columns = columns(ui, width, &mut choices.iter().map(|(_, label)| *label));
-            (Role::RadioButton, about, style::SMALL, columns)
+            (Role::RadioButton, is_named.then_some(topic), style::SMALL, columns)
         }
-        Segments::Tabs { .. } => (Role::Tab, "", style::BODY, choices.len().max(1)),
+        Segments::Tabs { .. } => (Role::Tab, None, style::BODY, choices.len().max(1)),
     };
     let rows = choices.len().div_ceil(columns).max(1);
     let (bar, whole) = ui.allocate_exact_size(vec2(width, rows as f32 * height), Sense::hover());
@@ -214,7 +229,7 @@ fn segments<T: Copy + PartialEq>(
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
         response.widget_info(|| {
-            let name = if about.is_empty() { (*label).to_owned() } else { text::labelled(about, label) };
+            let name = about.map_or_else(|| (*label).to_owned(), |topic| text::labelled(topic, label));
             WidgetInfo::selected(role, ui.is_enabled(), on, name)
         });
         segment(ui, cell, &response, on, label, font.clone());
