@@ -230,7 +230,8 @@ fn aria_role(node: &Node) -> Option<&'static str> {
         Role::CheckBox => "checkbox",
         Role::Switch => "switch",
         Role::RadioButton => "radio",
-        Role::Slider => "slider",
+        // Of ARIA's separators, screen readers don't tell that they can be moved.
+        Role::Slider | Role::Splitter => "slider",
         Role::SpinButton => "spinbutton",
         Role::TextInput | Role::SearchInput | Role::MultilineTextInput => "textbox",
         Role::ComboBox => "combobox",

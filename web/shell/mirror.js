@@ -12,6 +12,8 @@ const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "
 /** Accessible names of these lists; radio buttons bring their group's. */
 const NAMES = { tablist: "Inspector", tree: "Nodes", grid: "Joints and their sources" };
 const IN_LIST = Object.values(LISTS).map((role) => `[role=${role}]`).join();
+/** Roles of list entries that an arrow key chooses, not only reaches. */
+const CHOSEN_BY_ARROWS = ["tab", "radio"];
 /** Keys that an element handles itself, by its `type`. */
 const OWN_KEYS = {
   button: /^(Enter| )$/,
@@ -175,7 +177,7 @@ export class Mirror {
     if (next !== undefined) {
       if (event.type === "keydown") {
         next?.focus();
-        if (next?.dataset.role === "tab") next.click();
+        if (next !== null && CHOSEN_BY_ARROWS.includes(next.dataset.role ?? "")) next.click();
       }
       event.preventDefault();
       return;

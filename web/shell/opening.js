@@ -3,7 +3,7 @@
 import { askForRest, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { withCompanions } from "./companions.js";
-import { focusCanvas, frames, listOf, messageOf } from "./dom.js";
+import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
 import { fileName, heldItems, heldMotionsAndLight, nameOf } from "./held.js";
 import { follow } from "./following.js";
@@ -68,7 +68,8 @@ export async function openByHand(items, options) {
     // What was opened since has its own result.
     if (number === openedCount) sayProblem(messageOf(error));
   }
-  focusCanvas();
+  // The dialog has given the focus back to the control that opened it, if that is still there.
+  if (!byId("stage").contains(document.activeElement)) focusCanvas();
 }
 
 /**
