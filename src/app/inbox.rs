@@ -63,9 +63,6 @@ pub enum ScriptCall {
 pub struct Loads(Cell<u32>);
 
 impl Loads {
-    /// The number of the first load.
-    pub const FIRST: u32 = 1;
-
     /// Returns the number of a new load.
     pub fn start(&self) -> u32 {
         self.0.set(self.0.get() + 1);

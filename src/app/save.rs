@@ -5,6 +5,7 @@ use super::App;
 use super::Message;
 use crate::editor::ExportedFile;
 use crate::files::encode_png;
+use crate::library::Model;
 use crate::render::read_pixels;
 use crate::ui::Saved;
 
@@ -47,10 +48,13 @@ impl App {
     ) -> impl Future<Output = Result<ExportedFile, String>> + use<> {
         let name = format!("{}.png", self.editor.file_stem());
         let size = self.viewport.picture_size(asked);
-        let remark = (size != asked).then(|| {
+        let is_bare = self.editor.library().active().is_some_and(Model::awaits_images);
+        let remark = if size == asked {
+            is_bare.then(|| "The model's images have not arrived, so it shows none.".to_owned())
+        } else {
             let ([width, height], [asked_width, asked_height]) = (size, asked);
-            format!("It is {width} × {height} pixels: this device can't draw {asked_width} × {asked_height}.")
-        });
+            Some(format!("It is {width} × {height} pixels: this device can't draw {asked_width} × {asked_height}."))
+        };
         let (device, queue, texture) =
             self.viewport.draw_off_screen(self.editor.library(), self.editor.state(), size, transparent);
         self.viewport.give_image_away();

@@ -14,6 +14,10 @@ use crate::state::{
     ViewerState, active_clip, active_map, has_layers, looks_at_camera, pinned_clip, stacked_layers, written_skeleton,
 };
 
+/// Why a model without its images isn't written.
+const AWAITS_IMAGES: &str =
+    "the model's images have not arrived; wait until they have, or reload the page if you cancelled them";
+
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Export {
@@ -106,6 +110,14 @@ impl Editor {
         self.library.active().ok_or_else(|| "there is no model".to_owned())
     }
 
+    /// Returns the active model if its file can be written.
+    fn complete_model(&self) -> Result<&Model, String> {
+        match self.model()? {
+            model if model.awaits_images() => Err(AWAITS_IMAGES.to_owned()),
+            model => Ok(model),
+        }
+    }
+
     /// Writes joint names instead of numbers, for people to read.
     fn export_map(&self, motion: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
@@ -121,7 +133,7 @@ impl Editor {
 
     /// Writes a model of another format as glTF.
     fn export_whole(&self, posed: bool) -> Result<ExportedFile, String> {
-        let model = self.model()?;
+        let model = self.complete_model()?;
         let ModelFiles { set, name } = self.files_of(model).ok_or("this model has no file")?;
         let mut frame = Frame::default();
         evaluate(&self.library, &self.state, 1.0, &mut frame);
@@ -147,7 +159,7 @@ impl Editor {
 
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
-        let model = self.model()?;
+        let model = self.complete_model()?;
         if !is_derived(model, &self.state, clip) {
             return Err("the model's file already contains this clip".to_owned());
         }

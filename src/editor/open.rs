@@ -249,7 +249,7 @@ impl Editor {
                 && known.is_own == complete.is_own
                 && lacking(known) > lacks
                 && main.is_some()
-                && (awaits_images(known) || main_file(known) == main)
+                && (known.awaits_images() || main_file(known) == main)
         };
         let closed: Vec<ModelId> = self.library.models().iter().filter(is_incomplete).map(|known| known.id).collect();
         closed.iter().for_each(|&id| self.library.close(id));
@@ -470,14 +470,9 @@ impl Editor {
     }
 }
 
-/// Whether a model is shown without its images, which have not arrived.
-fn awaits_images(model: &Model) -> bool {
-    model.asset.warnings.0.contains(&Warning::ImagesAwaited)
-}
-
 /// Number of images that a model lacks; the joints of an .obj count as one more.
 fn lacking(model: &Model) -> usize {
-    let images = if awaits_images(model) { model.asset.images.len() } else { missing_images(&model.asset).len() };
+    let images = if model.awaits_images() { model.asset.images.len() } else { missing_images(&model.asset).len() };
     images + usize::from(is_jointless_obj(&model.source, &model.asset))
 }
 

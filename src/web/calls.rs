@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
-use super::page::{Page, page, state_of_link};
-use crate::app::{App, Loads, Message, Reply, ScriptCall};
+use super::page::{Cancel, Page, page, state_of_link};
+use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view};
 use crate::formats::{self, FileSet};
@@ -22,7 +22,7 @@ use crate::samples;
 use crate::state::{
     Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
 };
-use crate::ui::{Progress, title_and_hint};
+use crate::ui::{Progress, text, title_and_hint};
 
 /// Returns the font of the panels, for the rest of the page.
 #[wasm_bindgen]
@@ -157,25 +157,29 @@ pub async fn begin() -> Result<(), JsValue> {
 }
 
 /// Waits for the images of the model that [`run`](super::page::run) has shown without them, if so. Resolves to why they can't be
-/// shown: then the model stays as it is. To an empty text if they can be, or if the user cancels it.
+/// shown: then the model stays as it is. To an empty text if they can be, if the user cancels it or looks at another model.
 #[wasm_bindgen]
 pub async fn complete() -> String {
     let Ok(page) = page() else { return String::new() };
     let Some((model, rest)) = page.rest.take() else { return String::new() };
-    page.loads.start();
-    let rest = unless_cancelled(&page, rest).await;
-    if page.loads.is_latest(Loads::FIRST) {
+    let rest = unless_cancelled(&page.cancel_rest, rest).await;
+    if page.cancel_load.borrow().is_none() {
         page.inbox.send(Message::OpenFailedSilently);
     }
     let completed = match rest {
-        None => Ok(()),
+        None => {
+            page.inbox.send(Message::Notice(text::WITHOUT_IMAGES.to_owned()));
+            Ok(())
+        }
         Some(Err(problem)) => Err(problem),
         Some(Ok((mut contents, _, problems))) => match contents.models.pop() {
             Some(opened) if problems.is_empty() => with_app(&page, |app| app.complete(model, opened)).flatten(),
             _ => Err(problems.join("\n")),
         },
     };
-    completed.err().unwrap_or_default()
+    let is_active = |app: &mut App| app.library().active().is_some_and(|active| active.id == model);
+    let problem = completed.err().filter(|_| with_app(&page, is_active).unwrap_or_default());
+    problem.unwrap_or_default()
 }
 
 /// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
@@ -288,7 +292,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             }
         }
     };
-    let Some(opened) = unless_cancelled(page, read).await else {
+    let Some(opened) = unless_cancelled(&page.cancel_load, read).await else {
         // The last bytes may have arrived together with the click.
         page.inbox.send(Message::OpenFailedSilently);
         return Err(Refusal::cancelled("Opening was cancelled."));
@@ -312,13 +316,18 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     }
 }
 
-/// Awaits a load; `None` if the user cancels it.
-async fn unless_cancelled<T>(page: &Page, load: impl Future<Output = T>) -> Option<T> {
-    let cancelled = Promise::new(&mut |cancel, _| _ = page.cancel_load.replace(Some(cancel)));
-    match select(pin!(load), JsFuture::from(cancelled)).await {
+/// Awaits a load; `None` if the user cancels it, which the slot allows meanwhile.
+async fn unless_cancelled<T>(slot: &Cancel, load: impl Future<Output = T>) -> Option<T> {
+    let mut own = None;
+    let cancelled = Promise::new(&mut |cancel, _| own = Some(cancel));
+    slot.replace(own.clone());
+    let loaded = match select(pin!(load), JsFuture::from(cancelled)).await {
         Either::Left((loaded, _)) => Some(loaded),
         Either::Right(_) => None,
-    }
+    };
+    // A later load may have taken the slot.
+    slot.borrow_mut().take_if(|current| own.as_ref() == Some(current));
+    loaded
 }
 
 pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> Message {

@@ -29,14 +29,19 @@ pub(super) struct Page {
     pub context: egui::Context,
     pub shell: Shell,
     pub loads: Loads,
-    /// Cancels the latest load.
-    pub cancel_load: RefCell<Option<js_sys::Function>>,
+    /// Cancels the latest load, while there is one.
+    pub cancel_load: Cancel,
     /// The model that is shown without its images, and what resolves to its complete file.
     pub rest: RefCell<Option<(ModelId, Rest)>>,
+    /// Cancels that.
+    pub cancel_rest: Cancel,
 }
 
 /// The first contents with their view and the problems.
 pub(super) type First = (Contents, ViewerState, Vec<String>);
+
+/// Cancels what is being loaded; `None` if nothing is.
+pub(super) type Cancel = RefCell<Option<js_sys::Function>>;
 
 pub(super) type Rest = Pin<Box<dyn Future<Output = Result<First, String>>>>;
 
@@ -131,8 +136,9 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         return Err("Gaitway was stopped".to_owned());
     }
     let (inbox, context) = started.borrow_mut().take().ok_or("Gaitway couldn't start")?;
-    let (loads, cancel_load, rest) = (Loads::default(), RefCell::default(), RefCell::default());
-    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load, rest };
+    let (loads, rest) = (Loads::default(), RefCell::default());
+    let [cancel_load, cancel_rest] = [Cancel::default(), Cancel::default()];
+    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load, rest, cancel_rest };
     PAGE.with_borrow_mut(|slot| *slot = Some(Rc::new(page)));
     Ok(())
 }
@@ -151,8 +157,12 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     let progress = |name: &str, received: u64, total: u64| match page() {
-        // The model is shown, and nothing else has been opened since.
-        Ok(page) if page.loads.is_latest(Loads::FIRST) => page.inbox.send(progress_of(name, received, total)),
+        // The model is shown without its images. Other loads show their own progress.
+        Ok(page) if page.cancel_rest.borrow().is_some() => {
+            if page.cancel_load.borrow().is_none() {
+                page.inbox.send(progress_of(name, received, total));
+            }
+        }
         _ => shell.progress(name, received as f64, total as f64),
     };
     let show_early = |model: Model| {
@@ -267,7 +277,8 @@ impl Host for PageHost {
     }
 
     fn cancel_opening(&self) {
-        if let Some(cancel) = page().ok().and_then(|page| page.cancel_load.take()) {
+        let Ok(page) = page() else { return };
+        if let Some(cancel) = page.cancel_load.take().or_else(|| page.cancel_rest.take()) {
             let _ = cancel.call0(&JsValue::UNDEFINED);
         }
     }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import http from "node:http";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
-import { BACK_ENDS, apply, control, eventually, picture, startSite, state, until } from "./browser.mjs";
+import { BACK_ENDS, apply, control, eventually, open, picture, startSite, state, until } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
@@ -83,6 +83,8 @@ async function serveSlowly(file) {
   return {
     url: `http://127.0.0.1:${address.port}/cube.glb`,
     requests: () => requests,
+    /** Sends some more. */
+    more: () => waiting.forEach((response) => response.write(file.subarray(file.length - IMAGE_BYTES + 100, file.length - IMAGE_BYTES + 200))),
     finish: () => waiting.forEach((response) => response.end(file.subarray(file.length - IMAGE_BYTES + 100))),
     cut: () => waiting.forEach((response) => response.destroy()),
     isClosed: () => waiting.every((response) => response.closed),
@@ -173,14 +175,27 @@ for (const renderer of BACK_ENDS)
     });
 
     onPage("a connection that is lost is reported, and can be tried again", async (page, server) => {
+      await apply(page, { speed: 0.25 });
       server.cut();
       await page.locator("#missing").waitFor({ state: "visible" });
+      assert.equal(await page.locator("#missing-title").innerText(), "The images of the model couldn't be loaded");
       assert.match((await page.locator("#missing-parts li").allInnerTexts()).join(), /cube\.glb: the connection was lost after \d+ bytes/);
       assert.equal(await isReady(page), true, "nothing more is awaited");
       await eventually(async () => !(await says(page, "Opening cube.glb")), "the progress should be gone");
       await page.locator("#missing-again").click();
       await eventually(async () => isRed(await middle(page)), "the cube should get its image");
+      assert.equal(Object(await state(page)).speed, 0.25, "the view is kept");
       assert.equal(server.requests(), 2);
+    });
+
+    onPage("the rest is awaited beside what else is opened, and can be cancelled then", async (page, server) => {
+      await open(page, "sample:pilot");
+      await eventually(async () => !(await says(page, "Opening cube.glb")), "the other progress should end");
+      server.more();
+      await eventually(() => says(page, "Opening cube.glb"), "the progress should be shown again");
+      await control(page, "button", "Cancel").press("Enter");
+      await eventually(() => server.isClosed(), "the download should end");
+      assert.deepEqual(page.troubles, []);
     });
 
     onPage("the rest can be cancelled", async (page, server) => {
@@ -188,6 +203,7 @@ for (const renderer of BACK_ENDS)
       await eventually(() => isReady(page), "nothing more is awaited");
       await eventually(() => server.isClosed(), "the download should end");
       assert.ok(isWhite(await middle(page)), "the cube stays as it is");
+      await eventually(() => says(page, "without its images"), "the page should say so");
       assert.deepEqual(page.troubles, []);
     });
   });

@@ -47,7 +47,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     if (!isLatest() || problems.length === 0) return;
     // The address still has what the screen lacks.
     keepTypedAddress();
-    showMissing(problems, link, isUnchanged);
+    showMissing(problems, link, isUnchanged ? "all" : "parts");
   };
   try {
     const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
@@ -91,9 +91,9 @@ function lacksModel(models, isUnchanged) {
  * Lists the parts of a link that couldn't be loaded, and offers to try again.
  * @param {string[]} problems
  * @param {string} link
- * @param {boolean} [isUnchanged] Nothing of the link is shown.
+ * @param {"parts" | "all" | "images"} [missing] `all`: nothing of the link is shown; `images`: those of its model are missing.
  */
-export function showMissing(problems, link, isUnchanged = false) {
+export function showMissing(problems, link, missing = "parts") {
   if (problems.length === 0) return;
   sayProblem(problems.join(" "));
   showList("missing-parts", problems);
@@ -101,13 +101,16 @@ export function showMissing(problems, link, isUnchanged = false) {
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const models = linkedFiles(link).filter(({ role, name }) => role === "model" && failed.includes(fileName(name)));
   const isModel = models.length > 0;
-  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models.map(({ name }) => name));
-  byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
-  byId("missing-rest").textContent = isUnchanged
-    ? "The current view stays as it was."
-    : isModel
-      ? "“Try again” reloads the whole link."
-      : "Everything else is shown.";
+  if (isModel && lacksModel(models, missing === "all")) awaitCopies(link, models.map(({ name }) => name));
+  const what = missing === "images" ? "The images of the model" : isModel ? "The model in this link" : "Part of this link";
+  byId("missing-title").textContent = `${what} couldn't be loaded`;
+  const rest = {
+    parts: isModel ? "“Try again” reloads the whole link." : "Everything else is shown.",
+    all: "The current view stays as it was.",
+    images: "“Try again” reloads the model and keeps your changes.",
+  };
+  byId("missing-rest").textContent = rest[missing];
+  byId("missing-continue").textContent = `Continue without ${missing === "images" ? "them" : "it"}`;
   button("missing-again").onclick = () => {
     dialog("missing").close();
     if (heldItems(session.link).length + heldMotionsAndLight(session.link).length === 0) {

@@ -151,7 +151,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   summarize();
   showMissing(missing, awaited()?.link ?? link);
   showAwaited();
-  completed.then((problem) => session.app === bindings && problem !== "" && showMissing([problem], link));
+  completed.then((problem) => session.app === bindings && problem !== "" && showMissing([problem], session.link, "images"));
   if (session.askedLink !== null) follow(session.askedLink);
   return null;
 }

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, 
     }
     controls::section(ui, capitals!(text::KHRONOS_VALIDATOR));
     if !host.has_gltf {
-        controls::hint(ui, text::NO_GLTF);
+        controls::hint(ui, if model.awaits_images() { text::NO_GLTF_YET } else { text::NO_GLTF });
         return;
     }
     let validation = host.validation.as_ref().filter(|(of, _)| *of == model.id).map(|(_, validation)| validation);

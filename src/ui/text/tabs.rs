@@ -372,6 +372,8 @@ pub fn go_to(node: &str) -> String {
 
 /// Name of the validator: the heading of its section, and in front of its notices.
 pub const KHRONOS_VALIDATOR: &str = "Khronos validator";
+/// Shown for models whose file has not arrived completely.
+pub const NO_GLTF_YET: &str = "Checks the file once its images have arrived.";
 /// Shown for models of other formats, and for those without a file.
 pub const NO_GLTF: &str = "Checks only glTF files: .gltf, .glb, .vrm and .vrma.";
 /// Button that starts it.

@@ -71,6 +71,9 @@ pub fn amount_read(received_bytes: u64, total_bytes: u64) -> String {
     }
 }
 
+/// What to do about a model whose images the user did not wait for.
+pub const WITHOUT_IMAGES: &str = "The model is shown without its images. Reload the page to load them.";
+
 /// Returns the title of the error for a file that failed to open.
 pub fn couldnt_open(name: &str) -> String {
     format!("Couldn't open {name}")

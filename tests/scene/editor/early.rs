@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use gaitway::editor::{Contents, Editor, ModelFiles, OpenedModel};
+use gaitway::editor::{Contents, Editor, Export, ModelFiles, OpenedModel};
 use gaitway::files::{EarlyWatch, decode_images};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::{ImageData, Model, ModelId};
@@ -120,6 +120,19 @@ fn completing_a_model_changes_nothing_else() {
     let warnings: Vec<_> = model.findings().iter().map(|finding| finding.warning.code()).collect();
     assert!(!warnings.contains(&"images-awaited"), "{warnings:?}");
     assert!(editor.has_gltf());
+}
+
+#[test]
+fn a_model_is_exported_once_its_images_are_there() {
+    let (mut editor, id) = early_editor();
+    let whole = Export::FullModel { posed: false };
+    for what in [whole, Export::Model { clip: 0 }] {
+        let refused = editor.export(what).expect_err("the file has not arrived");
+        assert!(refused.contains("images have not arrived"), "{refused}");
+    }
+    editor.complete(id, complete(&file()), &mut any).expect("fits");
+    let exported = editor.export(whole).expect("the file is there");
+    assert!(exported.bytes.len() > 3 * 100_000, "{}", exported.bytes.len());
 }
 
 #[test]

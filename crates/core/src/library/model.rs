@@ -97,6 +97,11 @@ impl Model {
         }
     }
 
+    /// Whether the model was opened before its images had arrived, and they still haven't.
+    pub fn awaits_images(&self) -> bool {
+        self.asset.warnings.0.contains(&Warning::ImagesAwaited)
+    }
+
     /// Takes images and warnings from the same model, read from its complete file.
     pub(super) fn complete(&mut self, complete: Self) {
         (self.asset, self.images, self.findings) = (complete.asset, complete.images, OnceLock::new());
