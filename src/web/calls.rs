@@ -182,6 +182,32 @@ pub async fn complete() -> String {
     problem.unwrap_or_default()
 }
 
+/// Loads the active model's images again after [`complete`] has failed, and resolves to the same.
+#[wasm_bindgen]
+pub async fn complete_again() -> String {
+    let Ok(page) = page() else { return String::new() };
+    let bare = |app: &mut App| {
+        let model = app.library().active().filter(|model| model.awaits_images())?;
+        Some((model.id, model.origin.clone(), app.editor().state().clone()))
+    };
+    let Ok(Some((model, origin, state))) = with_app(&page, bare) else { return String::new() };
+    let reading = page.clone();
+    let rest = async move {
+        let progress = |name: &str, received: u64, total: u64| rest_progress(&reading, name, received, total);
+        let contents = open_items(vec![Item::Address(origin.into())], Role::Model, &progress).await;
+        contents.map(|contents| (contents, state, Vec::new())).map_err(|problem| problem.to_string())
+    };
+    page.rest.replace(Some((model, Box::pin(rest))));
+    complete().await
+}
+
+/// Shows how much of a model's complete file has arrived, while no other load shows its own progress.
+pub(super) fn rest_progress(page: &Page, name: &str, received_bytes: u64, total_bytes: u64) {
+    if page.cancel_load.borrow().is_none() {
+        page.inbox.send(progress_of(name, received_bytes, total_bytes));
+    }
+}
+
 /// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
 /// the rest pose; `isEmpty` is true without a model.
 #[wasm_bindgen]

@@ -11,7 +11,7 @@ use futures_util::future::{Either, select};
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
-use super::calls::{progress_of, with_app};
+use super::calls::{progress_of, rest_progress, with_app};
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
@@ -157,12 +157,8 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     let progress = |name: &str, received: u64, total: u64| match page() {
-        // The model is shown without its images. Other loads show their own progress.
-        Ok(page) if page.cancel_rest.borrow().is_some() => {
-            if page.cancel_load.borrow().is_none() {
-                page.inbox.send(progress_of(name, received, total));
-            }
-        }
+        // The model is shown without its images.
+        Ok(page) if page.cancel_rest.borrow().is_some() => rest_progress(&page, name, received, total),
         _ => shell.progress(name, received as f64, total as f64),
     };
     let show_early = |model: Model| {

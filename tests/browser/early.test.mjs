@@ -178,7 +178,7 @@ for (const renderer of BACK_ENDS)
       await apply(page, { speed: 0.25 });
       server.cut();
       await page.locator("#missing").waitFor({ state: "visible" });
-      assert.equal(await page.locator("#missing-title").innerText(), "The images of the model couldn't be loaded");
+      assert.equal(await page.locator("#missing-title").innerText(), "The images of this model couldn't be loaded");
       assert.match((await page.locator("#missing-parts li").allInnerTexts()).join(), /cube\.glb: the connection was lost after \d+ bytes/);
       assert.equal(await isReady(page), true, "nothing more is awaited");
       await eventually(async () => !(await says(page, "Opening cube.glb")), "the progress should be gone");
@@ -186,6 +186,9 @@ for (const renderer of BACK_ENDS)
       await eventually(async () => isRed(await middle(page)), "the cube should get its image");
       assert.equal(Object(await state(page)).speed, 0.25, "the view is kept");
       assert.equal(server.requests(), 2);
+      await page.keyboard.press("Control+z");
+      await eventually(async () => Object(await state(page)).speed === 1, "the speed is the only step");
+      assert.ok(isRed(await middle(page)));
     });
 
     onPage("the rest is awaited beside what else is opened, and can be cancelled then", async (page, server) => {

@@ -47,7 +47,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     if (!isLatest() || problems.length === 0) return;
     // The address still has what the screen lacks.
     keepTypedAddress();
-    showMissing(problems, link, isUnchanged ? "all" : "parts");
+    showMissing(problems, link, isUnchanged);
   };
   try {
     const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
@@ -91,35 +91,52 @@ function lacksModel(models, isUnchanged) {
  * Lists the parts of a link that couldn't be loaded, and offers to try again.
  * @param {string[]} problems
  * @param {string} link
- * @param {"parts" | "all" | "images"} [missing] `all`: nothing of the link is shown; `images`: those of its model are missing.
+ * @param {boolean} [isUnchanged] Nothing of the link is shown.
  */
-export function showMissing(problems, link, missing = "parts") {
+export function showMissing(problems, link, isUnchanged = false) {
   if (problems.length === 0) return;
-  sayProblem(problems.join(" "));
-  showList("missing-parts", problems);
   // A problem may name the absolute URL of a relative one, or only the file.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const models = linkedFiles(link).filter(({ role, name }) => role === "model" && failed.includes(fileName(name)));
   const isModel = models.length > 0;
-  if (isModel && lacksModel(models, missing === "all")) awaitCopies(link, models.map(({ name }) => name));
-  const what = missing === "images" ? "The images of the model" : isModel ? "The model in this link" : "Part of this link";
-  byId("missing-title").textContent = `${what} couldn't be loaded`;
-  const rest = {
-    parts: isModel ? "“Try again” reloads the whole link." : "Everything else is shown.",
-    all: "The current view stays as it was.",
-    images: "“Try again” reloads the model and keeps your changes.",
-  };
-  byId("missing-rest").textContent = rest[missing];
-  byId("missing-continue").textContent = `Continue without ${missing === "images" ? "them" : "it"}`;
+  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models.map(({ name }) => name));
+  showProblems(problems, {
+    title: `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`,
+    rest: isUnchanged ? "The current view stays as it was." : isModel ? "“Try again” reloads the whole link." : "Everything else is shown.",
+    without: "it",
+    again: () => {
+      if (heldItems(session.link).length + heldMotionsAndLight(session.link).length === 0) {
+        follow(link, {}, true);
+      } else {
+        session.link = link;
+        session.isLocal = localFiles(link).length > 0;
+        session.restart();
+      }
+    },
+  });
+}
+
+/**
+ * Says why the images of the model that is shown couldn't be loaded, and offers to load them `again`.
+ * @param {string} problem
+ * @param {() => void} again
+ */
+export const showMissingImages = (problem, again) =>
+  showProblems([problem], { title: "The images of this model couldn't be loaded", rest: "It is shown without them.", without: "them", again });
+
+/**
+ * @param {string[]} problems
+ * @param {{ title: string, rest: string, without: string, again: () => void }} texts And what trying again does.
+ */
+function showProblems(problems, { title, rest, without, again }) {
+  sayProblem(problems.join(" "));
+  showList("missing-parts", problems);
+  byId("missing-title").textContent = title;
+  byId("missing-rest").textContent = rest;
+  byId("missing-continue").textContent = `Continue without ${without}`;
   button("missing-again").onclick = () => {
     dialog("missing").close();
-    if (heldItems(session.link).length + heldMotionsAndLight(session.link).length === 0) {
-      follow(link, {}, true);
-    } else {
-      session.link = link;
-      session.isLocal = localFiles(link).length > 0;
-      session.restart();
-    }
+    again();
   };
   if (panel() === null && !dialog("missing").open) dialog("missing").showModal();
 }

@@ -7,7 +7,7 @@ import { summarize, viewChanged } from "./changes.js";
 import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
-import { follow, showMissing } from "./following.js";
+import { follow, showMissing, showMissingImages } from "./following.js";
 import { setInert, showGallery } from "./gallery.js";
 import { heldItems, heldMotionsAndLight } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
@@ -144,16 +144,29 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   session.app = bindings;
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
   // Not before: decoding and uploading images would delay the first picture without them.
-  const completed = (session.completed = Promise.race([bindings.complete(), aborted]).catch(() => ""));
+  awaitImages(bindings, bindings.complete(), aborted);
   // Only a rehearsal: without it, files open a little later.
   whenIdle(async () => session.app === bindings && (await bindings.rehearse_opening().catch(() => {})));
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);
   showAwaited();
-  completed.then((problem) => session.app === bindings && problem !== "" && showMissing([problem], session.link, "images"));
   if (session.askedLink !== null) follow(session.askedLink);
   return null;
+}
+
+/**
+ * Waits for the images of a model that is shown without them.
+ * @param {Bindings} bindings
+ * @param {Promise<string>} images
+ * @param {Promise<never>} aborted
+ */
+function awaitImages(bindings, images, aborted) {
+  session.completed = Promise.race([images, aborted]).catch(() => "");
+  session.completed.then((problem) => {
+    if (session.app !== bindings || problem === "") return;
+    showMissingImages(problem, () => awaitImages(bindings, bindings.complete_again(), aborted));
+  });
 }
 
 function newCanvas() {

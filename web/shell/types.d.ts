@@ -95,6 +95,7 @@ export interface Bindings {
   ): Promise<string>;
   font(): Uint8Array<ArrayBuffer>;
   complete(): Promise<string>;
+  complete_again(): Promise<string>;
   begin(): Promise<void>;
   rehearse_opening(): Promise<void>;
   destroy(): void;
