@@ -76,6 +76,7 @@ class RetargetOptions(TypedDict, total=False):
     yaw: _RootPart | None
     extract_root: bool
     feet: Literal["off", "plant"] | None
+    contacts: Literal["off", "keep"] | None
     translations: _Keep | None
     scales: _Keep | None
     rest_model: _Rest | None

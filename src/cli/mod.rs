@@ -37,7 +37,7 @@ use crate::editor::{ClipFormat, Editor};
 use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
-use crate::retarget::{Feet, Keep, RestChoice, RootPart};
+use crate::retarget::{Contacts, Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use edit::EditOptions;
 use failure::{Failure, Outcome};
@@ -207,6 +207,9 @@ struct RetargetOptions {
     /// Foot planting.
     #[arg(long, value_enum)]
     feet: Option<FeetArgument>,
+    /// Contacts of the body with itself.
+    #[arg(long, value_enum)]
+    contacts: Option<ContactsArgument>,
     /// Translations of joints other than the hips.
     #[arg(long, value_enum)]
     translations: Option<KeepArgument>,
@@ -246,6 +249,7 @@ macro_rules! arguments_of {
 arguments_of! {
     RootPartArgument of RootPart { Keep, InPlace, Freeze }
     FeetArgument of Feet { Off, Plant }
+    ContactsArgument of Contacts { Off, Keep }
     KeepArgument of Keep { Auto, Keep, Drop }
     FormatArgument of ClipFormat { Glb, Bvh, Vrma }
     RestArgument of RestChoice { Auto, Node, Bind, FirstFrame }

@@ -177,6 +177,7 @@ fn apply_options(map: &mut JointMap, options: &RetargetOptions) {
     set(&mut map.root.yaw, options.yaw);
     map.root.extract |= options.extract_root;
     map.feet = options.feet.map_or(map.feet, Into::into);
+    map.contacts = options.contacts.map_or(map.contacts, Into::into);
     map.translations = options.translations.map_or(map.translations, Into::into);
     map.scales = options.scales.map_or(map.scales, Into::into);
     map.rest.model = options.rest_model.map_or(map.rest.model, Into::into);
@@ -302,6 +303,8 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          hover             {}\n\
          sole penetration  {}\n\
          joint penetration {}\n\
+         self-penetration  {}\n\
+         contact error     {}\n\
          planted feet      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
@@ -320,6 +323,8 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.foot_hover_metres_mean, " m"),
         number(figures.sole_penetration_metres_max, " m"),
         number(figures.ground_penetration_metres_max, " m"),
+        number(figures.self_penetration_share.map(|share| 100.0 * share), " %"),
+        number(figures.contact_error_metres_mean, " m"),
         retargeted.planting.map_or("–".to_owned(), |planting| planting.to_string()),
     )
 }

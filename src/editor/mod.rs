@@ -275,6 +275,7 @@ fn affects_retargeting(command: &Command) -> bool {
             | Command::SetUnmapped(_)
             | Command::SetRoot(_)
             | Command::SetFeet(_)
+            | Command::SetContacts(_)
             | Command::ChangeClip { .. }
     )
 }

@@ -31,10 +31,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetPlaying(playing) => set_playing(state, model, playing),
         Command::TogglePlaying => set_playing(state, model, !state.playback.playing),
         Command::Seek(time_secs) => seek(state, model, time_secs),
-        Command::Advance(clock_secs) => {
-            advance_turntable(state, library, clock_secs);
-            advance(state, model, clock_secs);
-        }
+        Command::Advance(clock_secs) => advance_clock(state, library, clock_secs),
         Command::StepFrames(frames) => step(state, model, frames),
         Command::SetSpeed(speed) => set_f64(&mut state.playback.speed, speed, 0.1, 4.0),
         Command::SetLoopMode(mode) => set_loop_mode(state, model, mode),
@@ -81,8 +78,14 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.set_feet(feet),
+        Command::SetContacts(contacts) => state.retarget.contacts = contacts,
         Command::ReconcileMaps(maps) => state.retarget.map = maps,
     }
+}
+
+fn advance_clock(state: &mut ViewerState, library: &Library, clock_secs: f64) {
+    advance_turntable(state, library, clock_secs);
+    advance(state, library.active(), clock_secs);
 }
 
 /// Replaces the whole state, checking each number as if it had been set alone. Indices are not checked against the model, which

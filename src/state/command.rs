@@ -6,7 +6,7 @@ use super::{
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Feet, JointMap, Pin, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Contacts, Feet, JointMap, Pin, RootOptions, Unmapped};
 
 /// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
@@ -182,6 +182,8 @@ pub enum Command {
     SetRoot(Option<RootOptions>),
     /// Overrides what feet do; `None` leaves it to each map.
     SetFeet(Option<Feet>),
+    /// Overrides what contacts do; `None` leaves it to each map.
+    SetContacts(Option<Contacts>),
     /// Replaces the maps by what is left of them once they are reconciled with the loaded files; not an edit of the user's.
     ReconcileMaps(Vec<MotionMap>),
 }

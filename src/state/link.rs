@@ -155,6 +155,7 @@ const KEYS: &[Key] = &[
         "horizontal:, vertical: or yaw: with keep, in-place or freeze, and extract"
     ),
     key!("feet", retarget.feet, read_some(read_feet), write_some(feet_text), "off or plant"),
+    key!("contacts", retarget.contacts, read_some(read_contacts), write_some(contacts_text), "off or keep"),
     key!("scene", sources.scene, read_index, write_index, "a scene's index"),
     key!("clip", playhead.clip, read_clip, write_clip, "a clip's name or index"),
     key!("t", playhead.time_secs, finite, write_number, "seconds"),

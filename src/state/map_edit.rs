@@ -69,6 +69,7 @@ pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize
             map = *new;
             (state.retarget.unmapped, state.retarget.root) = (None, None);
             state.retarget.set_feet(None);
+            state.retarget.contacts = None;
         }
         MapEdit::Clear => map.joints.clear(),
         MapEdit::SwapSides => {

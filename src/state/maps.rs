@@ -43,6 +43,7 @@ pub fn active_map(library: &Library, state: &ViewerState, motion: usize) -> Opti
     }
     map.root = state.retarget.root.unwrap_or(map.root);
     map.feet = state.retarget.feet.unwrap_or(map.feet);
+    map.contacts = state.retarget.contacts.unwrap_or(map.contacts);
     Some(map)
 }
 

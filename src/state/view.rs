@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Feet, Pin, RootOptions, Unmapped};
+use crate::retarget::{ClipChanges, ClipLayer, Contacts, Feet, Pin, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -143,6 +143,8 @@ pub struct RetargetEdits {
     pub root: Option<RootOptions>,
     /// Overrides what feet do; `None` leaves it to each map.
     pub feet: Option<Feet>,
+    /// Overrides what contacts do; `None` leaves it to each map.
+    pub contacts: Option<Contacts>,
     /// The editor planted the feet, not a view or the user. Links don't have it, so it isn't written.
     #[serde(skip)]
     pub feet_are_automatic: bool,

@@ -36,7 +36,8 @@ const X: &str =
 const MAP: &[u8] = br##"{"gaitway_map":1,"joints":{"spine":{"source":"neck"},"#3":{"source":5,"correction":[0,0,0,1]},
     "middle":{"source":null,"unmapped":{"clip":0,"hold":"first-key"}}},"unmapped":"rest","rest":{"model":"auto","motion":"bind"},
     "root":{"horizontal":"keep","vertical":"in-place","yaw":"freeze","extract":true},"translations":"auto","scales":"drop",
-    "muted_channels":[{"source":"hips","property":"translation"}],"feet":"plant","crossfade_secs":0.5}"##;
+    "muted_channels":[{"source":"hips","property":"translation"}],"feet":"plant","contacts":"keep",
+    "crossfade_secs":0.5}"##;
 const LINK: &[u8] = b"v=1&model=sample:pilot&motion=https://example.org/walk.bvh&clip=Run&t=0.5&play=0&speed=2&loop=once&\
     range=0.1,0.9&skinning=rigid&morph=0:1&pose=3:10,20,30&show=skeleton,grid&camera=90,10,4,0,1,0&fov=35&map=1.ffffffff.0-5,1-&\
     zoo=1%262&up=z&exposure=1.5&background=ff8800";

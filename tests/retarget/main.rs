@@ -13,6 +13,7 @@ mod real;
 mod skeletons;
 
 mod change;
+mod contacts;
 mod coursework;
 mod feet;
 mod figure;

@@ -81,6 +81,12 @@ pub fn load_people(folder: &Path) -> Vec<Loaded> {
     PEOPLE.iter().map(|person| load_person(folder, person)).collect()
 }
 
+/// Loads the person of one file.
+pub fn load_one(folder: &Path, name: &str) -> Loaded {
+    let person = PEOPLE.iter().find(|person| person.file.ends_with(name));
+    load_person(folder, person.unwrap_or_else(|| panic!("{name} is no person")))
+}
+
 fn load_person(folder: &Path, person: &'static Person) -> Loaded {
     let bytes = std::fs::read(folder.join(person.file)).unwrap_or_else(|error| panic!("{}: {error}", person.file));
     let name = person.file.rsplit('/').next().unwrap_or(person.file);

@@ -137,6 +137,8 @@ fn retarget_reports_the_documented_keys() {
         "foot_hover_metres_mean",
         "sole_penetration_metres_max",
         "largest_turn_degrees_per_frame",
+        "self_penetration_share",
+        "contact_error_metres_mean",
         "coverage",
     ] {
         assert!(report["figures"].get(key).is_some(), "{key}");

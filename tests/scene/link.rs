@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
     MutedChannel, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
@@ -57,6 +57,7 @@ fn some_maps() -> Vec<MotionMap> {
         root: RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() },
         muted_channels: vec![MutedChannel { source: 4, property: None }],
         feet: Feet::Plant,
+        contacts: Contacts::Keep,
         crossfade_secs: 0.25,
         ..JointMap::default()
     };
@@ -109,6 +110,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
             }),
         ),
         ("retarget.feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
+        ("retarget.contacts", with(&|state| state.retarget.contacts = Some(Contacts::Keep))),
         ("sources.scene", with(&|state| state.sources.scene = Some(2))),
         ("playhead.clip", with(&|state| state.playhead.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
         ("playhead.time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
@@ -403,7 +405,14 @@ fn parts_of_a_map_are_easy_to_write_manually() {
     );
     check_read(
         "feet=off",
-        ViewerState { retarget: RetargetEdits { feet: Some(Feet::Off), ..default.retarget }, ..default },
+        ViewerState {
+            retarget: RetargetEdits { feet: Some(Feet::Off), ..default.retarget.clone() },
+            ..default.clone()
+        },
+    );
+    check_read(
+        "contacts=keep",
+        ViewerState { retarget: RetargetEdits { contacts: Some(Contacts::Keep), ..default.retarget }, ..default },
     );
 }
 
@@ -434,6 +443,7 @@ fn bad_values_are_reported_and_skipped() {
     check_bad("root=fly", "root");
     check_bad("root=", "root");
     check_bad("feet=bare", "feet");
+    check_bad("contacts=plant", "contacts");
     check_bad("pose=3:1:2", "pose");
     check_bad("pose=3:1:2:3:4", "pose");
     check_bad("pose=hips:1:2:3", "pose");

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Feet, JointMap, LayerMask, LayerMode, MapEntry, Pin, PinGoal, PinTimes,
-    RootOptions, RootPart, Unmapped,
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, LayerMask, LayerMode, MapEntry, Pin, PinGoal,
+    PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
@@ -88,7 +88,9 @@ impl Random {
         });
         let joints: BTreeMap<usize, MapEntry> = joints.collect();
         let root = if self.often() { self.root() } else { RootOptions::default() };
-        let map = JointMap { joints, root, feet: self.one(&[Feet::Off, Feet::Plant]), ..JointMap::default() };
+        let feet = self.one(&[Feet::Off, Feet::Plant]);
+        let contacts = self.one(&[Contacts::Off, Contacts::Keep]);
+        let map = JointMap { joints, root, feet, contacts, ..JointMap::default() };
         MotionMap::Numbers(NumberedMap { checksum: self.word(), map })
     }
 
@@ -107,7 +109,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..41 {
+        for field in 0..42 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -228,10 +230,9 @@ impl Random {
             37 => state.edits.clips = self.clips(),
             38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
             39 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
+            41 => state.retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),
             26 => state.camera_options.turntable = self.number(),
-            27 => {
-                state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();
-            }
+            27 => state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect(),
             28 => {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });

@@ -9,8 +9,8 @@ use gaitway::editor::reconciled_maps;
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
-    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
-    RootPart, Unmapped,
+    ClipRef, Contacts, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices,
+    RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
@@ -205,11 +205,12 @@ fn a_cleared_map_stays_empty_until_edited() {
 fn every_member_of_a_loaded_map_is_applied() {
     let (library, mut state) = walker_with_motion();
     apply(&mut state, &library, Command::SetFeet(Some(Feet::Off)));
+    apply(&mut state, &library, Command::SetContacts(Some(Contacts::Off)));
     apply(&mut state, &library, Command::SetRoot(Some(RootOptions { yaw: RootPart::Freeze, ..Default::default() })));
-    let new = JointMap { feet: Feet::Plant, ..map(&library, &state) };
+    let new = JointMap { feet: Feet::Plant, contacts: Contacts::Keep, ..map(&library, &state) };
     let state = edited(&library, &state, MapEdit::Load(Box::new(new.clone())));
     assert_eq!(map(&library, &state), new);
-    assert_eq!((state.retarget.root, state.retarget.feet), (None, None));
+    assert_eq!((state.retarget.root, state.retarget.feet, state.retarget.contacts), (None, None, None));
 }
 
 #[test]
@@ -316,6 +317,7 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
         scales: _,
         muted_channels: _,
         feet: _,
+        contacts: _,
         crossfade_secs: _,
     } = JointMap::default();
     let with = |change: &dyn Fn(&mut JointMap)| {
@@ -351,6 +353,7 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
             }),
         ),
         ("feet", with(&|map| map.feet = Feet::Plant)),
+        ("contacts", with(&|map| map.contacts = Contacts::Keep)),
         ("crossfade_secs", with(&|map| map.crossfade_secs = 0.15)),
     ]
 }

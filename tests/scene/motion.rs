@@ -10,7 +10,7 @@ use gaitway::editor::{MapProblem, reconciled_maps};
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion, names_checksum};
 use gaitway::retarget::{
-    ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
+    ClipRef, Contacts, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
     ClipChoice, Command, History, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map, active_maps,
@@ -221,19 +221,22 @@ fn overrides_take_precedence_over_the_map() {
         Command::SetRoot(Some(root)),
         Command::SetUnmapped(Some(unmapped.clone())),
         Command::SetFeet(Some(Feet::Plant)),
+        Command::SetContacts(Some(Contacts::Keep)),
     ] {
         apply(&mut state, &library, command);
     }
     let map = active_map(&library, &state, 0).expect("a map");
-    assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, ..own.clone() });
+    assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, contacts: Contacts::Keep, ..own.clone() });
     // Editing a joint doesn't write them into the map.
     let head = number(&library, "Head");
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: None });
-    for command in [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None)] {
+    let cleared =
+        [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None), Command::SetContacts(None)];
+    for command in cleared {
         apply(&mut state, &library, command);
     }
     let map = active_map(&library, &state, 0).expect("a map");
-    assert_eq!((map.root, map.unmapped, map.feet), (own.root, own.unmapped, own.feet));
+    assert_eq!((map.root, map.unmapped, map.feet, map.contacts), (own.root, own.unmapped, own.feet, own.contacts));
 }
 
 #[test]

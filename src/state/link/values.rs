@@ -11,7 +11,7 @@ use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapped};
+use crate::retarget::{ClipRef, Contacts, Feet, JointMapFile, RootOptions, RootPart, Unmapped};
 use crate::state::{
     Background, CameraChoice, Channel, ClipChoice, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
     VertexChoice,
@@ -19,6 +19,8 @@ use crate::state::{
 use crate::state::{EnvironmentChoice, KeyLight, LightSetup, LookTarget, ToneMap, ViewerState, map_code};
 
 const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
+
+const CONTACTS: [(&str, Contacts); 2] = [("off", Contacts::Off), ("keep", Contacts::Keep)];
 
 const ROOT_PARTS: [(&str, RootPart); 3] =
     [("keep", RootPart::Keep), ("in-place", RootPart::InPlace), ("freeze", RootPart::Freeze)];
@@ -126,6 +128,14 @@ pub(super) fn read_feet(text: &str) -> Option<Feet> {
 
 pub(super) fn feet_text(feet: &Feet) -> String {
     word_of(&FEET, feet)
+}
+
+pub(super) fn read_contacts(text: &str) -> Option<Contacts> {
+    from_word(&CONTACTS, text)
+}
+
+pub(super) fn contacts_text(contacts: &Contacts) -> String {
+    word_of(&CONTACTS, contacts)
 }
 
 pub(super) fn flag_text(flag: bool) -> &'static str {

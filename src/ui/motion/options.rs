@@ -6,7 +6,9 @@ use egui::{RichText, Ui};
 
 use super::{Contents, Pairing};
 use crate::editor::{ClipFormat, Export, derived_clip};
-use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
+use crate::retarget::{
+    ClipRef, Contacts, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
+};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Output, Saved, Shown, UiAction, style, text};
@@ -26,7 +28,7 @@ pub(super) fn show(
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     let inspect = shown.state.inspect;
-    controls::section(ui, "FEET");
+    controls::section(ui, "FEET AND CONTACTS");
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, text::PLANT_FEET, planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
@@ -35,6 +37,11 @@ pub(super) fn show(
         controls::hint(ui, text::PLANTED_AUTOMATICALLY);
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
+    let kept = map.contacts == Contacts::Keep;
+    if controls::switch(ui, text::KEEP_CONTACTS, kept) {
+        out.commands.push(Command::SetContacts(Some(if kept { Contacts::Off } else { Contacts::Keep })));
+    }
+    controls::hint(ui, "Hands touch the body where the motion's do, and arms stay out of it.");
 
     root_motion(ui, map.root, out);
 

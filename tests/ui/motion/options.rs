@@ -6,7 +6,7 @@ use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::Contents;
 use gaitway::files::{Role, read_paths};
 use gaitway::library::{Library, Motion};
-use gaitway::retarget::{ClipRef, Feet, Keep, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{ClipRef, Contacts, Feet, Keep, RestChoice, RootOptions, RootPart, Unmapped};
 use gaitway::samples;
 use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
@@ -31,10 +31,13 @@ fn options_set_root_motion_foot_planting_and_rest_poses() {
     assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
     assert_eq!(reach(&mut harness, text::PLANT_FEET), [plant]);
+    let keep = Command::SetContacts(Some(Contacts::Keep));
+    assert_eq!(reach(&mut harness, text::KEEP_CONTACTS), [keep]);
     reach(&mut harness, text::REST_OF_MODEL);
     press(&mut harness, text::rest_choice(RestChoice::Bind));
     let now = map(&harness, 0);
-    assert_eq!((now.rest.model, now.root, now.feet), (RestChoice::Bind, root, Feet::Plant));
+    let options = (now.rest.model, now.root, now.feet, now.contacts);
+    assert_eq!(options, (RestChoice::Bind, root, Feet::Plant, Contacts::Keep));
 }
 
 #[test]

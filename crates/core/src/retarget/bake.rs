@@ -1,8 +1,9 @@
 //! Puts the transferred channels together into a clip of the target.
 
+use super::contacts::{Bodies, kept_contacts};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
-use super::map::{Feet, Pair};
+use super::map::{Contacts, Feet, Pair};
 use super::pose::{ancestry, is_within, node_locals};
 use super::transfer::{
     CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, extraction_joint, hips_channels,
@@ -54,14 +55,27 @@ pub struct Retargeted {
     pub resampled: Vec<JointIndex>,
     /// The options ask for root motion to be extracted, but no joint above the hips is free to carry it.
     pub nowhere_to_extract: bool,
-    /// The clip before its feet were planted, if they were.
+    /// The clip before its feet were planted and its contacts kept, if either was.
     pub unplanted: Option<Clip>,
     /// What planting did; `None` if feet aren't planted, or the map has no whole leg.
     pub planting: Option<Planting>,
 }
 
-/// Retargets the clip and plants its feet if the map asks for it.
-pub fn bake(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
+/// Retargets the clip, then plants its feet and keeps its contacts if the map asks for it.
+pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>) -> Result<Retargeted, RetargetError> {
+    let planted = bake_planted(transfer)?;
+    let kept = match transfer.map.contacts {
+        Contacts::Off => None,
+        Contacts::Keep => {
+            bodies().and_then(|bodies| kept_contacts(transfer, bodies, &planted.clip, &planted.resampled))
+        }
+    };
+    let Some(channels) = kept else { return Ok(planted) };
+    let built = build(transfer, reattached(transfer, channels)?)?;
+    Ok(Retargeted { unplanted: planted.unplanted.or(Some(planted.clip)), planting: planted.planting, ..built })
+}
+
+fn bake_planted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     let unplanted = bake_unplanted(transfer)?;
     let planted = match transfer.map.feet {
         Feet::Off => None,
@@ -72,7 +86,7 @@ pub fn bake(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     Ok(Retargeted { unplanted: Some(unplanted.clip), planting: Some(planting), ..built })
 }
 
-/// Moves detached ends of limbs to where planting put their limbs.
+/// Moves detached ends of limbs to where planting or contacts put their limbs.
 fn reattached(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Vec<NewChannel>, RetargetError> {
     let ends = detached_ends(transfer);
     if !ends.is_empty() {

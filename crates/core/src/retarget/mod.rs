@@ -2,9 +2,9 @@
 //! format.
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
-//! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
-//! with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts others over it, and `pins` holds hands and
-//! feet. `pose`, `keys`, `math` and `two_bones` are shared by all.
+//! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps contacts of the body, `bake`
+//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts
+//! others over it, and `pins` holds hands and feet. `pose`, `keys`, `math` and `two_bones` are shared by all.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -30,6 +30,7 @@
 mod align;
 mod bake;
 mod change;
+mod contacts;
 mod feet;
 mod keys;
 mod map;
@@ -48,8 +49,8 @@ pub use bake::{RetargetError, Retargeted};
 pub use change::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 pub use feet::Planting;
 pub use map::{
-    ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
-    Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
+    Pair, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
     opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};

@@ -1,10 +1,13 @@
 //! The public entry: two bodies, a clip and a joint map, aligned once and then baked, measured or staged.
 
+use std::sync::OnceLock;
+
 use glam::Affine3A;
 
 use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
 use super::align::{Alignment, Rest, align};
 use super::bake::{RetargetError, Retargeted, bake};
+use super::contacts::Bodies;
 use super::keys::tracks::SourceTracks;
 use super::map::ResolvedMap;
 use super::measure::{Figures, FootTrack, MeasuredClip, StagePair, measure, model_from_source, stage_pairs};
@@ -32,6 +35,8 @@ pub struct Retargeting<'a> {
     alignment: Alignment,
     hips: Option<Hips>,
     rest: FoundRest,
+    /// Fitted to the meshes when first needed; `None` if no limb is mapped.
+    bodies: OnceLock<Option<Bodies>>,
 }
 
 impl<'a> Retargeting<'a> {
@@ -73,7 +78,7 @@ impl<'a> Retargeting<'a> {
             target_slots: model.slots,
         });
         let hips = hips.map(|hips| if is_in_place { hips } else { hips.resting_as_target() });
-        Ok(Self { model, source, map, tracks, alignment, hips, rest: found })
+        Ok(Self { model, source, map, tracks, alignment, hips, rest: found, bodies: OnceLock::new() })
     }
 
     /// Returns the motion's rest pose: its origin and confidence.
@@ -84,6 +89,7 @@ impl<'a> Retargeting<'a> {
     fn transfer(&self) -> Transfer<'_> {
         Transfer {
             map: self.map,
+            source: self.source.asset,
             tracks: &self.tracks,
             target_skeleton: &self.model.asset.skeleton,
             target: self.model.asset,
@@ -92,12 +98,17 @@ impl<'a> Retargeting<'a> {
         }
     }
 
+    fn bodies(&self) -> Option<&Bodies> {
+        let slots = [self.source.slots, self.model.slots];
+        self.bodies.get_or_init(|| Bodies::new(&self.transfer(), slots)).as_ref()
+    }
+
     /// Retargets the clip.
     ///
     /// # Errors
     /// If the source's keys do not make a valid channel.
     pub fn bake(&self) -> Result<Retargeted, RetargetError> {
-        bake(&self.transfer())
+        bake(&self.transfer(), || self.bodies())
     }
 
     /// Measures what [`Retargeting::bake`] returned.
@@ -105,10 +116,11 @@ impl<'a> Retargeting<'a> {
         self.measure(&retargeted.clip, retargeted.unplanted.as_ref()).0
     }
 
-    /// Measures any clip of the model. Orientations are compared in `unplanted`, the same clip without planted feet, if
-    /// there is one.
+    /// Measures any clip of the model. Orientations are compared in `unplanted`, the same clip without planted feet and
+    /// kept contacts, if there is one.
     pub fn measure(&self, clip: &Clip, unplanted: Option<&Clip>) -> (Figures, Vec<FootTrack>) {
-        measure(&self.transfer(), self.source.slots, self.model.slots, MeasuredClip { clip, unplanted })
+        let slots = [self.source.slots, self.model.slots];
+        measure(&self.transfer(), self.bodies(), slots, MeasuredClip { clip, unplanted })
     }
 
     /// Brings the source into the model's space: facing the same way, with the hips at the same place and height.

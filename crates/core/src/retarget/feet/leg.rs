@@ -94,19 +94,29 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
 }
 
-/// Local rotations of hip, knee and ankle that turn the leg while the foot keeps its direction.
-pub fn turned_locals(leg: &Leg, skeleton: &Skeleton, pose: &WorldPose, turns: LegTurns) -> [DQuat; 3] {
-    let local = |joint: JointIndex, parent_turn: DQuat, own_turn: DQuat| {
-        let parent = pose.parent_rotation(skeleton, joint);
-        unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(joint))
-    };
+/// Local rotations of hip, knee and ankle that turn the leg in each pose while the foot keeps its direction; likewise of an arm's
+/// joints. `turns` are those of thigh and shin in the common frame.
+pub fn limb_rotations(
+    skeleton: &Skeleton,
+    [hip, knee, ankle]: [JointIndex; 3],
+    poses: &[WorldPose],
+    [thighs, shins]: [&[DQuat]; 2],
+) -> [(JointIndex, Vec<DQuat>); 3] {
     // A foot that is not parented to its shin does not turn with it, nor does such a shin with its thigh.
-    let carried = |joint: JointIndex, limb: JointIndex, turn: DQuat| {
-        if is_within(skeleton, joint, limb) { turn } else { DQuat::IDENTITY }
-    };
-    [
-        local(leg.hip, DQuat::IDENTITY, turns.thigh),
-        local(leg.knee, carried(leg.knee, leg.hip, turns.thigh), turns.shin),
-        local(leg.ankle, carried(leg.ankle, leg.knee, turns.shin), DQuat::IDENTITY),
-    ]
+    let knee_is_carried = is_within(skeleton, knee, hip);
+    let ankle_is_carried = is_within(skeleton, ankle, knee);
+    let mut rotations = [hip, knee, ankle].map(|joint| (joint, Vec::with_capacity(poses.len())));
+    for ((pose, &thigh), &shin) in poses.iter().zip(thighs).zip(shins) {
+        let parent_turns = [
+            DQuat::IDENTITY,
+            if knee_is_carried { thigh } else { DQuat::IDENTITY },
+            if ankle_is_carried { shin } else { DQuat::IDENTITY },
+        ];
+        let own_turns = [thigh, shin, DQuat::IDENTITY];
+        for (((joint, rotations), parent_turn), own_turn) in rotations.iter_mut().zip(parent_turns).zip(own_turns) {
+            let parent = pose.parent_rotation(skeleton, *joint);
+            rotations.push(unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(*joint)));
+        }
+    }
+    rotations
 }

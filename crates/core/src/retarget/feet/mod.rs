@@ -11,6 +11,9 @@ mod plant;
 mod sole;
 mod width;
 
+pub use body::near;
 pub use contacts::{SourceContacts, source_contacts, source_height};
-pub use plant::{Planting, planted_channels};
+pub use leg::limb_rotations;
+pub use limit::limit_turns;
+pub use plant::{Planting, dense_times, planted_channels};
 pub use sole::{Sole, Soles};

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::body::{body_shifts, means, near};
 use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
 use super::height::{floats, hover, lower};
-use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
+use super::leg::{Leg, drop_to_reach, limb_rotations, solve_leg};
 use super::level::level_feet;
 use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
@@ -111,7 +111,12 @@ pub fn planted_channels(
         lowered_metres != 0.0 || floats.iter().any(|&by| by != 0.0) || moves.iter().any(|&by| by != DVec3::ZERO)
     });
     let translation = hips.map(|hips| moved_hips(transfer, stage, hips, &moves, own.clone()));
-    let mut channels = kept_channels(clip, resampled, hips, &rotations);
+    let is_replaced = |joint: JointIndex, property: Property| match property {
+        Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
+        Property::Translation => hips == Some(joint),
+        Property::Scale | Property::MorphWeights => false,
+    };
+    let mut channels = NewChannel::of_clip(clip, resampled, is_replaced);
     channels.extend(translation);
     for (joint, keys) in rotations {
         let keys = keys.into_iter().map(DQuat::as_quat).collect();
@@ -119,29 +124,6 @@ pub fn planted_channels(
     }
     let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * source_ground.speed;
     Some((channels, Planting { contacts, ground_metres_per_sec: is_moving.then_some(speed), lowered_metres }))
-}
-
-/// The channels of the clip that planting leaves alone.
-fn kept_channels(
-    clip: &Clip,
-    resampled: &[JointIndex],
-    hips: Option<JointIndex>,
-    rotations: &[(JointIndex, Vec<DQuat>)],
-) -> Vec<NewChannel> {
-    let is_replaced = |joint: JointIndex, property: Property| match property {
-        Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
-        Property::Translation => hips == Some(joint),
-        Property::Scale | Property::MorphWeights => false,
-    };
-    let kept = clip.channels().iter().filter(|channel| !is_replaced(channel.joint, channel.keys.property()));
-    let kept = kept.map(|channel| NewChannel {
-        joint: channel.joint,
-        interpolation: channel.interpolation,
-        times: clip.timelines()[channel.timeline as usize].clone(),
-        keys: channel.keys.clone(),
-        resampled: resampled.contains(&channel.joint),
-    });
-    kept.collect()
 }
 
 /// The hips' translation, lowered with the poses and then moved for the feet.
@@ -212,7 +194,7 @@ fn leg_length(transfer: &Transfer, legs: &[LegContacts]) -> f64 {
 }
 
 /// The clip's key times, and more where these are far apart and just before a jump.
-fn dense_times(clip: &Clip) -> Vec<f32> {
+pub fn dense_times(clip: &Clip) -> Vec<f32> {
     let keys = union(clip.timelines().iter().map(Vec::as_slice));
     let stepped = clip.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
     let jumps = union(stepped.map(|channel| clip.timelines()[channel.timeline as usize].as_slice()));
@@ -303,13 +285,9 @@ fn leg_rotations(
         let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
         limit_turns(stage.times, &mut thighs, max_turn, max_rate);
         limit_turns(stage.times, &mut shins, max_turn, max_rate);
-        let mut keys: [Vec<DQuat>; 3] = Default::default();
-        for at in own.clone() {
-            let turns = LegTurns { thigh: thighs[at], shin: shins[at] };
-            let locals = turned_locals(leg, transfer.target_skeleton, &stage.poses[at], turns);
-            keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
-        }
-        rotations.extend([leg.hip, leg.knee, leg.ankle].into_iter().zip(keys));
+        let joints = [leg.hip, leg.knee, leg.ankle];
+        let turns = [&thighs[own.clone()], &shins[own.clone()]];
+        rotations.extend(limb_rotations(transfer.target_skeleton, joints, &stage.poses[own.clone()], turns));
     }
     rotations
 }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Quat, Vec3};
 
 use super::resample::Resampled;
-use crate::anim::{Interpolation, JointIndex, Keys};
+use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
 
 /// Keys for one property of a target joint.
 #[derive(Debug, Clone)]
@@ -30,6 +30,23 @@ impl NewChannel {
     pub fn resampled_translation(joint: JointIndex, positions: Resampled<DVec3>) -> Self {
         let values = positions.values.into_iter().map(DVec3::as_vec3).collect();
         Self::resampled(joint, positions.times, Keys::Translation(values))
+    }
+
+    /// Copies the channels of a clip that aren't replaced. `resampled` lists the joints whose keys are not the source's own.
+    pub fn of_clip(
+        clip: &Clip,
+        resampled: &[JointIndex],
+        is_replaced: impl Fn(JointIndex, Property) -> bool,
+    ) -> Vec<Self> {
+        let kept = clip.channels().iter().filter(|channel| !is_replaced(channel.joint, channel.keys.property()));
+        let kept = kept.map(|channel| Self {
+            joint: channel.joint,
+            interpolation: channel.interpolation,
+            times: clip.timelines()[channel.timeline as usize].clone(),
+            keys: channel.keys.clone(),
+            resampled: resampled.contains(&channel.joint),
+        });
+        kept.collect()
     }
 
     /// Repeats the last value at a later time.

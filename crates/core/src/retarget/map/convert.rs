@@ -107,6 +107,7 @@ impl JointMapFile {
             scales: self.scales,
             muted_channels,
             feet: self.feet,
+            contacts: self.contacts,
             crossfade_secs: self.crossfade_secs,
         }
     }
@@ -149,6 +150,7 @@ impl JointMap {
             scales: self.scales,
             muted_channels: muted.collect(),
             feet: self.feet,
+            contacts: self.contacts,
             crossfade_secs: self.crossfade_secs,
         }
     }

@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 
 use super::error::MapError;
 use super::joint_map::{MapEntry, MutedChannel};
-use super::options::{Feet, Keep, RestChoices, RootOptions};
+use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
 use crate::json_text::{offset_of, path_at, place};
 
@@ -43,6 +43,9 @@ pub struct JointMapFile {
     /// Whether feet are planted.
     #[serde(default)]
     pub feet: Feet,
+    /// Whether contacts of the body with itself are kept.
+    #[serde(default, skip_serializing_if = "Contacts::is_off")]
+    pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.
     #[serde(default)]
     pub crossfade_secs: f64,
@@ -183,6 +186,7 @@ impl Default for JointMapFile {
             scales: Keep::Auto,
             muted_channels: Vec::new(),
             feet: Feet::Off,
+            contacts: Contacts::Off,
             crossfade_secs: 0.0,
         }
     }

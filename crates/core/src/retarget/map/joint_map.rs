@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::Quat;
 use serde::{Deserialize, Serialize};
 
-use super::options::{Feet, Keep, RestChoices, RootOptions};
+use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
 
 /// A joint map for one model and one motion. Joints without an entry have no source.
@@ -29,6 +29,8 @@ pub struct JointMap {
     pub muted_channels: Vec<MutedChannel>,
     /// Whether feet are planted.
     pub feet: Feet,
+    /// Whether contacts of the body with itself are kept.
+    pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,
 }

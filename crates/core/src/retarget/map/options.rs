@@ -74,6 +74,24 @@ pub enum Keep {
     Drop,
 }
 
+/// What happens to contacts of the body with itself after retargeting.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Contacts {
+    /// Leaves them where the retargeted rotations put them.
+    #[default]
+    Off,
+    /// Keeps hands where the source's touch its body, and arms out of other body parts.
+    Keep,
+}
+
+impl Contacts {
+    /// Whether maps may leave the option out.
+    pub fn is_off(&self) -> bool {
+        *self == Self::Off
+    }
+}
+
 /// What happens to the feet after retargeting.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

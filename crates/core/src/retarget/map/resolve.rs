@@ -41,6 +41,7 @@ impl JointMap {
             scales: self.scales,
             muted: resolve_muted(&self.muted_channels, &motion.skeleton)?,
             feet: self.feet,
+            contacts: self.contacts,
             crossfade_secs: self.crossfade_secs,
         })
     }

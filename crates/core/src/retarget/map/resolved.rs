@@ -2,7 +2,7 @@
 
 use glam::Quat;
 
-use super::options::{Feet, Keep, RestChoices, RootOptions};
+use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
 use crate::anim::{JointIndex, Property};
 
 /// A joint map in joint indices, checked against both skeletons.
@@ -24,6 +24,8 @@ pub struct ResolvedMap {
     pub muted: Vec<(JointIndex, Property)>,
     /// Whether feet are planted.
     pub feet: Feet,
+    /// Whether contacts of the body with itself are kept.
+    pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,
 }

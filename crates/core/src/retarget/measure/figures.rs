@@ -9,6 +9,7 @@ use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
+use crate::retarget::contacts::{Bodies, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
@@ -47,6 +48,11 @@ pub struct Figures {
     pub sole_penetration_metres_max: Option<f64>,
     /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
     pub largest_turn_degrees_per_frame: Option<f64>,
+    /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
+    /// parts are solids fitted to the mesh; `None` without one.
+    pub self_penetration_share: Option<f64>,
+    /// Mean distance of the source's contacts with itself from where the target has them.
+    pub contact_error_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -64,11 +70,14 @@ const FACING: [(Slot, Slot); 6] = [
 /// Joints that shouldn't be below the ground.
 const ON_GROUND: [Slot; 4] = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes];
 
+/// Contacts of the body are looked for a bit more than 30 times per second.
+const TOUCH_STEP_SECS: f32 = 0.03;
+
 /// A clip of the target to measure.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredClip<'a> {
     pub clip: &'a Clip,
-    /// The same without planted feet, if they are planted.
+    /// The same without planted feet and kept contacts, if they are.
     pub unplanted: Option<&'a Clip>,
 }
 
@@ -99,8 +108,8 @@ impl Spread {
 /// Measures a clip and tracks its feet over time.
 pub fn measure(
     transfer: &Transfer,
-    source_slots: &Humanoid,
-    target_slots: &Humanoid,
+    bodies: Option<&Bodies>,
+    [source_slots, target_slots]: [&Humanoid; 2],
     measured: MeasuredClip,
 ) -> (Figures, Vec<FootTrack>) {
     let times = measured_times(transfer.tracks.clip);
@@ -116,16 +125,13 @@ pub fn measure(
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet);
     let pairs = &transfer.map.pairs;
-    let mut source_pose = PartialPose::new(
-        transfer.tracks.skeleton,
-        transfer.alignment.source.world_from_model,
-        pairs.iter().map(|pair| pair.source),
-    );
+    let mut source_pose = mapped_source(transfer);
     // The feet themselves are mapped; joints of their soles may not be.
     let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
     let targets: Vec<JointIndex> =
         pairs.iter().map(|pair| pair.target).chain(ground_joints.iter().copied()).chain(of_soles).collect();
     let [mut target_clip, mut unplanted_clip] = [(); 2].map(|()| PlayedClip::new(transfer, &targets));
+    let touches = touches(transfer, bodies, measured.clip);
     for (index, &time) in times.iter().enumerate() {
         let source = source_pose.update(transfer.tracks.locals_at(time));
         let target = target_clip.pose(measured.clip, time);
@@ -162,6 +168,8 @@ pub fn measure(
         foot_hover_metres_mean: contacts.hover,
         sole_penetration_metres_max: sole_penetration,
         largest_turn_degrees_per_frame: largest_turn,
+        self_penetration_share: touches.self_penetration_share(),
+        contact_error_metres_mean: touches.contact_error(),
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)
@@ -173,6 +181,12 @@ fn mapped_segments<'a>(
     segments: impl Iterator<Item = (Slot, Slot)>,
 ) -> Vec<(&'a Pair, &'a Pair)> {
     segments.filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect()
+}
+
+/// The mapped joints of the source, in the common frame.
+fn mapped_source<'a>(transfer: &Transfer<'a>) -> PartialPose<'a> {
+    let joints = transfer.map.pairs.iter().map(|pair| pair.source);
+    PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, joints)
 }
 
 /// The measured joints of the target, in the common frame.
@@ -257,6 +271,25 @@ fn with_travel(
     let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
     let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
     turned + removed.horizontal(index)
+}
+
+/// Measures contacts of the body on the clip, at even steps; nothing if the target has no mesh.
+fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFigures {
+    let mut figures = TouchFigures::default();
+    let Some(bodies) = bodies.filter(|bodies| bodies.target.has_mesh) else { return figures };
+    let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
+    let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
+    let source = bodies.source_frames(transfer, &times);
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, &times);
+    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let mut target = PlayedClip::new(transfer, &bodies.target.joints);
+    for (&time, touches) in times.iter().zip(bodies.touches(&times, &source)) {
+        let target = bodies.target.frames(target.pose(clip, time));
+        let yaw = removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time));
+        figures.add(bodies, &touches, &target, (DQuat::from_rotation_y(yaw), scale));
+    }
+    figures
 }
 
 fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {

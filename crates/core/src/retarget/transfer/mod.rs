@@ -30,10 +30,12 @@ use crate::asset::{Asset, Slot};
 #[derive(Debug, Clone, Copy)]
 pub struct Transfer<'a> {
     pub map: &'a ResolvedMap,
+    /// The file that the clip is from, for its mesh.
+    pub source: &'a Asset,
     /// The source's skeleton and clip.
     pub tracks: &'a SourceTracks<'a>,
     pub target_skeleton: &'a Skeleton,
-    /// The file that `target_skeleton` is from, for the mesh of its feet.
+    /// The file that `target_skeleton` is from, for its mesh.
     pub target: &'a Asset,
     pub alignment: &'a Alignment,
     pub hips: Option<&'a Hips>,

@@ -1,0 +1,257 @@
+//! Moves hands to where the source's touch, and arms out of other parts of the body: how far each wrist moves, smooth over time,
+//! and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as they are.
+
+use glam::{DQuat, DVec3};
+
+use super::arm::Arm;
+use super::body::{Bodies, Frames, place_of};
+use super::smooth::eased;
+use super::touch::Touches;
+use crate::anim::{Clip, JointIndex, Keys, Property};
+use crate::retarget::feet::{dense_times, limb_rotations, limit_turns};
+use crate::retarget::keys::channel::NewChannel;
+use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+
+/// Touching and pushing out in turns, since each disturbs the other, and then both at once.
+const ROUNDS: usize = 2;
+const COMPROMISES: usize = 2;
+
+/// Weight of a point that is as deep inside as the body is high, against that of a contact.
+const PUSH_WEIGHT: f64 = 10.0;
+
+/// Shares of the body's height: a wrist is never moved further than the first, and moves below the second are none.
+const MAX_MOVE: f64 = 0.13;
+const MIN_MOVE: f64 = 1e-4;
+
+/// A point that is less deep than this share of the body's height stays.
+const TOLERATED: f64 = 0.002;
+
+/// A point that is deeper than that by this share is pushed out fully.
+const CLEARLY_INSIDE: f64 = 0.003;
+
+/// How far an upper arm or forearm may be turned, and how fast.
+const MAX_TURN_DEGREES: f64 = 50.0;
+const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
+
+/// One moment of the clip.
+struct Moment {
+    /// With the arms moved so far.
+    frames: Frames,
+    touches: Touches,
+    /// Turn and scale.
+    target_from_source: (DQuat, f64),
+}
+
+/// What the points of one arm want its wrist to do: a weighted least-squares fit.
+#[derive(Clone, Copy, Default)]
+struct Wish {
+    sum: DVec3,
+    squares: f64,
+    /// How much the most urgent point wants it.
+    share: f64,
+}
+
+/// A point of a limb that is deeper inside another part than it may be.
+struct Overlap {
+    pair: usize,
+    point: usize,
+    excess: f64,
+    outward: DVec3,
+}
+
+struct Solver<'a> {
+    bodies: &'a Bodies,
+    times: Vec<f32>,
+    /// The clip without corrections.
+    poses: Vec<WorldPose>,
+    moments: Vec<Moment>,
+    arms: [Option<Arm>; 2],
+    /// How far each wrist moves, at each time.
+    moves: [Vec<DVec3>; 2],
+}
+
+/// Returns all channels of the clip with its contacts kept, or `None` if there is nothing to do. `resampled` lists the joints whose
+/// keys in `clip` are not the source's own.
+pub fn kept_contacts(
+    transfer: &Transfer,
+    bodies: &Bodies,
+    clip: &Clip,
+    resampled: &[JointIndex],
+) -> Option<Vec<NewChannel>> {
+    let mut solver = Solver::new(transfer, bodies, clip);
+    for _ in 0..ROUNDS {
+        solver.add(Solver::touch);
+        solver.add(Solver::push_out);
+    }
+    for _ in 0..COMPROMISES {
+        solver.add(Solver::compromise);
+    }
+    let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
+    for (index, arm) in solver.arms.iter().enumerate() {
+        let turns = solver.turns(index);
+        let Some(arm) = arm.filter(|_| turns.iter().flatten().any(|&turn| turn != DQuat::IDENTITY)) else { continue };
+        let turns = turns.each_ref().map(Vec::as_slice);
+        rotations.extend(limb_rotations(transfer.target_skeleton, arm.joints, &solver.poses, turns));
+    }
+    if rotations.is_empty() {
+        return None;
+    }
+    let is_replaced = |joint: JointIndex, property: Property| {
+        property == Property::Rotation && rotations.iter().any(|(other, _)| *other == joint)
+    };
+    let mut channels = NewChannel::of_clip(clip, resampled, is_replaced);
+    for (joint, keys) in &rotations {
+        let keys = keys.iter().map(|key| key.as_quat()).collect();
+        channels.push(NewChannel::resampled(*joint, solver.times.clone(), Keys::Rotation(keys)));
+    }
+    Some(channels)
+}
+
+impl<'a> Solver<'a> {
+    fn new(transfer: &Transfer, bodies: &'a Bodies, clip: &Clip) -> Self {
+        let times = dense_times(transfer.tracks.clip);
+        let (laws, _) = rotation_laws(transfer);
+        let yaw = removed_travel(transfer, &laws, &times).yaw;
+        let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+        let source = bodies.source_frames(transfer, &times);
+        let mut scratch = Scratch::default();
+        let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
+        let mut moments = Vec::with_capacity(times.len());
+        for ((&time, pose), touches) in times.iter().zip(&poses).zip(bodies.touches(&times, &source)) {
+            let turn = DQuat::from_rotation_y(yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
+            let frames = bodies.target.frames(pose);
+            moments.push(Moment { frames, touches, target_from_source: (turn, scale) });
+        }
+        let arms = bodies.arms.map(|joints| Some(Arm::new(joints?, &transfer.alignment.target)));
+        let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
+        Self { bodies, times, poses, moments, arms, moves }
+    }
+
+    /// What touches on the source should touch on the target.
+    fn touch(&self, at: usize) -> [Wish; 2] {
+        let moment = &self.moments[at];
+        let mut wishes = [Wish::default(); 2];
+        for miss in self.bodies.misses(&moment.touches, &moment.frames, moment.target_from_source) {
+            self.wish(&mut wishes, miss.pair, 1.0, miss.by, [miss.weight; 2]);
+        }
+        wishes
+    }
+
+    /// What is inside other parts, and is not on the source, should come out.
+    fn push_out(&self, at: usize) -> [Wish; 2] {
+        let moment = &self.moments[at];
+        let mut wishes = [Wish::default(); 2];
+        for overlap in self.overlaps(moment, &moment.frames) {
+            let share = (overlap.excess / (CLEARLY_INSIDE * self.bodies.target.height)).min(1.0);
+            let lever = self.bodies.lever(self.bodies.pairs[overlap.pair].limb, place_of(overlap.point).share);
+            let by = overlap.excess * overlap.outward;
+            self.wish(&mut wishes, overlap.pair, lever, by, [overlap.excess, share]);
+        }
+        wishes
+    }
+
+    /// Both at once, where they contradict each other.
+    fn compromise(&self, at: usize) -> [Wish; 2] {
+        let (mut wishes, pushes) = (self.touch(at), self.push_out(at));
+        let weight = PUSH_WEIGHT / self.bodies.target.height;
+        for (wish, push) in wishes.iter_mut().zip(pushes) {
+            wish.sum += weight * push.sum;
+            wish.squares += weight * push.squares;
+            wish.share = wish.share.max(push.share);
+        }
+        wishes
+    }
+
+    fn overlaps(&self, moment: &Moment, frames: &Frames) -> Vec<Overlap> {
+        let target = &self.bodies.target;
+        let mut overlaps = Vec::new();
+        for meeting in self.bodies.meetings(target, frames, 0.0) {
+            let pair = &self.bodies.pairs[meeting.pair];
+            let of_source = moment.target_from_source.1 * moment.touches.depth(meeting.pair, meeting.point);
+            let allowed = pair.at_rest[meeting.point].max(of_source) + TOLERATED * target.height;
+            let excess = -meeting.distance - allowed;
+            if excess > 0.0 {
+                let outward = target.outward(pair.other, meeting.place, frames);
+                overlaps.push(Overlap { pair: meeting.pair, point: meeting.point, excess, outward });
+            }
+        }
+        overlaps
+    }
+
+    /// Adds a wish of a limb's part, which moves with its wrist by `lever`, relative to another part. Two arms share it.
+    fn wish(&self, wishes: &mut [Wish; 2], pair: usize, lever: f64, by: DVec3, [weight, share]: [f64; 2]) {
+        let pair = &self.bodies.pairs[pair];
+        let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.arms[arm].is_some());
+        let (own, partner) = (movable(pair.limb), movable(pair.other));
+        let by = if own.is_some() && partner.is_some() { 0.5 * by } else { by };
+        for (arm, lever, by) in [(own, lever, by), (partner, self.bodies.lever(pair.other, 0.5), -by)] {
+            if let Some(arm) = arm {
+                wishes[arm].sum += weight * lever * by;
+                wishes[arm].squares += weight * lever * lever;
+                wishes[arm].share = share.max(wishes[arm].share);
+            }
+        }
+    }
+
+    /// Moves the wrists further, smoothly over time.
+    fn add(&mut self, wishes: fn(&Self, usize) -> [Wish; 2]) {
+        let wishes: Vec<[Wish; 2]> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
+        let limit = MAX_MOVE * self.bodies.target.height;
+        for arm in 0..2 {
+            let fit = |wish: Wish| {
+                if wish.squares > 0.0 { (wish.sum / wish.squares, wish.share) } else { (DVec3::ZERO, 0.0) }
+            };
+            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| fit(wishes[arm])).collect();
+            for (by, more) in self.moves[arm].iter_mut().zip(eased(&self.times, &wanted)) {
+                *by = (*by + more).clamp_length_max(limit);
+            }
+        }
+        for at in 0..self.times.len() {
+            let turns = [0, 1].map(|arm| self.reach(arm, at));
+            self.moments[at].frames = self.turned_frames(at, turns);
+        }
+    }
+
+    fn reach(&self, arm: usize, at: usize) -> [DQuat; 2] {
+        let by = self.moves[arm][at];
+        let is_moved = by.length() > MIN_MOVE * self.bodies.target.height;
+        let arm = self.arms[arm].filter(|_| is_moved);
+        arm.map_or([DQuat::IDENTITY; 2], |arm| arm.reach(&self.poses[at], by))
+    }
+
+    /// The target's parts with its arms turned.
+    fn turned_frames(&self, at: usize, turns: [[DQuat; 2]; 2]) -> Frames {
+        let target = &self.bodies.target;
+        let pose = &self.poses[at];
+        let mut frames = target.frames(pose);
+        for (arm, [upper, lower]) in self.arms.iter().zip(turns) {
+            let Some(arm) = arm else { continue };
+            let [shoulder, elbow, wrist] = arm.joints.map(|joint| pose.position(joint));
+            let moved_elbow = shoulder + upper * (elbow - shoulder);
+            let moved_wrist = moved_elbow + lower * (wrist - elbow);
+            let moved = [(shoulder, upper), (moved_elbow, lower), (moved_wrist, DQuat::IDENTITY)];
+            for (joint, (position, turn)) in arm.joints.iter().zip(moved) {
+                if let Some(part) = target.joints.iter().position(|other| other == joint) {
+                    frames[part] = (position, turn * frames[part].1);
+                }
+            }
+        }
+        frames
+    }
+
+    /// How an arm turns at each time.
+    fn turns(&self, arm: usize) -> [Vec<DQuat>; 2] {
+        let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
+        let mut turns = [Vec::new(), Vec::new()];
+        for at in 0..self.times.len() {
+            let [upper, lower] = self.reach(arm, at);
+            turns[0].push(upper);
+            turns[1].push(lower);
+        }
+        for turns in &mut turns {
+            limit_turns(&self.times, turns, max_turn, max_rate);
+        }
+        turns
+    }
+}

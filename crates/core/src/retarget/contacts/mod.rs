@@ -1,0 +1,15 @@
+//! Contacts of the body with itself: where the source touches itself, and whether the target does. Bodies are approximated by
+//! one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the skeleton.
+
+mod arm;
+mod body;
+mod keep;
+mod parts;
+mod shape;
+mod smooth;
+mod solid;
+mod touch;
+
+pub use body::Bodies;
+pub use keep::kept_contacts;
+pub use touch::TouchFigures;
