@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::retarget::feet::near;
 
-/// Half the width of the windows that are averaged over.
-const EASE_SECS: f64 = 0.1;
+/// Half the width of the windows that are averaged over. A bit more than whole frames at usual rates: otherwise rounding would
+/// decide whether a window has one frame more or less, and the mean would jump.
+const EASE_SECS: f64 = 0.105;
 
 /// Returns moves that are as wanted where they are wanted fully, and come and go smoothly around. `wanted` has a move and how much
 /// it is wanted, from 0 to 1, at each time.
