@@ -186,9 +186,6 @@ for (const renderer of BACK_ENDS)
       await eventually(async () => isRed(await middle(page)), "the cube should get its image");
       assert.equal(Object(await state(page)).speed, 0.25, "the view is kept");
       assert.equal(server.requests(), 2);
-      await page.keyboard.press("Control+z");
-      await eventually(async () => Object(await state(page)).speed === 1, "the speed is the only step");
-      assert.ok(isRed(await middle(page)));
     });
 
     onPage("the rest is awaited beside what else is opened, and can be cancelled then", async (page, server) => {

@@ -150,6 +150,7 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(await Promise.all(["#bring-sender", "#bring-again"].map((id) => other.locator(id).isVisible())), [false, true]);
         await other.locator("#bring-later").click();
         await drop(other, files);
+        await whenModel(other, "Soldier.glb");
         // The model is shown before the rest of the link.
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
         await toggleInspector(other);
