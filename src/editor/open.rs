@@ -243,7 +243,7 @@ impl Editor {
         let Some(complete) = self.library.get(id) else { return Vec::new() };
         let main_file = |model: &Model| self.files_of(model).and_then(|files| files.set.original(&files.name));
         let (main, lacks) = (main_file(complete), lacking(complete));
-        // Many models are called “scene.gltf”. One that awaits its images has no file yet, but its whole URL as a name.
+        // Many models are called “scene.gltf”. One that awaits its images has no file to compare, but its whole URL as a name.
         let is_incomplete = |known: &&Model| {
             known.source == complete.source
                 && known.is_own == complete.is_own

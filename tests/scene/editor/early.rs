@@ -147,7 +147,7 @@ fn only_the_active_model_has_to_fit() {
     assert_eq!(editor.library().models().len(), 2);
 }
 
-/// “Try again” after the download has failed.
+/// The link may be opened again after its download has failed.
 #[test]
 fn opening_the_complete_file_closes_the_model_without_images() {
     let (mut editor, id) = early_editor();

@@ -4,7 +4,7 @@
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps contacts of the body, `bake`
 //! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts
-//! others over it, and `pins` holds hands and feet. `pose`, `keys`, `math` and `two_bones` are shared by all.
+//! others over it, and `pins` holds hands and feet. `pose`, `keys`, `math`, `times`, `limit` and `two_bones` are shared.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -33,6 +33,7 @@ mod change;
 mod contacts;
 mod feet;
 mod keys;
+mod limit;
 mod map;
 mod math;
 mod measure;
@@ -41,6 +42,7 @@ mod pose;
 mod recognize;
 mod retargeting;
 mod stack;
+mod times;
 mod transfer;
 mod two_bones;
 

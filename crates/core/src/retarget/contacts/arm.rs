@@ -5,12 +5,7 @@ use glam::{DQuat, DVec3};
 use crate::anim::JointIndex;
 use crate::retarget::math::{smooth, unit};
 use crate::retarget::pose::WorldPose;
-use crate::retarget::two_bones::reach_goal;
-
-/// An arm is never stretched beyond this share of its length unless it is without the correction: in a nearly straight arm,
-/// millimetres of the hand's position turn the elbow by degrees.
-const COMFORTABLE_REACH: f64 = 0.99;
-const MAX_REACH: f64 = 0.999;
+use crate::retarget::two_bones::{max_reach, reach_goal};
 
 /// An elbow that is bent by less than about this sine is held by its hinge at rest, too.
 const CLEAR_BEND: f64 = 0.35;
@@ -50,8 +45,7 @@ impl Arm {
         let share = smooth(bend.length() / CLEAR_BEND);
         let hinge = (share * bend.normalize_or_zero() + (1.0 - share) * at_rest).normalize_or(at_rest);
         let goal = wrist + by - shoulder;
-        let max = (upper + lower).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
-        match reach_goal([upper, lower], hinge, goal, goal.length().min(max), 0.0) {
+        match reach_goal([upper, lower], hinge, goal, goal.length().min(max_reach([upper, lower])), 0.0) {
             Some([swing, bend]) => [swing, unit(swing * bend)],
             None => [DQuat::IDENTITY; 2],
         }

@@ -8,10 +8,12 @@ use super::body::{Bodies, Frames, place_of};
 use super::smooth::eased;
 use super::touch::Touches;
 use crate::anim::{Clip, JointIndex, Keys, Property};
-use crate::retarget::feet::{dense_times, limb_rotations, limit_turns};
 use crate::retarget::keys::channel::NewChannel;
+use crate::retarget::limit::limit_turns;
 use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::times::dense_times;
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+use crate::retarget::two_bones::limb_rotations;
 
 /// Touching and pushing out in turns, since each disturbs the other, and then both at once.
 const ROUNDS: usize = 2;

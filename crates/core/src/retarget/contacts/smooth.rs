@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::retarget::feet::near;
+use crate::retarget::times::near;
 
 /// Half the width of the windows that are averaged over. A bit more than whole frames at usual rates: otherwise rounding would
 /// decide whether a window has one frame more or less, and the mean would jump.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::plan::{EASE_SECS, Plan};
+use crate::retarget::times::near;
 
 /// Sideways, the body follows feet that stay in contact, not single steps: half the width of the window it is averaged over.
 const SWAY_SECS: f64 = 0.25;
@@ -58,11 +59,4 @@ pub fn means(times: &[f32], values: &[f64], secs: f64) -> Vec<f64> {
         values.iter().sum::<f64>() / values.len() as f64
     };
     (0..times.len()).map(mean).collect()
-}
-
-/// The times within `secs` of one of them.
-pub fn near(times: &[f32], at: usize, secs: f64) -> Range<usize> {
-    let from = times.partition_point(|&time| f64::from(times[at] - time) > secs);
-    let to = times.partition_point(|&time| f64::from(time - times[at]) <= secs);
-    from..to
 }

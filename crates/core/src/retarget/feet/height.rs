@@ -1,10 +1,11 @@
 //! Height of the body above the ground before its feet are planted: in motion capture, bodies often hover or sink.
 
-use super::body::{means, near};
+use super::body::means;
 use super::plan::LegContacts;
 use crate::anim::JointIndex;
 use crate::retarget::math::smooth;
 use crate::retarget::pose::{WorldPose, is_within};
+use crate::retarget::times::near;
 use crate::retarget::transfer::Transfer;
 
 /// A body that hovers higher than this share of the hips' height does so on purpose.

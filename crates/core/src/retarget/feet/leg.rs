@@ -2,17 +2,10 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::anim::{JointIndex, Skeleton};
+use crate::anim::JointIndex;
 use crate::retarget::math::{smooth, unit};
-use crate::retarget::pose::{WorldPose, is_within};
-use crate::retarget::two_bones::reach_goal;
-
-/// A leg is never stretched beyond this share of its length: a straight knee has no plane.
-const MAX_REACH: f64 = 0.999;
-
-/// Beyond this share, a leg is stretched only as far as it is without planting: in a nearly straight leg, millimetres of the
-/// foot's position turn the knee by degrees.
-const COMFORTABLE_REACH: f64 = 0.99;
+use crate::retarget::pose::WorldPose;
+use crate::retarget::two_bones::{max_reach, reach_goal};
 
 /// Sine of the bend below which the hinge at rest is blended in.
 const MIN_BEND: f64 = 0.17;
@@ -63,8 +56,7 @@ impl Leg {
 /// How far the hips must come down for the leg to reach its ankle's position moved by `by`.
 pub fn drop_to_reach(leg: &Leg, pose: &WorldPose, by: DVec3) -> f64 {
     let [hip, knee, ankle] = [leg.hip, leg.knee, leg.ankle].map(|joint| pose.position(joint));
-    let length = (knee - hip).length() + (ankle - knee).length();
-    let reach = (ankle - hip).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
+    let reach = max_reach([knee - hip, ankle - knee]);
     let goal = ankle + by - hip;
     if by.length() <= 1e-9 || goal.length() <= reach {
         return 0.0;
@@ -87,36 +79,8 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
         return unmoved;
     }
     let hinge = leg.hinge(pose, thigh, shin);
-    let reach = (thigh + shin).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
     let certainty = smooth(by.length() / (SMALL_MOVE * length));
-    let distance = goal.length().min(reach);
+    let distance = goal.length().min(max_reach([thigh, shin]));
     let Some([swing, knee_turn]) = reach_goal([thigh, shin], hinge, goal, distance, certainty) else { return unmoved };
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
-}
-
-/// Local rotations of hip, knee and ankle that turn the leg in each pose while the foot keeps its direction; likewise of an arm's
-/// joints. `turns` are those of thigh and shin in the common frame.
-pub fn limb_rotations(
-    skeleton: &Skeleton,
-    [hip, knee, ankle]: [JointIndex; 3],
-    poses: &[WorldPose],
-    [thighs, shins]: [&[DQuat]; 2],
-) -> [(JointIndex, Vec<DQuat>); 3] {
-    // A foot that is not parented to its shin does not turn with it, nor does such a shin with its thigh.
-    let knee_is_carried = is_within(skeleton, knee, hip);
-    let ankle_is_carried = is_within(skeleton, ankle, knee);
-    let mut rotations = [hip, knee, ankle].map(|joint| (joint, Vec::with_capacity(poses.len())));
-    for ((pose, &thigh), &shin) in poses.iter().zip(thighs).zip(shins) {
-        let parent_turns = [
-            DQuat::IDENTITY,
-            if knee_is_carried { thigh } else { DQuat::IDENTITY },
-            if ankle_is_carried { shin } else { DQuat::IDENTITY },
-        ];
-        let own_turns = [thigh, shin, DQuat::IDENTITY];
-        for (((joint, rotations), parent_turn), own_turn) in rotations.iter_mut().zip(parent_turns).zip(own_turns) {
-            let parent = pose.parent_rotation(skeleton, *joint);
-            rotations.push(unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(*joint)));
-        }
-    }
-    rotations
 }

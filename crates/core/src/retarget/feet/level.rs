@@ -3,9 +3,9 @@
 
 use glam::{DQuat, DVec3};
 
-use super::limit::limit_turns;
 use super::plan::LegContacts;
 use crate::anim::Skeleton;
+use crate::retarget::limit::limit_turns;
 use crate::retarget::pose::{WorldPose, is_within};
 
 /// Feet that are deeper in the ground than this share of the hips' height are levelled.

@@ -9,27 +9,25 @@ use std::ops::Range;
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use super::body::{body_shifts, means, near};
+use super::body::{body_shifts, means};
 use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
 use super::height::{floats, hover, lower};
-use super::leg::{Leg, drop_to_reach, limb_rotations, solve_leg};
+use super::leg::{Leg, drop_to_reach, solve_leg};
 use super::level::level_feet;
-use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
 use super::sole::Soles;
 use super::width::spreads;
-use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
+use crate::anim::{Clip, JointIndex, Keys, Property};
 use crate::asset::Slot;
 use crate::retarget::keys::channel::NewChannel;
-use crate::retarget::keys::resample::union;
+use crate::retarget::limit::limit_turns;
 use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::times::{dense_times, near};
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+use crate::retarget::two_bones::limb_rotations;
 
 /// The hips come down by at most this share of their height for a leg to reach.
 const MAX_DROP: f64 = 0.1;
-
-/// Maximum distance between keys of a planted clip.
-const MAX_STEP_SECS: f32 = 1.0 / 30.0;
 
 /// How far planting may turn a thigh or shin, and how fast: at 60 frames per second, by about 4° per frame.
 const MAX_TURN_DEGREES: f64 = 30.0;
@@ -191,25 +189,6 @@ fn leg_length(transfer: &Transfer, legs: &[LegContacts]) -> f64 {
     let rest = &transfer.alignment.target;
     let length = |LegContacts { leg, .. }: &LegContacts| rest.position(leg.hip).distance(rest.position(leg.ankle));
     legs.first().map_or(0.0, length).max(1e-9)
-}
-
-/// The clip's key times, and more where these are far apart and just before a jump.
-pub fn dense_times(clip: &Clip) -> Vec<f32> {
-    let keys = union(clip.timelines().iter().map(Vec::as_slice));
-    let stepped = clip.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
-    let jumps = union(stepped.map(|channel| clip.timelines()[channel.timeline as usize].as_slice()));
-    let mut times: Vec<f32> = Vec::with_capacity(keys.len());
-    for &key in &keys {
-        if let Some(&before) = times.last() {
-            let parts = ((key - before) / MAX_STEP_SECS).ceil().clamp(1.0, 1000.0) as usize;
-            let step = (key - before) / parts as f32;
-            times.extend((1..parts).map(|part| before + step * part as f32));
-            let is_jump = jumps.binary_search_by(|jump| jump.total_cmp(&key)).is_ok();
-            times.extend(Some(key.next_down()).filter(|&time| is_jump && time > before));
-        }
-        times.push(key);
-    }
-    times
 }
 
 /// Legs of which hip, knee and ankle are mapped, and how the ground moves below the source.

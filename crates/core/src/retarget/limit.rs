@@ -1,4 +1,4 @@
-//! Bounds how fast a correction of a joint may turn, so that planting never snaps a leg.
+//! Bounds how fast a correction of a joint may turn, so that planted feet and kept contacts never snap a limb.
 
 use glam::DQuat;
 
