@@ -9,6 +9,9 @@ use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
 
+/// At most this share of the window's height is for tracks: a link may bring hundreds of layers. The others are scrolled to.
+const MAX_SHARE_OF_TRACKS: f32 = 0.25;
+
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: bool, out: &mut Output) {
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
@@ -33,12 +36,15 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
     }
-    if has_tracks {
-        layers::show(ui, shown, gutter);
-        pins::show(ui, shown, gutter);
-    }
-    if has_feet {
-        feet::show(ui, shown, gutter);
+    if gutter > 0.0 {
+        let max_height = MAX_SHARE_OF_TRACKS * ui.ctx().content_rect().height();
+        egui::ScrollArea::vertical().id_salt("tracks").max_height(max_height).show(ui, |ui| {
+            layers::show(ui, shown, gutter);
+            pins::show(ui, shown, gutter);
+            if has_feet {
+                feet::show(ui, shown, gutter);
+            }
+        });
     }
     ui.horizontal(|ui| {
         ui.set_height(44.0);

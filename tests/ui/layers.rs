@@ -114,3 +114,15 @@ fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
     press(&mut harness, &below);
     assert_eq!(layers(&harness), [wave]);
 }
+
+#[test]
+fn hundreds_of_layers_leave_most_of_the_window_to_the_viewport() {
+    let mut harness = sample_bench(WIDE);
+    harness.run();
+    let before = harness.state().viewport.height();
+    let layer = ClipLayer { clip: "Idle".to_owned(), ..ClipLayer::default() };
+    harness.state_mut().editor.apply(Command::SetLayers(vec![layer; 300]));
+    harness.run();
+    let taken = before - harness.state().viewport.height();
+    assert!(taken > 100.0 && taken < 0.3 * WIDE[1], "{taken}");
+}
