@@ -18,7 +18,8 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     }
     let painter = ui.painter_at(rect);
     pane_labels(ui, &painter, rect, &shown);
-    legend::show(ui, &painter, rect, shown.state);
+    let above_labels = if pane_rects(&shown, rect).len() > 1 { PANE_LABEL_HEIGHT } else { 0.0 };
+    legend::show(ui, &painter, rect.with_max_y(rect.bottom() - above_labels), shown.state);
     if local.motion.is_clicking() {
         return;
     }
@@ -71,6 +72,9 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     painter.circle_stroke(position, 6.0, egui::Stroke::new(2.0, palette.accent));
     Some(())
 }
+
+/// Height of the labels at the lower edges of panes, with the gap below them.
+const PANE_LABEL_HEIGHT: f32 = 30.0;
 
 /// What each pane of the comparison shows, and the lines between them.
 fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
