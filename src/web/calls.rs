@@ -377,8 +377,8 @@ async fn show(
     let problems = contents.problems.clone();
     if shell_reports {
         contents.problems.clear();
-    } else {
-        problems.iter().for_each(|problem| page.shell.warn(problem));
+    } else if !problems.is_empty() {
+        page.shell.warn(&problems.join("\n"));
     }
     let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
     let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };

@@ -239,7 +239,9 @@ async fn open_fallback(
 /// Reads a link; shows its errors as warnings.
 pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     let (state, errors) = from_link(link);
-    errors.iter().for_each(|error| shell.warn(&error.to_string()));
+    if !errors.is_empty() {
+        shell.warn(&errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+    }
     state.or_sample(samples::WALKER)
 }
 

@@ -80,7 +80,7 @@ extern "C" {
     #[wasm_bindgen(method, js_name = setTheme)]
     pub fn set_theme(this: &Shell, theme: &str);
 
-    /// Shows a warning.
+    /// Shows a warning, or one per line; it replaces the one before.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str);
 

@@ -103,6 +103,21 @@ for (const renderer of BACK_ENDS)
       },
     );
 
+    onPage(
+      "names each value that it can't use",
+      () =>
+        fragment([
+          ["model", "sample:pilot"],
+          ["speed", "fast"],
+          ["t", "noon"],
+        ]),
+      async (page) => {
+        const problem = (await page.locator("#problem").textContent()) ?? "";
+        assert.match(problem, /speed/);
+        assert.match(problem, /noon/);
+      },
+    );
+
     onPage("doesn't wait for a site that never answers", () => fragment([["model", site.data(FOX)], ["motion", `${servers.silent.origin}/walk.bvh`]]), async (page) => {
       await whenMissing(page);
       assert.match((await missing(page)).join(), /walk\.bvh: nothing has come from the site for 20 seconds/);
