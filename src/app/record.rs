@@ -3,6 +3,7 @@
 
 use super::save::saved;
 use super::{App, Video};
+use crate::editor::AWAITS_IMAGES;
 use crate::library::ModelId;
 use crate::render::read_pixels;
 use crate::state::{Background, LoopFrames};
@@ -24,6 +25,9 @@ impl App {
         let size = self.viewport.picture_size(settings.size).map(|edge| (edge & !1).max(2));
         let (library, state) = (self.editor.library(), self.editor.state());
         let Some(model) = library.active() else { return };
+        if model.awaits_images() {
+            return self.fail_to_record(settings.as_images, AWAITS_IMAGES);
+        }
         let aspect = size[0] as f32 / size[1] as f32;
         let Some(frames) = LoopFrames::new(library, state, aspect, settings.frames_per_sec) else { return };
         let VideoSettings { frames_per_sec, as_images, .. } = settings;
@@ -71,10 +75,12 @@ impl App {
         match saved_name {
             Ok(Some(name)) => self.toast(saved(&name, recording.remark.as_deref())),
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
-            Err(error) => {
-                let what = if recording.as_images { "images" } else { "video" };
-                self.add_error(&format!("Couldn't record the {what}: {error}"));
-            }
+            Err(error) => self.fail_to_record(recording.as_images, &error),
         }
+    }
+
+    fn fail_to_record(&mut self, as_images: bool, error: &str) {
+        let what = if as_images { "images" } else { "video" };
+        self.add_error(&format!("Couldn't record the {what}: {error}"));
     }
 }

@@ -14,8 +14,8 @@ use crate::state::{
     ViewerState, active_clip, active_map, has_layers, looks_at_camera, pinned_clip, stacked_layers, written_skeleton,
 };
 
-/// Why a model without its images isn't written.
-const AWAITS_IMAGES: &str =
+/// Why a model without its images isn't written or recorded.
+pub(crate) const AWAITS_IMAGES: &str =
     "the model's images have not arrived; wait until they have, or reload the page if you cancelled them";
 
 /// What to write.

@@ -20,6 +20,7 @@ mod validation;
 pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
+pub(crate) use export::AWAITS_IMAGES;
 pub use export::{Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};

@@ -204,6 +204,9 @@ for (const renderer of BACK_ENDS)
       await eventually(() => server.isClosed(), "the download should end");
       assert.ok(isWhite(await middle(page)), "the cube stays as it is");
       await eventually(() => says(page, "without its images"), "the page should say so");
+      await control(page, "tab", "Camera").press("Enter");
+      await control(page, "button", "Record one loop").press("Enter");
+      await eventually(() => says(page, "images have not arrived"), "nothing is recorded");
       assert.deepEqual(page.troubles, []);
     });
   });
