@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use egui::accesskit::{
     Action, ActionData, ActionRequest, Node, NodeId, Point, Rect, Role, Toggled, TreeId, TreeUpdate,
 };
+use egui::emath::round_to_decimals;
 use egui::{Context, Event, FullOutput, Plugin, RawInput};
 use serde_json::{Map, Value, json};
 
@@ -99,8 +100,8 @@ impl Plugin for Mirror {
 }
 
 /// Lists the contents of a tree in reading order. Each entry is an object with `id`, `role` (an ARIA role; `text` for plain text,
-/// `group` for a menu, list or dialog), `name` and `rect` (left, top, width and height in points), and where they apply:
-/// `in` (the `id` of the innermost group around it), `value`, `description`, `now`, `min` and `max`, `checked` (`true`, `false` or
+/// `group` for a menu or list, `dialog` for what lies over everything), `name` and `rect` (left, top, width and height in points), and where they apply:
+/// `in` (the `id` of the innermost group or dialog around it), `value`, `description`, `now`, `min` and `max`, `checked` (`true`, `false` or
 /// `mixed`), `expanded`, `disabled`, `focusable`, `level`, `at` and `of` (its place in a list and the list's length, from 1),
 /// `row` (equal in the cells of a table's row), `list` (the name of the group of radio buttons that it is in).
 pub fn entries(update: &TreeUpdate) -> Vec<Value> {
@@ -163,7 +164,7 @@ impl<'a> List<'a> {
             }
         }
         let (group, is_in_control) = match role {
-            Some("group") => (Some(id), false),
+            Some("group" | "dialog") => (Some(id), false),
             Some(_) => (group, true),
             None => (group, is_in_control),
         };
@@ -197,7 +198,9 @@ impl<'a> List<'a> {
         set("value", node.value().filter(|_| !is_text).map(Value::from));
         let finite = |number: Option<f64>| number.filter(|number| number.is_finite()).map(Value::from);
         set("description", node.description().map(Value::from));
-        set("now", finite(node.numeric_value()));
+        let decimals = node.value().filter(|_| role == "spinbutton").map(decimals_in);
+        let now = node.numeric_value().map(|now| decimals.map_or(now, |decimals| round_to_decimals(now, decimals)));
+        set("now", finite(now));
         set("min", finite(node.min_numeric_value()));
         set("max", finite(node.max_numeric_value()));
         set(
@@ -221,6 +224,12 @@ impl<'a> List<'a> {
     }
 }
 
+/// Returns how many decimals the first number in a text has.
+fn decimals_in(text: &str) -> usize {
+    let (_, fraction) = text.split_once('.').unwrap_or_default();
+    fraction.bytes().take_while(u8::is_ascii_digit).count()
+}
+
 /// Returns the ARIA role of a node that users read or operate; `None` for layout and decoration, of which only the children count.
 fn aria_role(node: &Node) -> Option<&'static str> {
     Some(match node.role() {
@@ -241,6 +250,7 @@ fn aria_role(node: &Node) -> Option<&'static str> {
         Role::TreeItem => "treeitem",
         Role::ProgressIndicator => "progressbar",
         Role::Image => "img",
+        Role::Dialog if node.label().is_some() => "dialog",
         Role::Menu | Role::Dialog | Role::ListBox => "group",
         Role::MenuItem | Role::ListBoxOption => "button",
         _ if node.supports_action(Action::Click) && node.label().is_some() => "button",

@@ -400,6 +400,7 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
             .size_range(190.0..=(0.3 * width).clamp(190.0, 420.0))
             .show_separator_line(false)
             .show(ui, |ui| clips::show(ui, shown, local, out));
+        name_edge(ui, "clips", text::RESIZE_CLIPS);
     }
     if local.layout.inspector_open {
         egui::Panel::right("inspector")
@@ -408,7 +409,14 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
             .size_range(260.0..=(0.38 * width).clamp(260.0, 520.0))
             .show_separator_line(false)
             .show(ui, |ui| tabs::show(ui, shown, local, out));
+        name_edge(ui, "inspector", text::RESIZE_INSPECTOR);
     }
+}
+
+/// Names the edge that resizes a panel of this `Ui`: egui calls each of them the same.
+fn name_edge(ui: &Ui, panel: &str, name: &str) {
+    let edge = ui.scope_id().with(panel).with("__resize");
+    ui.ctx().accesskit_node_builder(edge, |node| node.set_label(name));
 }
 
 fn is_small(ui: &Ui) -> bool {

@@ -221,7 +221,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     let commands = press(&mut harness, &choice(text::LOOK_AT_POINT));
     assert!(matches!(commands[..], [Command::SetLookAt(LookTarget::Point(_))]), "{commands:?}");
     harness.run();
-    assert!(harness.query_by_label("Z").is_some());
+    assert!(harness.query_by_label(&text::labelled(text::EYES, "Z")).is_some());
     press(&mut harness, Tab::Info.label());
     for (name, value) in [("Commercial usage", "Allow"), (&*text::first_person("Head"), "Third person only")] {
         assert!(harness.query_by_label(&text::labelled(name, value)).is_some(), "{name}");

@@ -1,7 +1,8 @@
 //! Layout on wide, narrow and embedded screens, and what lies over the viewport.
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::retarget::ClipLayer;
 use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
@@ -125,9 +126,9 @@ fn the_help_fits_small_screens() {
             false => (text::GESTURES, [text::PINCH, text::HELP_HANDLE, text::HELP_RING]),
         };
         assert_eq!(harness.query_by_label(text::STEP_KEYS).is_some(), size == WIDE, "keys on {size:?}");
-        for label in [title, text::CLOSE_HELP] {
-            let rect = harness.get_by_label(label).rect();
-            assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
+        for (role, label) in [(Role::Label, title), (Role::Button, text::CLOSE_HELP)] {
+            let node = harness.get_by_role_and_label(role, label);
+            assert!(screen.contains_rect(node.rect()), "{node:?} on {size:?}");
         }
         for label in lines {
             let rect = harness.get_by_label(label).rect();
@@ -327,7 +328,10 @@ fn a_load_shows_how_far_it_is() {
         harness.state_mut().panels.messages.progress = Some(progress);
         // An unknown end is a moving bar, which never comes to rest.
         harness.run_steps(3);
-        assert!(harness.query_by_label(&text::opening(&name)).is_some() && harness.query_by_label(amount).is_some());
+        let opening = text::opening(&name);
+        let bar = harness.get_by_role_and_label(Role::ProgressIndicator, &opening);
+        assert!(bar.accesskit_node().numeric_value().is_some());
+        assert!(harness.query_by_label(amount).is_some());
     }
     press(&mut harness, text::CANCEL);
     assert_eq!(harness.state().actions, [UiAction::CancelOpening]);

@@ -30,6 +30,14 @@ impl Plugin for Spy {
     }
 }
 
+/// Returns the accessibility tree of the next frame.
+pub fn tree_of(harness: &mut Harness<'_, Bench>) -> TreeUpdate {
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    harness.run();
+    tree.lock().expect("one thread").take().expect("a tree")
+}
+
 #[test]
 fn everything_that_takes_the_focus_has_a_name() {
     for size in [WIDE, NARROW] {
@@ -73,6 +81,26 @@ fn the_button_below_a_scrolled_tree_is_listed() {
         let entries = entries(&update);
         assert!(entries.iter().any(|entry| entry["name"] == text::SHOW_ALL), "{height}");
     }
+}
+
+#[test]
+fn a_dialog_has_its_title_as_its_name() {
+    let mut harness = motion_bench(WIDE, &[]);
+    harness.state_mut().panels.about_open = true;
+    let entries = entries(&tree_of(&mut harness));
+    let dialog = entries.iter().find(|entry| entry["role"] == "dialog").expect("a dialog");
+    assert_eq!(dialog["name"], text::ABOUT);
+    let button = entries.iter().find(|entry| entry["name"] == text::CLOSE_ABOUT).expect("a button");
+    assert_eq!(button["in"], dialog["id"]);
+}
+
+#[test]
+fn the_edges_that_resize_panels_have_names_of_their_own() {
+    let mut harness = motion_bench(WIDE, &[]);
+    let update = tree_of(&mut harness);
+    let edges = update.nodes.iter().filter(|(_, node)| node.role() == Role::Splitter);
+    let names: BTreeSet<&str> = edges.filter_map(|(_, node)| node.label()).collect();
+    assert_eq!(names, BTreeSet::from([text::RESIZE_CLIPS, text::RESIZE_INSPECTOR]));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use egui::{PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::TimeRange;
+use gaitway::app::mirror::entries;
 use gaitway::editor::Export;
 use gaitway::retarget::{Pin, PinGoal, PinTimes};
 use gaitway::state::Command;
@@ -11,6 +12,7 @@ use gaitway::ui::{Saved, UiAction, text};
 use glam::Vec3;
 
 use crate::bench::{Bench, NARROW, WIDE, drag, painted, press, sample_bench};
+use crate::mirror::tree_of;
 use crate::motion::{choose, reach};
 
 /// Joints of the walker, by index in the file.
@@ -88,6 +90,21 @@ fn time_stands_still_over_a_handle_and_the_camera_turns_beside_it() {
     }
     let commands = drag(&mut harness, corner, corner + vec2(50.0, 0.0), PointerButton::Primary);
     assert!(!commands.is_empty() && commands.iter().all(|command| matches!(command, Command::Orbit { .. })));
+}
+
+#[test]
+fn numbers_are_read_as_they_are_shown_and_by_what_they_belong_to() {
+    let mut harness = selected(WIDE, LEFT_HAND);
+    choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+    let entries = entries(&tree_of(&mut harness));
+    let Some(Pin { goal: PinGoal::Point(goal), .. }) = pin_of(&harness, LEFT_HAND) else { panic!("a pin") };
+    for (axis, coordinate) in [("X", goal.x), ("Y", goal.y), ("Z", goal.z)] {
+        let name = text::labelled(text::PINNED_TO, axis);
+        let field = entries.iter().find(|entry| entry["name"] == name).expect("a field");
+        let now = field["now"].as_f64().expect("a number");
+        assert!((now - f64::from(coordinate)).abs() <= 0.005 && (100.0 * now).fract() == 0.0, "{now} for {coordinate}");
+        assert_eq!(field["value"], format!("{axis} {now} m"));
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@
 /** @typedef {Map<Node, ChildNode>} Ends The last element placed in each parent. */
 
 /** Tags by role; everything else is a button. */
-const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", img: "div", progressbar: "div" };
+const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", dialog: "div", img: "div", progressbar: "div" };
 /** The role that ARIA requires around another one. */
 const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "radiogroup", gridcell: "grid" });
 /** Accessible names of these lists; radio buttons bring their group's. */
@@ -95,7 +95,7 @@ export class Mirror {
   }
 
   /**
-   * Puts the element of each entry into its place; returns the last new group: a menu that was opened.
+   * Puts the element of each entry into its place; returns the last new group: a menu or dialog that was opened.
    * @param {MirrorEntry[]} entries
    */
   #place(entries) {
@@ -108,7 +108,7 @@ export class Mirror {
       if (element === undefined) {
         element = this.#newElement(entry);
         this.#elements.set(entry.id, element);
-        if (entry.role === "group") menu = element;
+        if (entry.role === "group" || entry.role === "dialog") menu = element;
       }
       update(element, entry);
       let parent = this.#elements.get(entry.in ?? "") ?? this.root;
@@ -130,6 +130,7 @@ export class Mirror {
     if (element instanceof HTMLInputElement) element.type = { slider: "range", spinbutton: "number" }[role] ?? "text";
     else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
     else if (role !== "button" && role !== "text") element.setAttribute("role", role);
+    if (role === "dialog") element.ariaModal = "true";
     if (role === "img" && focusable) element.tabIndex = 0;
     [element.dataset.id, element.dataset.role] = [id, role];
     element.addEventListener("focus", () => {

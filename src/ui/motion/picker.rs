@@ -41,7 +41,9 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         let asset = &pairing.model.asset;
         let target = asset.skeleton.joint_of_source(picking.target);
         let name = target.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
-        ui.heading(text::what_follows(&name));
+        let title = text::what_follows(&name);
+        overlays::name_modal(ui, &title);
+        ui.heading(title);
         ui.add_space(4.0);
         let steps = ui.input_mut(|input| {
             let mut presses = |key| input.count_and_consume_key(egui::Modifiers::NONE, key) as isize;

@@ -40,14 +40,14 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         out.commands.push(Command::SetLookAt(target));
     }
     if let LookTarget::Point(mut point) = now
-        && coordinates(ui, &mut point)
+        && coordinates(ui, text::EYES, &mut point)
     {
         out.commands.push(Command::SetLookAt(LookTarget::Point(point)));
     }
 }
 
-/// Fields for the coordinates of a point; returns whether it was changed.
-pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
+/// Fields for the coordinates of a point; returns whether it was changed. Their accessible names begin with the topic.
+pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
     let mut is_changed = false;
     ui.horizontal(|ui| {
         for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
@@ -58,7 +58,9 @@ pub fn coordinates(ui: &mut Ui, point: &mut Vec3) -> bool {
                 egui::emath::format_with_decimals_in_range(value, decimals)
             });
             let field = field.update_while_editing(false);
-            is_changed |= controls::sized(ui, [80.0, 26.0], field).accessible_name(name.trim_end()).changed();
+            let field = controls::sized(ui, [80.0, 26.0], field);
+            controls::named(&field, || text::labelled(topic, name.trim_end()));
+            is_changed |= field.changed();
         }
     });
     is_changed

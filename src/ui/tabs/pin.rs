@@ -86,7 +86,8 @@ fn goal(
 ) {
     let skeleton = &model.asset.skeleton;
     match goal {
-        PinGoal::Point(at) | PinGoal::Look(at) => _ = coordinates(ui, at),
+        PinGoal::Point(at) => _ = coordinates(ui, text::PINNED_TO, at),
+        PinGoal::Look(at) => _ = coordinates(ui, text::LOOK, at),
         PinGoal::Joint(other, _) => {
             let other = skeleton.joint_of_source(*other);
             let name = |joint| title(Some(shown.state), &model.asset, joint).into_owned();

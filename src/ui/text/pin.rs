@@ -21,7 +21,7 @@ pub const PIN_TO_JOINT: &str = "To a joint";
 pub const PIN_HINT: &str = "Drag the handle in the viewport.";
 /// What dragging a handle does, in the help.
 pub const HELP_HANDLE: &str = "Move the goal of a pinned joint";
-/// The list of joints that the selected joint can be held at.
+/// The list of joints that the selected joint can be held at, and the coordinates of a point.
 pub const PINNED_TO: &str = "Pinned to";
 /// Switch: the pin holds only between the in and out points.
 pub const PIN_IN_RANGE: &str = "Only in the range";

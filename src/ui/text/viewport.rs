@@ -17,6 +17,10 @@ pub const SHOW_CLIPS: &str = "Show clips";
 pub const HIDE_INSPECTOR: &str = "Hide inspector";
 /// Wide screens: button that opens the inspector.
 pub const SHOW_INSPECTOR: &str = "Show inspector";
+/// The edge of the clips panel that changes its width.
+pub const RESIZE_CLIPS: &str = "Width of the clips panel";
+/// The edge of the inspector that changes its width.
+pub const RESIZE_INSPECTOR: &str = "Width of the inspector";
 /// Close button of a sheet.
 pub const CLOSE_SHEET: &str = "Close panel";
 /// What [`FRAME_ALL_KEY`] does, in the help.

@@ -19,6 +19,7 @@ pub fn show(context: &Context, is_open: &mut bool, out: &mut Output) {
 fn contents(ui: &mut Ui, out: &mut Output) -> bool {
     ui.set_width((ui.ctx().content_rect().width() - 64.0).min(360.0));
     let weak = style::palette(ui).weak_text;
+    overlays::name_modal(ui, text::ABOUT);
     ui.heading(text::NAME);
     ui.add(egui::Label::new(text::TAGLINE).wrap());
     ui.label(RichText::new(text::VERSION).color(weak));

@@ -59,6 +59,7 @@ fn title_bar(ui: &mut Ui, takes_focus: bool) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
     ui.horizontal(|ui| {
         let title = if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE };
+        overlays::name_modal(ui, title);
         // Not a label, which would be underlined while it has the focus.
         let galley = ui.painter().layout_no_wrap(title.to_owned(), style::HEADING, style::palette(ui).text);
         let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::FOCUSABLE);

@@ -104,7 +104,8 @@ impl Messages {
                 0 => egui::ProgressBar::new(1.0).animate(true),
                 total => egui::ProgressBar::new((*received_bytes as f64 / *total as f64) as f32),
             };
-            ui.add(bar.desired_height(6.0).fill(palette.accent));
+            let bar = ui.add(bar.desired_height(6.0).fill(palette.accent));
+            controls::named(&bar, || text::opening(name));
             ui.horizontal(|ui| {
                 if ui.button(text::CANCEL).clicked() {
                     out.actions.push(UiAction::CancelOpening);

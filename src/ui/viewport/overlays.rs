@@ -42,6 +42,13 @@ pub fn modal(name: &str, context: &Context) -> egui::Modal {
     egui::Modal::new(Id::unique(name)).frame(frame)
 }
 
+/// Gives the modal around its accessible name.
+pub fn name_modal(ui: &Ui, title: &str) {
+    if let Some(modal) = ui.stack().iter().find(|ui| ui.kind() == Some(egui::UiKind::Modal)) {
+        ui.ctx().accesskit_node_builder(modal.unique_id, |node| node.set_label(title));
+    }
+}
+
 fn drop_target(ui: &Ui) {
     let palette = style::palette(ui);
     let painter = ui.ctx().layer_painter(egui::LayerId::new(Order::Tooltip, Id::unique("drop target")));
