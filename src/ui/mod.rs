@@ -408,7 +408,7 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
             .default_size((0.21 * width).clamp(304.0, 420.0))
             .size_range(260.0..=(0.38 * width).clamp(260.0, 520.0))
             .show_separator_line(false)
-            .show(ui, |ui| tabs::show(ui, shown, local, out));
+            .show(ui, |ui| tabs::show(ui, shown, local, 0.0, out));
         name_edge(ui, "inspector", text::RESIZE_INSPECTOR);
     }
 }

@@ -40,6 +40,20 @@ fn a_narrow_screen_has_sheets_one_at_a_time() {
 }
 
 #[test]
+fn the_close_button_of_a_sheet_covers_no_tab() {
+    for size in [[320.0, 640.0], NARROW, ON_ITS_SIDE] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        harness.run_steps(3);
+        let close = harness.get_by_label(text::CLOSE_SHEET).rect();
+        for tab in [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion] {
+            let tab = harness.get_by_role_and_label(Role::Tab, tab.label()).rect();
+            assert!(!tab.shrink(0.5).intersects(close), "{tab:?} and {close:?} on {size:?}");
+        }
+    }
+}
+
+#[test]
 fn a_sheet_is_dragged_higher_and_away() {
     let mut harness = sample_bench(NARROW);
     press(&mut harness, text::CLIPS);
@@ -51,7 +65,9 @@ fn a_sheet_is_dragged_higher_and_away() {
     // Not over the whole viewport.
     let from = grip(&harness);
     drag(&mut harness, from, from + egui::vec2(0.0, -500.0), egui::PointerButton::Primary);
-    assert!(harness.state().viewport.height() >= 56.0 && harness.state().panels.layout.sheet == Some(Sheet::Clips));
+    assert_eq!(harness.state().panels.layout.sheet, Some(Sheet::Clips));
+    let fit = harness.get_by_label(text::FRAME_ALL).rect();
+    assert!(harness.state().viewport.contains_rect(fit), "{fit:?}");
     let from = grip(&harness);
     let down = usual.bottom() + 60.0 - harness.state().viewport.bottom();
     drag(&mut harness, from, from + egui::vec2(0.0, down), egui::PointerButton::Primary);

@@ -60,15 +60,18 @@ pub(super) fn has_motion_tab(library: &Library) -> bool {
     !library.motions().is_empty() || library.active().is_some_and(|model| model.clip_count() > 0)
 }
 
-/// Shows the tab bar and the open tab.
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+/// Shows the tab bar and the open tab. The bar of tabs leaves `corner_width` free at its right.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, corner_width: f32, out: &mut Output) {
     let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if has_motion_tab(shown.library) { tabs.len() } else { tabs.len() - 1 };
     let findings = shown.library.active().map_or(0, |model| model.findings().len());
     let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::file_warnings(findings));
-    if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {
-        local.layout.tab = tab;
-    }
+    ui.scope(|ui| {
+        ui.set_max_width(ui.available_width() - corner_width);
+        if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {
+            local.layout.tab = tab;
+        }
+    });
     ui.add_space(6.0);
     match local.layout.open_tab(shown.library) {
         // Has a scroll area of its own.

@@ -10,6 +10,12 @@ const SIDE_WIDTH: f32 = 280.0;
 
 /// Of the viewport, a sheet at the bottom leaves at least this height.
 const MIN_VIEWPORT_HEIGHT: f32 = 56.0;
+/// The same when the user raises it: what the buttons in the viewport's corner take.
+const MIN_HEIGHT_ABOVE_RAISED: f32 = 76.0;
+/// Sheets at least this wide have their close button beside the tabs, narrower ones above.
+const MIN_WIDTH_BESIDE_TABS: f32 = 360.0;
+/// Height of the handle that a sheet is dragged by.
+const HANDLE_HEIGHT: f32 = 24.0;
 /// Dragged down by this, a sheet closes.
 const CLOSING_DISTANCE: f32 = 48.0;
 
@@ -21,9 +27,9 @@ pub fn side_rect(free: Rect) -> Option<Rect> {
 
 /// The rectangle of a sheet at the bottom of what the panels leave free, `raised` above its usual height as far as there is room.
 pub fn bottom_rect(free: Rect, raised: &mut f32) -> Rect {
-    let max_height = (free.height() - MIN_VIEWPORT_HEIGHT).max(0.0);
-    let usual_height = (free.height() * 0.66).max(240.0).min(max_height);
-    *raised = raised.min(max_height - usual_height);
+    let max_height = |rest: f32| (free.height() - rest).max(0.0);
+    let usual_height = (free.height() * 0.66).max(240.0).min(max_height(MIN_VIEWPORT_HEIGHT));
+    *raised = raised.min((max_height(MIN_HEIGHT_ABOVE_RAISED) - usual_height).max(0.0));
     free.with_min_y(free.bottom() - usual_height - *raised)
 }
 
@@ -40,7 +46,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         background(ui, rect);
         // The whole sheet takes the pointer, so that nothing under it moves.
         ui.allocate_rect(rect, egui::Sense::click_and_drag());
-        let handle = Rect::from_min_size(rect.min, vec2(rect.width() - 48.0, 24.0));
+        let handle = Rect::from_min_size(rect.min, vec2(rect.width() - 48.0, HANDLE_HEIGHT));
         let handle = ui.interact(handle, ui.scope_id().with("handle"), egui::Sense::drag());
         let raised = &mut local.layout.sheet_raised;
         *raised -= handle.drag_delta().y;
@@ -51,15 +57,18 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
             *raised = raised.max(0.0);
         }
         let size = icon_size(ui, ICON_SIZE);
-        let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + 4.0), size);
+        let is_beside_tabs = matches!(sheet, Sheet::Inspector) && rect.width() >= MIN_WIDTH_BESIDE_TABS;
+        let top = if is_beside_tabs { HANDLE_HEIGHT } else { 4.0 };
+        let close = Rect::from_min_size(pos2(rect.right() - size.x - 8.0, rect.top() + top), size);
         let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
         let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
         content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
         match sheet {
             Sheet::Clips => clips::show(&mut content, shown, local, out),
             Sheet::Inspector => {
-                content.add_space(close.bottom() + 2.0 - inner.top());
-                tabs::show(&mut content, shown, local, out);
+                let tabs_top = if is_beside_tabs { close.top() } else { close.bottom() + 2.0 };
+                content.add_space(tabs_top - inner.top());
+                tabs::show(&mut content, shown, local, if is_beside_tabs { size.x } else { 0.0 }, out);
             }
         }
         let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
