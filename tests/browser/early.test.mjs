@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import http from "node:http";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
-import { BACK_ENDS, apply, control, eventually, open, picture, startSite, state, until } from "./browser.mjs";
+import { BACK_ENDS, apply, control, eventually, open, picture, startSite, state, toggleInspector, until } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
@@ -204,6 +204,8 @@ for (const renderer of BACK_ENDS)
       await eventually(() => server.isClosed(), "the download should end");
       assert.ok(isWhite(await middle(page)), "the cube stays as it is");
       await eventually(() => says(page, "without its images"), "the page should say so");
+      await apply(page, { play: false });
+      await toggleInspector(page);
       await control(page, "tab", "Camera").press("Enter");
       await control(page, "button", "Record one loop").press("Enter");
       await eventually(() => says(page, "images have not arrived"), "nothing is recorded");
