@@ -203,10 +203,10 @@ impl App {
         }
     }
 
-    /// Draws a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
+    /// Does a part of drawing a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, character: &crate::library::Model, frame: &crate::frame::Frame) {
-        self.viewport.scene.rehearse(character, frame);
+    pub fn rehearse(&mut self, character: &crate::library::Model, frame: &crate::frame::Frame, part: super::Rehearsal) {
+        self.viewport.scene.rehearse(character, frame, part);
     }
 
     /// Starts time: the first image is on screen.

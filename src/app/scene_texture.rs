@@ -14,6 +14,26 @@ pub(super) struct SceneTexture {
     displayed: Option<([u32; 2], bool)>,
 }
 
+/// A part of drawing a picture. Each blocks a browser for a while.
+#[cfg(target_arch = "wasm32")]
+#[derive(Debug, Clone, Copy)]
+pub enum Rehearsal {
+    /// Its environment is computed.
+    Light,
+    /// The model is uploaded.
+    Upload,
+    /// It is drawn, with the pipelines that this takes.
+    Picture,
+    /// The picture is refined.
+    Refinement,
+}
+
+#[cfg(target_arch = "wasm32")]
+impl Rehearsal {
+    /// All parts, in order.
+    pub const ALL: [Self; 4] = [Self::Light, Self::Upload, Self::Picture, Self::Refinement];
+}
+
 impl SceneTexture {
     pub fn new(gpu: RenderState) -> Self {
         let options = RendererOptions::for_adapter(&gpu.adapter.get_info());
@@ -65,14 +85,21 @@ impl SceneTexture {
         self.last_image()
     }
 
-    /// Draws a model off screen before any other, and forgets it: its id may be that of the next one.
+    /// Does a part of drawing a model off screen before any other. The last part forgets it: its id may be that of the next one.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, model: &Model, frame: &Frame) {
+    pub fn rehearse(&mut self, model: &Model, frame: &Frame, part: Rehearsal) {
         const SIZE: [u32; 2] = [64, 64];
-        if self.upload(model, None).is_ok() {
-            self.draw_off_screen(frame, SIZE);
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        match part {
+            Rehearsal::Light => self.renderer.prepare_light(device, queue, frame),
+            // A model that can't be uploaded is skipped.
+            Rehearsal::Upload => drop(self.renderer.upload(device, queue, model)),
+            Rehearsal::Picture => drop(self.renderer.draw(device, queue, frame, SIZE)),
+            Rehearsal::Refinement => {
+                while self.renderer.refine(device, queue, frame) {}
+                self.renderer.retain(&[]);
+            }
         }
-        self.renderer.retain(&[]);
     }
 
     /// Never draws to the texture of the last image again.

@@ -28,6 +28,8 @@ const IMAGE_QUALITY: usize = 12;
 /// What an environment is made from.
 #[derive(Clone)]
 pub(super) enum Source {
+    /// No light, until the first picture chooses one.
+    Dark,
     Setup(LightSetup),
     Image(Arc<Panorama>),
 }
@@ -41,6 +43,7 @@ impl Source {
 impl PartialEq for Source {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
+            (Self::Dark, Self::Dark) => true,
             (Self::Setup(a), Self::Setup(b)) => a == b,
             (Self::Image(a), Self::Image(b)) => Arc::ptr_eq(a, b),
             _ => false,
@@ -61,6 +64,7 @@ pub(super) struct Environment {
 impl Environment {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, source: Source) -> Self {
         let (cube, quality, key) = match &source {
+            Source::Dark => (Cube::new(4, |_| Vec3::ZERO), 1, None),
             Source::Setup(setup) => {
                 let surroundings = Surroundings::of(*setup);
                 (Cube::new(SIZES[0], |direction| surroundings.radiance(direction)), 1, Some(surroundings.key))
@@ -80,6 +84,7 @@ impl Environment {
     /// Draws the environment from a panorama, for a sharp background.
     pub fn panorama(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
         match &self.source {
+            Source::Dark => upload_panorama(device, queue, 1, &[Vec3::ZERO]),
             Source::Image(image) => upload_panorama(device, queue, image.width(), image.pixels()),
             Source::Setup(setup) => {
                 let surroundings = Surroundings::of(*setup);

@@ -128,7 +128,7 @@ async fn poll_while(device: &wgpu::Device, waits: impl Fn() -> bool) -> bool {
 
 /// Resolves in a later turn of the page's event loop.
 #[cfg(target_arch = "wasm32")]
-async fn next_turn() {
+pub(crate) async fn next_turn() {
     use wasm_bindgen::JsCast;
     let promise = js_sys::Promise::new(&mut |resolve, _| {
         let set_timeout = js_sys::Reflect::get(&js_sys::global(), &"setTimeout".into());

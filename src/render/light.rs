@@ -4,7 +4,6 @@ use super::environment::{self, Environment, Source};
 use super::pipelines::Layouts;
 use super::shadow::ShadowMap;
 use super::texture::single_texel;
-use crate::state::LightSetup;
 
 pub(super) struct LightSources {
     pub environment: Environment,
@@ -22,7 +21,7 @@ pub(super) struct LightSources {
 
 impl LightSources {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) -> Self {
-        let environment = Environment::new(device, queue, Source::Setup(LightSetup::default()));
+        let environment = Environment::new(device, queue, Source::Dark);
         let shadow_map = ShadowMap::new(device);
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);

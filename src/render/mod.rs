@@ -33,6 +33,8 @@ pub use blit::Blit;
 pub use headless::finished;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::headless_device;
+#[cfg(target_arch = "wasm32")]
+pub(crate) use headless::next_turn;
 pub use headless::{HeadlessError, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
 pub use texture::{COMPRESSED_FORMATS, texture_formats};

@@ -205,6 +205,11 @@ impl Renderer {
         self.models.retain(|model| keep.contains(&model.id));
     }
 
+    /// Computes a frame's environment, unless it is the current one. [`Self::draw`] does it as well; it takes a while.
+    pub fn prepare_light(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) {
+        self.light.choose(device, queue, &self.layouts, Source::of(frame));
+    }
+
     /// Draws the frame into a texture of this size in pixels. Returns a view of an Rgba8Unorm texture, gamma-encoded with
     /// premultiplied alpha, which stays the same until the size changes. Models that are not uploaded are skipped.
     pub fn draw(
@@ -220,7 +225,7 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
-        self.light.choose(device, queue, &self.layouts, Source::of(frame));
+        self.prepare_light(device, queue, frame);
         if matches!(frame.look.background, Background::Environment | Background::Blurred) {
             self.light.prepare_sky(device, queue, &self.layouts);
             self.pipelines.prepare_sky(device, &self.layouts, frame.look.tone_map);

@@ -5,9 +5,11 @@ use wasm_bindgen::prelude::*;
 
 use super::calls::with_app;
 use super::page::Page;
+use crate::app::Rehearsal;
 use crate::files::{Item, Role, open_items};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
+use crate::render::next_turn;
 use crate::state::ViewerState;
 
 /// A skinned triangle with the two commonest materials: a base colour map alone, and with a normal map.
@@ -19,13 +21,21 @@ pub async fn rehearse_opening() {
     open_character().await;
 }
 
+/// Lets the browser do something else after each part.
+///
 /// # Errors
 /// If the app has stopped.
 pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
+    next_turn().await;
     let library = open_character().await;
     let mut frame = Frame::default();
     evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
-    library.active().map_or(Ok(()), |character| with_app(page, |app| app.rehearse(character, &frame)))
+    let Some(character) = library.active() else { return Ok(()) };
+    for part in Rehearsal::ALL {
+        next_turn().await;
+        with_app(page, |app| app.rehearse(character, &frame, part))?;
+    }
+    Ok(())
 }
 
 /// A test checks that the character can be opened.
