@@ -18,11 +18,13 @@ pub(super) struct SceneTexture {
 #[cfg(target_arch = "wasm32")]
 #[derive(Debug, Clone, Copy)]
 pub enum Rehearsal {
-    /// Its environment is computed.
+    /// What draws the surroundings is created.
+    Scenery,
+    /// The environment is computed.
     Light,
     /// The model is uploaded.
     Upload,
-    /// It is drawn, with the pipelines that this takes.
+    /// The model is drawn, with the pipelines that this takes.
     Picture,
     /// The picture is refined.
     Refinement,
@@ -31,7 +33,7 @@ pub enum Rehearsal {
 #[cfg(target_arch = "wasm32")]
 impl Rehearsal {
     /// All parts, in order.
-    pub const ALL: [Self; 4] = [Self::Light, Self::Upload, Self::Picture, Self::Refinement];
+    pub const ALL: [Self; 5] = [Self::Scenery, Self::Light, Self::Upload, Self::Picture, Self::Refinement];
 }
 
 impl SceneTexture {
@@ -91,6 +93,7 @@ impl SceneTexture {
         const SIZE: [u32; 2] = [64, 64];
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         match part {
+            Rehearsal::Scenery => self.renderer.prepare_scenery(device),
             Rehearsal::Light => self.renderer.prepare_light(device, queue, frame),
             // A model that can't be uploaded is skipped.
             Rehearsal::Upload => drop(self.renderer.upload(device, queue, model)),

@@ -201,11 +201,17 @@ pub(super) struct Pipelines {
     mesh_groups: [wgpu::BindGroupLayout; 3],
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
+    /// Created for the first picture.
+    pub scenery: Option<Scenery>,
+    /// Sharp and blurred, with the tone mapping they were made for.
+    sky: Option<(ToneMap, [wgpu::RenderPipeline; 2])>,
+}
+
+/// What draws the surroundings of a model.
+pub(super) struct Scenery {
     pub grid: wgpu::RenderPipeline,
     pub ground_shadow: wgpu::RenderPipeline,
     pub background: wgpu::RenderPipeline,
-    /// Sharp and blurred, with the tone mapping they were made for.
-    sky: Option<(ToneMap, [wgpu::RenderPipeline; 2])>,
 }
 
 pub(super) fn pipeline_layout(
@@ -310,7 +316,25 @@ impl<'a> ScenePipeline<'a> {
 }
 
 impl Pipelines {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, samples: u32) -> Self {
+    pub fn new(queue: &wgpu::Queue, layouts: &Layouts, samples: u32) -> Self {
+        Self {
+            queue: queue.clone(),
+            samples,
+            modules: HashMap::new(),
+            mesh_groups: [&layouts.frame, &layouts.light, &layouts.draw].map(Clone::clone),
+            by_key: HashMap::new(),
+            meshes: Vec::new(),
+            scenery: None,
+            sky: None,
+        }
+    }
+
+    /// Creates the pipelines that draw a model's surroundings, unless they exist.
+    pub fn prepare_scenery(&mut self, device: &wgpu::Device, layouts: &Layouts) {
+        if self.scenery.is_some() {
+            return;
+        }
+        let samples = self.samples;
         let frame = Some(&layouts.frame);
         let light = Some(&layouts.light);
         let frame_layout = pipeline_layout(device, "frame only", &[frame]);
@@ -326,7 +350,7 @@ impl Pipelines {
         };
         let grid = ground("grid", "grid_vertex", "grid_fragment");
         let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
-        flush(queue);
+        flush(&self.queue);
 
         let background_module = shaders::BACKDROP.module(device);
         // Drawn behind everything, so only visible pixels are shaded.
@@ -335,21 +359,8 @@ impl Pipelines {
             ..ScenePipeline::new("background", &background_module, &frame_layout, ["full_screen", "backdrop"])
         }
         .create(device, samples);
-        let mut pipelines = Self {
-            queue: queue.clone(),
-            samples,
-            modules: HashMap::new(),
-            mesh_groups: [&layouts.frame, &layouts.light, &layouts.draw].map(Clone::clone),
-            by_key: HashMap::new(),
-            meshes: Vec::new(),
-            grid,
-            ground_shadow,
-            background,
-            sky: None,
-        };
-        pipelines.prepare_module(device, SurfacePermutation::PLAIN);
-        flush(queue);
-        pipelines
+        self.scenery = Some(Scenery { grid, ground_shadow, background });
+        flush(&self.queue);
     }
 
     fn prepare_module(&mut self, device: &wgpu::Device, permutation: SurfacePermutation) {

@@ -4,7 +4,6 @@ use std::ops::AddAssign;
 
 use super::draw_list::{DrawList, Item};
 use super::environment::Source;
-use super::flush;
 use super::frame_uniform::{GroundPlane, frame_uniform};
 use super::light::LightSources;
 use super::model::{GpuModel, ModelUploader};
@@ -137,14 +136,11 @@ struct Sample<'a> {
 }
 
 impl Renderer {
-    /// Creates what every picture needs. Pipelines of meshes and overlays follow when they are first drawn.
+    /// Creates what takes little time. The rest follows when it is first drawn.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
-        flush(queue);
         let layouts = Layouts::new(device);
-        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
-        // A browser compiles the pipelines in another process meanwhile.
+        let pipelines = Pipelines::new(queue, &layouts, options.samples);
         let light = LightSources::new(device, queue, &layouts);
-        flush(queue);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");
         let shadow_buffer = UniformBuffer::new(device, "shadow");
@@ -205,7 +201,12 @@ impl Renderer {
         self.models.retain(|model| keep.contains(&model.id));
     }
 
-    /// Computes a frame's environment, unless it is the current one. [`Self::draw`] does it as well; it takes a while.
+    /// Creates what draws a model's surroundings, unless it exists. [`Self::draw`] does it as well; it takes a while.
+    pub fn prepare_scenery(&mut self, device: &wgpu::Device) {
+        self.pipelines.prepare_scenery(device, &self.layouts);
+    }
+
+    /// Computes a frame's environment, unless it is the current one. So does [`Self::draw`]; it takes a while.
     pub fn prepare_light(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) {
         self.light.choose(device, queue, &self.layouts, Source::of(frame));
     }
@@ -225,6 +226,8 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
+        self.prepare_scenery(device);
+        // A browser compiles the pipelines in another process meanwhile.
         self.prepare_light(device, queue, frame);
         if matches!(frame.look.background, Background::Environment | Background::Blurred) {
             self.light.prepare_sky(device, queue, &self.layouts);
@@ -440,19 +443,20 @@ impl Renderer {
             pass.set_bind_group(1, &self.light.group, &[]);
             stats += overlay_call;
         }
+        let Some(scenery) = &self.pipelines.scenery else { return stats };
         if background == Background::Studio {
-            pass.set_pipeline(&self.pipelines.background);
+            pass.set_pipeline(&scenery.background);
             pass.draw(0..3, 0..1);
             stats += overlay_call;
         }
         if ground.is_some_and(|ground| ground.grid) {
-            pass.set_pipeline(&self.pipelines.grid);
+            pass.set_pipeline(&scenery.grid);
             pass.draw(0..18, 0..1);
             stats += overlay_call;
         }
         // After the grid, so that the shadow darkens its lines.
         if ground.is_some_and(|ground| ground.shadow) {
-            pass.set_pipeline(&self.pipelines.ground_shadow);
+            pass.set_pipeline(&scenery.ground_shadow);
             pass.draw(0..6, 0..1);
             stats += overlay_call;
         }
