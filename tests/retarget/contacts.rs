@@ -132,7 +132,7 @@ fn hands_to_the_ground(figure: Figure) -> Figure {
     bend_down(figure, 134.5)
 }
 
-/// How high the left fingertips are above the toes, as a share of the height of a figure of boxes.
+/// How high the left fingertips are above the ground, where the toes rest, as a share of the height of a figure of boxes.
 fn fingertips(model: &Figure, clip: &Clip, time: f32) -> f64 {
     let rest = model.world_of(model.asset.skeleton.rest());
     let place = |world: &[(DQuat, DVec3)], slot: Slot| world[model.joint(slot).get()];
@@ -141,7 +141,7 @@ fn fingertips(model: &Figure, clip: &Clip, time: f32) -> f64 {
     let world = model.world(clip, time);
     let (turn, wrist) = place(&world, Slot::LeftHand);
     let tips = wrist + turn * DVec3::X * (0.17 / 0.28 * upper_arm);
-    (tips.y - place(&world, Slot::LeftToes).1.y) / height
+    (tips.y - place(&rest, Slot::LeftToes).1.y) / height
 }
 
 fn retarget(model: &Figure, motion: &Figure, contacts: Contacts) -> (Retargeted, Figures) {
@@ -241,13 +241,14 @@ fn arms_stay_out_of_the_ground() {
     let motion = bend_down(with_boxes(&Rig::default(), 0.1), 120.0);
     let source = fingertips(&motion, &motion.asset.clips[0], 1.7);
     assert!((0.05..0.08).contains(&source), "{source}");
-    let model = with_boxes(&Rig { leg_length: 0.85, ..Rig::default() }, 0.1);
+    let model = with_boxes(&Rig { leg_length: 0.8, ..Rig::default() }, 0.1);
     let [off, keep] = [Contacts::Off, Contacts::Keep].map(|contacts| {
         let (done, figures) = retarget(&model, &motion, contacts);
         assert_eq!(figures.contact_error_metres_mean, None);
         fingertips(&model, &done.clip, 1.7)
     });
-    assert!(off < -0.02 && keep > -0.006, "{off} {keep}");
+    // The outermost points of a hand are an eighth of its length before the tips.
+    assert!(off < -0.04 && keep > -0.024, "{off} {keep}");
 }
 
 /// The source gets down to a push-up.
@@ -389,8 +390,9 @@ fn real_people_touch_where_their_sources_do() {
     let [[inside, missed, direction, slide], kept] = sums;
     assert!(inside > 0.1 && missed > 0.1, "{sums:?}");
     assert!(kept[0] < 0.6 * inside && kept[1] < 0.5 * missed, "{sums:?}");
-    // These motions touch the body more than most do: over all pairs, limbs turn by less than 1.5°.
-    assert!(kept[2] < direction + 4.0 * 2.0 && kept[3] <= slide + 1e-6, "{sums:?}");
+    // These motions touch the body more than most do, and the boxer props himself up on the ground: over all pairs, limbs turn by
+    // less than 1.5°.
+    assert!(kept[2] < direction + 4.0 * 2.5 && kept[3] <= slide + 1e-6, "{sums:?}");
 }
 
 /// Its hands hold a gun, skinned to a joint of one hand: that is neither a part of its body nor a contact.

@@ -57,16 +57,6 @@ const OTHERS: [(&str, &str); 14] = [
     ("deepmotion_blender_example.bvh", ""),
 ];
 
-/// Motions that rest on the ground with more than their feet: hands, knees or the back.
-const ON_THE_GROUND: [(&str, &str); 6] = [
-    ("Knight.glb", "Lie_Down"),
-    ("Knight.glb", "Lie_Idle"),
-    ("Knight.glb", "Lie_StandUp"),
-    ("Knight.glb", "Sit_Floor_Down"),
-    ("Knight.glb", "Sit_Floor_StandUp"),
-    ("Knight.glb", "Death_B"),
-];
-
 /// Figures of one clip, and the time that it took to bake.
 struct Row {
     figures: Figures,
@@ -88,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "model\tmotion\tsolids\tkept\tmesh\tkept\terror\tkept\tlimbs\tkept\tslide\tkept\tjerk\tkept\tturn\tkept\tms\tkept"
     );
     let mut all: Vec<[Row; 2]> = Vec::new();
-    for (set, motions) in [("tuned", &TUNED[..]), ("others", &OTHERS), ("on the ground", &ON_THE_GROUND)] {
+    for (set, motions) in [("tuned", &TUNED[..]), ("others", &OTHERS)] {
         let mut pairs: Vec<(&Loaded, &Loaded, usize)> = Vec::new();
         for (file, clip) in motions {
             let motion = people.iter().find(|person| person.name == *file).ok_or(*file)?;

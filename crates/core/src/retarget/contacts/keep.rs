@@ -26,7 +26,7 @@ const COMPROMISES: usize = 2;
 const PUSH_WEIGHT: f64 = 10.0;
 
 /// Shares of the body's height: a wrist is never moved further than the first, and moves below the second are none.
-const MAX_MOVE: f64 = 0.13;
+const MAX_MOVE: f64 = 0.11;
 const MIN_MOVE: f64 = 1e-4;
 
 /// A point that is less deep than this share of the body's height stays.
