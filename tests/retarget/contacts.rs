@@ -1,4 +1,4 @@
-//! Contacts of the body with itself, on figures with bodies of boxes.
+//! Contacts of the body with itself and the ground, on figures with bodies of boxes.
 
 use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, SampleCursor, model_from_joint};
 use gaitway::asset::{Asset, AssetParts, MeshInstance, Slot};
