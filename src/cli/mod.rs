@@ -207,7 +207,7 @@ struct RetargetOptions {
     /// Foot planting.
     #[arg(long, value_enum)]
     feet: Option<FeetArgument>,
-    /// Contacts of the body with itself.
+    /// Contacts of hands with the body and the ground.
     #[arg(long, value_enum)]
     contacts: Option<ContactsArgument>,
     /// Translations of joints other than the hips.

@@ -114,7 +114,10 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> 
         figure("Height of the soles", length(figures.foot_hover_metres_mean), verdicts.foot_hover),
         figure("Max. sole penetration", length(figures.sole_penetration_metres_max), verdicts.sole_penetration),
         figure("Max. joint penetration", length(figures.ground_penetration_metres_max), verdicts.ground_penetration),
-        group("CONTACTS", "Where the source's hands touch its body, and limbs inside other parts of the body."),
+        group(
+            "CONTACTS",
+            "Where the source's hands touch its body or the ground, and limbs inside other parts of the body.",
+        ),
         figure("Contact error", length(figures.contact_error_metres_mean), None),
         figure("Limbs inside the body", share(figures.self_penetration_share), None),
     ]);

@@ -9,6 +9,7 @@ use super::shape::Side;
 use super::solid::{Place, Solid};
 use crate::anim::JointIndex;
 use crate::asset::{Humanoid, Slot};
+use crate::retarget::feet::{Sole, Soles};
 use crate::retarget::pose::{PartialPose, WorldPose};
 use crate::retarget::transfer::Transfer;
 
@@ -41,6 +42,7 @@ pub struct Body {
     pub has_mesh: bool,
     /// From the lowest to the highest mapped joint, in the body's own unit.
     pub height: f64,
+    pub soles: Soles,
 }
 
 impl Body {
@@ -48,6 +50,11 @@ impl Body {
         let frame =
             |(&joint, &rest): (&JointIndex, &DQuat)| (pose.position(joint), pose.rotation(joint) * rest.conjugate());
         self.joints.iter().zip(&self.rest).map(frame).collect()
+    }
+
+    /// The joints that its motion needs.
+    pub fn moving_joints(&self) -> impl Iterator<Item = JointIndex> {
+        self.joints.iter().copied().chain(self.soles.feet.iter().flatten().flat_map(Sole::joints))
     }
 
     /// Where a point of a limb is.
@@ -65,6 +72,32 @@ impl Body {
     pub fn outward(&self, part: usize, place: Place, frames: &Frames) -> DVec3 {
         frames[part].1 * self.solids[part].outward(place)
     }
+}
+
+/// A body at some times.
+#[derive(Debug, Default)]
+pub struct Motion {
+    pub frames: Vec<Frames>,
+    /// Heights of the soles' lowest points, by foot.
+    pub soles: Vec<Vec<f64>>,
+}
+
+impl Motion {
+    /// Adds the pose of one more time.
+    pub fn push(&mut self, body: &Body, pose: &WorldPose) {
+        self.frames.push(body.frames(pose));
+        self.soles.resize_with(body.soles.feet.iter().flatten().count(), Vec::new);
+        for (heights, sole) in self.soles.iter_mut().zip(body.soles.feet.iter().flatten()) {
+            heights.push(sole.lowest(pose));
+        }
+    }
+}
+
+/// A part of an arm with points.
+#[derive(Debug)]
+pub struct ArmPart {
+    pub part: usize,
+    pub is_hand: bool,
 }
 
 /// A limb's part and another that it may touch: arms touch everything but themselves, legs only each other.
@@ -102,6 +135,7 @@ pub struct Bodies {
     /// Number of points on each body's limbs.
     pub limb_points: u32,
     pub pairs: Vec<PartPair>,
+    pub arm_parts: Vec<ArmPart>,
     /// Shoulder, elbow and wrist of the target's arms, as in [`Region::arm`]. The wrist needn't be mapped.
     pub arms: [Option<[JointIndex; 3]>; 2],
 }
@@ -137,8 +171,12 @@ impl Bodies {
         let levers = parts.iter().map(|part| part.kind.levers.unwrap_or([0.0, 0.5])).collect();
         let mut limb_points = 0;
         let mut pairs = Vec::new();
+        let mut arm_parts = Vec::new();
         for (limb, part) in parts.iter().enumerate().filter(|(_, part)| part.kind.levers.is_some()) {
             limb_points += POINTS as u32;
+            if part.kind.region.arm().is_some() {
+                arm_parts.push(ArmPart { part: limb, is_hand: part.is_hand() });
+            }
             for (other, &region) in regions.iter().enumerate() {
                 let own = part.kind.region;
                 if own != region && (!own.is_leg() || region.is_leg()) {
@@ -151,7 +189,7 @@ impl Bodies {
             let wrist = target_joint(wrist).or_else(|| slots[1].joint(wrist))?;
             Some([target_joint(shoulder)?, target_joint(elbow)?, wrist])
         });
-        let mut bodies = Self { source, target, regions, levers, limb_points, pairs, arms };
+        let mut bodies = Self { source, target, regions, levers, limb_points, pairs, arm_parts, arms };
         let rest = bodies.target.frames(&alignment.unaligned_target);
         for meeting in bodies.meetings(&bodies.target, &rest, 0.0) {
             bodies.pairs[meeting.pair].at_rest[meeting.point] = -meeting.distance;
@@ -159,11 +197,13 @@ impl Bodies {
         (!bodies.pairs.is_empty()).then_some(bodies)
     }
 
-    /// Where the source's parts are at each time.
-    pub fn source_frames(&self, transfer: &Transfer, times: &[f32]) -> Vec<Frames> {
+    /// Where the source is at each time.
+    pub fn source_motion(&self, transfer: &Transfer, times: &[f32]) -> Motion {
         let world_from_model = transfer.alignment.source.world_from_model;
-        let mut pose = PartialPose::new(transfer.tracks.skeleton, world_from_model, self.source.joints.iter().copied());
-        times.iter().map(|&time| self.source.frames(pose.update(transfer.tracks.locals_at(time)))).collect()
+        let mut pose = PartialPose::new(transfer.tracks.skeleton, world_from_model, self.source.moving_joints());
+        let mut motion = Motion::default();
+        times.iter().for_each(|&time| motion.push(&self.source, pose.update(transfer.tracks.locals_at(time))));
+        motion
     }
 
     /// How far a place on a part moves if the end of its limb does, as a share.

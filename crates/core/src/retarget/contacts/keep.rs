@@ -1,15 +1,18 @@
-//! Moves hands to where the source's touch, and arms out of other parts of the body: how far each wrist moves, smooth over time,
-//! and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as they are.
+//! Moves hands to where the source's touch, and arms out of other parts of the body and the ground: how far each wrist moves, smooth
+//! over time, and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as they are.
 
 use glam::{DQuat, DVec3};
 
 use super::arm::Arm;
-use super::body::{Bodies, Frames, place_of};
+use super::body::{Bodies, Frames, Motion, place_of};
+use super::ground::{Ground, Sunken};
 use super::smooth::eased;
 use super::touch::Touches;
 use crate::anim::{Clip, JointIndex, Keys, Property};
+use crate::retarget::feet::ranges;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
+use crate::retarget::math::HORIZONTAL;
 use crate::retarget::pose::{Scratch, WorldPose};
 use crate::retarget::times::dense_times;
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
@@ -23,7 +26,7 @@ const COMPROMISES: usize = 2;
 const PUSH_WEIGHT: f64 = 10.0;
 
 /// Shares of the body's height: a wrist is never moved further than the first, and moves below the second are none.
-const MAX_MOVE: f64 = 0.13;
+const MAX_MOVE: f64 = 0.11;
 const MIN_MOVE: f64 = 1e-4;
 
 /// A point that is less deep than this share of the body's height stays.
@@ -54,9 +57,10 @@ struct Wish {
     share: f64,
 }
 
-/// A point of a limb that is deeper inside another part than it may be.
+/// A point of a limb that is deeper inside another part, or in the ground, than it may be.
 struct Overlap {
-    pair: usize,
+    limb: usize,
+    other: Option<usize>,
     point: usize,
     excess: f64,
     outward: DVec3,
@@ -69,6 +73,10 @@ struct Solver<'a> {
     poses: Vec<WorldPose>,
     moments: Vec<Moment>,
     arms: [Option<Arm>; 2],
+    /// `None` without feet.
+    ground: Option<Ground>,
+    /// How far each wrist has to move over the ground to stay in place while it rests there, at each time.
+    holds: [Vec<DVec3>; 2],
     /// How far each wrist moves, at each time.
     moves: [Vec<DVec3>; 2],
 }
@@ -114,20 +122,38 @@ impl<'a> Solver<'a> {
     fn new(transfer: &Transfer, bodies: &'a Bodies, clip: &Clip) -> Self {
         let times = dense_times(transfer.tracks.clip);
         let (laws, _) = rotation_laws(transfer);
-        let yaw = removed_travel(transfer, &laws, &times).yaw;
+        let removed = removed_travel(transfer, &laws, &times);
         let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
-        let source = bodies.source_frames(transfer, &times);
+        let source = bodies.source_motion(transfer, &times);
         let mut scratch = Scratch::default();
         let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
+        let mut target = Motion::default();
+        poses.iter().for_each(|pose| target.push(&bodies.target, pose));
+        let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
         let mut moments = Vec::with_capacity(times.len());
-        for ((&time, pose), touches) in times.iter().zip(&poses).zip(bodies.touches(&times, &source)) {
-            let turn = DQuat::from_rotation_y(yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
-            let frames = bodies.target.frames(pose);
-            moments.push(Moment { frames, touches, target_from_source: (turn, scale) });
+        for ((&time, frames), touches) in times.iter().zip(target.frames).zip(bodies.touches(&times, &source.frames)) {
+            moments.push(Moment { frames, touches, target_from_source: (removed.turn(time), scale) });
         }
         let arms = bodies.arms.map(|joints| Some(Arm::new(joints?, &transfer.alignment.target)));
-        let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
-        Self { bodies, times, poses, moments, arms, moves }
+        let [moves, mut holds] = [(); 2].map(|()| std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]));
+        for (part, touching) in bodies.arm_parts.iter().zip(ground.iter().flat_map(|ground| &ground.touching)) {
+            let Some(arm) = bodies.regions[part.part].arm().filter(|&arm| arms[arm].is_some()) else { continue };
+            // How far the wrist is from where the source's is: constant if it goes over the ground like that.
+            let offset = |at: usize| {
+                let turn_back = moments[at].target_from_source.0.conjugate();
+                let wrist = bodies.target.joints[part.part];
+                let wrist = removed.restored(transfer, &poses[at], wrist, at, turn_back);
+                (wrist - scale * source.frames[at][part.part].0) * HORIZONTAL
+            };
+            for contact in ranges(touching) {
+                let offsets: Vec<DVec3> = contact.clone().map(offset).collect();
+                let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
+                for (at, offset) in contact.zip(offsets) {
+                    holds[arm][at] = moments[at].target_from_source.0 * (mean - offset);
+                }
+            }
+        }
+        Self { bodies, times, poses, moments, arms, ground, holds, moves }
     }
 
     /// What touches on the source should touch on the target.
@@ -135,20 +161,25 @@ impl<'a> Solver<'a> {
         let moment = &self.moments[at];
         let mut wishes = [Wish::default(); 2];
         for miss in self.bodies.misses(&moment.touches, &moment.frames, moment.target_from_source) {
-            self.wish(&mut wishes, miss.pair, 1.0, miss.by, [miss.weight; 2]);
+            let pair = &self.bodies.pairs[miss.pair];
+            self.wish(&mut wishes, pair.limb, Some(pair.other), 1.0, miss.by, [miss.weight; 2]);
+        }
+        for (part, by) in self.ground.iter().flat_map(|ground| ground.misses(self.bodies, at, &moment.frames)) {
+            if let Some(arm) = self.bodies.regions[part].arm() {
+                let over = (self.holds[arm][at] - self.moves[arm][at]) * HORIZONTAL;
+                self.wish(&mut wishes, part, None, 1.0, over + by * DVec3::Y, [1.0; 2]);
+            }
         }
         wishes
     }
 
     /// What is inside other parts, and is not on the source, should come out.
     fn push_out(&self, at: usize) -> [Wish; 2] {
-        let moment = &self.moments[at];
         let mut wishes = [Wish::default(); 2];
-        for overlap in self.overlaps(moment, &moment.frames) {
-            let share = (overlap.excess / (CLEARLY_INSIDE * self.bodies.target.height)).min(1.0);
-            let lever = self.bodies.lever(self.bodies.pairs[overlap.pair].limb, place_of(overlap.point).share);
-            let by = overlap.excess * overlap.outward;
-            self.wish(&mut wishes, overlap.pair, lever, by, [overlap.excess, share]);
+        for Overlap { limb, other, point, excess, outward } in self.overlaps(at) {
+            let share = (excess / (CLEARLY_INSIDE * self.bodies.target.height)).min(1.0);
+            let lever = self.bodies.lever(limb, place_of(point).share);
+            self.wish(&mut wishes, limb, other, lever, excess * outward, [excess, share]);
         }
         wishes
     }
@@ -165,30 +196,52 @@ impl<'a> Solver<'a> {
         wishes
     }
 
-    fn overlaps(&self, moment: &Moment, frames: &Frames) -> Vec<Overlap> {
+    fn overlaps(&self, at: usize) -> Vec<Overlap> {
         let target = &self.bodies.target;
-        let mut overlaps = Vec::new();
+        let moment = &self.moments[at];
+        let frames = &moment.frames;
+        let tolerated = TOLERATED * target.height;
+        let sunken = self.ground.iter().flat_map(|ground| ground.sunken(self.bodies, at, frames, tolerated));
+        let mut overlaps: Vec<Overlap> = sunken
+            .map(|Sunken { part, point, depth }| Overlap {
+                limb: part,
+                other: None,
+                point,
+                excess: depth,
+                outward: DVec3::Y,
+            })
+            .collect();
         for meeting in self.bodies.meetings(target, frames, 0.0) {
             let pair = &self.bodies.pairs[meeting.pair];
             let of_source = moment.target_from_source.1 * moment.touches.depth(meeting.pair, meeting.point);
-            let allowed = pair.at_rest[meeting.point].max(of_source) + TOLERATED * target.height;
+            let allowed = pair.at_rest[meeting.point].max(of_source) + tolerated;
             let excess = -meeting.distance - allowed;
             if excess > 0.0 {
                 let outward = target.outward(pair.other, meeting.place, frames);
-                overlaps.push(Overlap { pair: meeting.pair, point: meeting.point, excess, outward });
+                let (limb, other) = (pair.limb, Some(pair.other));
+                overlaps.push(Overlap { limb, other, point: meeting.point, excess, outward });
             }
         }
         overlaps
     }
 
-    /// Adds a wish of a limb's part, which moves with its wrist by `lever`, relative to another part. Two arms share it.
-    fn wish(&self, wishes: &mut [Wish; 2], pair: usize, lever: f64, by: DVec3, [weight, share]: [f64; 2]) {
-        let pair = &self.bodies.pairs[pair];
+    /// Adds a wish of a limb's part, which moves with its wrist by `lever`, relative to another part or the ground. Two arms share
+    /// it.
+    fn wish(
+        &self,
+        wishes: &mut [Wish; 2],
+        limb: usize,
+        other: Option<usize>,
+        lever: f64,
+        by: DVec3,
+        [weight, share]: [f64; 2],
+    ) {
         let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.arms[arm].is_some());
-        let (own, partner) = (movable(pair.limb), movable(pair.other));
+        let own = movable(limb).map(|arm| (arm, lever));
+        let partner = other.and_then(|part| Some((movable(part)?, self.bodies.lever(part, 0.5))));
         let by = if own.is_some() && partner.is_some() { 0.5 * by } else { by };
-        for (arm, lever, by) in [(own, lever, by), (partner, self.bodies.lever(pair.other, 0.5), -by)] {
-            if let Some(arm) = arm {
+        for (moved, by) in [(own, by), (partner, -by)] {
+            if let Some((arm, lever)) = moved {
                 wishes[arm].sum += weight * lever * by;
                 wishes[arm].squares += weight * lever * lever;
                 wishes[arm].share = share.max(wishes[arm].share);

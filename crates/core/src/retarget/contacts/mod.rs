@@ -1,8 +1,9 @@
-//! Contacts of the body with itself: where the source touches itself, and whether the target does. Bodies are approximated by
-//! one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the skeleton.
+//! Contacts of the body with itself and of hands with the ground: where the source touches, and whether the target does. Bodies are
+//! approximated by one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the skeleton.
 
 mod arm;
 mod body;
+mod ground;
 mod keep;
 mod parts;
 mod shape;
@@ -10,6 +11,7 @@ mod smooth;
 mod solid;
 mod touch;
 
-pub use body::Bodies;
+pub use body::{Bodies, Motion};
+pub use ground::Ground;
 pub use keep::kept_contacts;
 pub use touch::TouchFigures;

@@ -8,6 +8,7 @@ use super::solid::Solid;
 use crate::anim::{JointIndex, Skeleton};
 use crate::asset::{Asset, Humanoid, MeshInstance};
 use crate::mesh::{Geometry, Skin};
+use crate::retarget::feet::Soles;
 use crate::retarget::map::Pair;
 use crate::retarget::pose::{WorldPose, ancestry, is_within};
 use crate::retarget::transfer::Transfer;
@@ -41,7 +42,8 @@ impl Side<'_> {
             let y = self.rest.position((self.joint)(pair)).y;
             (low, high) = (low.min(y), high.max(y));
         }
-        let mut body = Body { height: (high - low).max(1e-9), ..Body::default() };
+        let soles = Soles::of(transfer, self.asset, self.skinned, self.joint);
+        let mut body = Body { height: (high - low).max(1e-9), soles, ..Body::default() };
         body.joints = parts.iter().map(|part| (self.joint)(part.pair)).collect();
         let (vertices, is_holding) = self.vertices(transfer, parts, &body.joints);
         body.is_holding = is_holding;

@@ -150,7 +150,19 @@ pub struct TouchFigures {
 }
 
 impl TouchFigures {
-    pub fn add(&mut self, bodies: &Bodies, touches: &Touches, target: &Frames, target_from_source: (DQuat, f64)) {
+    /// Adds one time. `on_ground` are the distances of hands that rest on the ground from where they should be.
+    pub fn add(
+        &mut self,
+        bodies: &Bodies,
+        touches: &Touches,
+        on_ground: impl Iterator<Item = f64>,
+        target: &Frames,
+        target_from_source: (DQuat, f64),
+    ) {
+        for miss in on_ground {
+            self.miss += miss.abs();
+            self.weight += 1.0;
+        }
         for miss in bodies.misses(touches, target, target_from_source) {
             self.miss += miss.weight * miss.by.length();
             self.weight += miss.weight;

@@ -1,10 +1,14 @@
 //! When a foot is in contact with the ground: slow and low, both relative to the body, with hysteresis against flicker.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
+use crate::anim::JointIndex;
 use crate::retarget::align::Alignment;
 use crate::retarget::map::ResolvedMap;
 use crate::retarget::math::HORIZONTAL;
+use crate::retarget::transfer::Transfer;
 
 /// Speed (per second) and height above the ground, as shares of the body's height. A contact begins below the first and ends
 /// above the second of each. For a person of 1.8 m: 0.25 and 0.5 m/s, 4 and 7 cm.
@@ -28,12 +32,30 @@ pub fn source_height(map: &ResolvedMap, alignment: &Alignment) -> f64 {
     (high - low).max(1e-9)
 }
 
+/// Finds the contacts of the source's feet, given by their toes or ankles.
+pub fn contacts_of(transfer: &Transfer, feet: &[JointIndex], times: &[f32]) -> SourceContacts {
+    let path = |&joint: &JointIndex| times.iter().map(|&time| transfer.source_position(joint, time)).collect();
+    let positions: Vec<Vec<DVec3>> = feet.iter().map(path).collect();
+    let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
+    source_contacts(times, &positions, &hips, source_height(transfer.map, transfer.alignment))
+}
+
 /// What the feet of a source do, each at the sampled times.
 #[derive(Debug)]
 pub struct SourceContacts {
     /// Whether a foot is in contact with the ground, by foot and time.
     pub touching: Vec<Vec<bool>>,
     pub ground: Ground,
+}
+
+impl SourceContacts {
+    /// Whether a hand is in contact with the same ground at each time. `positions` are relative to the ground's height.
+    pub fn of_hand(&self, times: &[f32], positions: &[DVec3], body_height: f64) -> Vec<bool> {
+        // Below the ground, as far as above it: hands that are further down are beside what the feet stand on.
+        let relative = positions.iter().zip(&self.ground.travel).map(|(at, travel)| *at - *travel);
+        let relative: Vec<DVec3> = relative.map(|at| DVec3 { y: at.y.abs(), ..at }).collect();
+        contacts(times, &relative, 0.0, body_height, TREADMILL_SPREAD * self.ground.speed)
+    }
 }
 
 /// How the ground moves below a figure that walks or runs in place, in source units.
@@ -51,17 +73,23 @@ pub fn source_contacts(times: &[f32], positions: &[Vec<DVec3>], hips: &[DVec3], 
     let ground = moving_ground(times, positions, hips, body_height);
     let on_ground = |positions: &Vec<DVec3>| {
         let relative: Vec<DVec3> = positions.iter().zip(&ground.travel).map(|(at, travel)| *at - *travel).collect();
-        contacts(times, &relative, body_height, TREADMILL_SPREAD * ground.speed)
+        foot_contacts(times, &relative, body_height, TREADMILL_SPREAD * ground.speed)
     };
     SourceContacts { touching: positions.iter().map(on_ground).collect(), ground }
 }
 
-/// Whether the foot is in contact at each time. `slack` is added to the speed that a foot in contact may have.
-fn contacts(times: &[f32], positions: &[DVec3], body_height: f64, slack: f64) -> Vec<bool> {
+/// Whether the foot is in contact at each time: its own low height is the ground's.
+fn foot_contacts(times: &[f32], positions: &[DVec3], body_height: f64, slack: f64) -> Vec<bool> {
+    let speed = |at: usize| velocity(times, positions, at).length();
+    let slow = (0..positions.len()).filter(|&at| speed(at) < SPEED[0] * body_height + slack);
+    let ground = low_height(slow.map(|at| positions[at].y).collect());
+    contacts(times, positions, ground, body_height, slack)
+}
+
+/// Whether a foot or hand is in contact at each time. `slack` is added to the speed that it may have in contact.
+fn contacts(times: &[f32], positions: &[DVec3], ground: f64, body_height: f64, slack: f64) -> Vec<bool> {
     let speed = |at: usize| velocity(times, positions, at).length();
     let max_speed = SPEED.map(|share| share * body_height + slack);
-    let slow = (0..positions.len()).filter(|&at| speed(at) < max_speed[0]);
-    let ground = low_height(slow.map(|at| positions[at].y).collect());
     let mut in_contact = false;
     (0..positions.len())
         .map(|at| {
@@ -157,6 +185,13 @@ fn integrated(times: &[f32], known: &[(f32, DVec3)]) -> Vec<DVec3> {
     travels
 }
 
+/// Ranges in which all are true.
+pub fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
+    let starts = (0..touching.len()).filter(|&at| touching[at] && (at == 0 || !touching[at - 1]));
+    let end = |from: usize| (from..touching.len()).find(|&at| !touching[at]).unwrap_or(touching.len());
+    starts.map(|from| from..end(from)).collect()
+}
+
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     let at = values.len() / 2;
@@ -179,7 +214,7 @@ mod tests {
             })
             .collect();
         let times: Vec<f32> = (0..90).map(|frame| frame as f32 / 30.0).collect();
-        let found = contacts(&times, &positions, height, 0.0);
+        let found = foot_contacts(&times, &positions, height, 0.0);
         for frame in [2, 5, 15, 25, 65, 75, 85] {
             assert!(found[frame], "in contact at frame {frame}");
         }
@@ -226,7 +261,7 @@ mod tests {
     fn a_foot_that_is_never_slow_has_no_contacts() {
         let positions: Vec<DVec3> = (0..30).map(|frame| DVec3::new(0.0, 0.0, 0.1 * f64::from(frame))).collect();
         let times: Vec<f32> = (0..30).map(|frame| frame as f32 / 30.0).collect();
-        assert!(!contacts(&times, &positions, 1.8, 0.0).contains(&true));
-        assert!(contacts(&[], &[], 1.8, 0.0).is_empty());
+        assert!(!foot_contacts(&times, &positions, 1.8, 0.0).contains(&true));
+        assert!(foot_contacts(&[], &[], 1.8, 0.0).is_empty());
     }
 }

@@ -18,24 +18,29 @@ const MAX_JUMP_SECS: f64 = 1.5;
 /// second. In between, it is brought down in part.
 const MAX_FLOAT: [f64; 2] = [0.25, 0.35];
 
-/// Returns by how much the body is too high: the first quartile of the soles' heights in contact, since the minimum is often a
-/// glitch of the capture. Without contacts, the 5th percentile of the lower sole's height. `None` without legs.
-pub fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
-    let heights = |leg: &LegContacts| {
-        let touching = poses.iter().zip(&leg.touching).filter(|(_, touching)| **touching);
-        touching.map(|(pose, _)| leg.sole.lowest(pose)).collect::<Vec<f64>>()
+/// Returns the height of what a clip's feet stand on, given the heights of their soles and when they are in contact: the first
+/// quartile of the heights in contact, since the minimum is often a glitch of the capture. Without contacts, the 5th percentile of
+/// the lower sole's height. `None` without feet.
+pub fn standing_height(feet: &[(Vec<f64>, &[bool])]) -> Option<f64> {
+    let in_contact = |(heights, touching): &(Vec<f64>, &[bool])| {
+        let heights = heights.iter().zip(*touching).filter(|(_, touching)| **touching);
+        heights.map(|(height, _)| *height).collect::<Vec<f64>>()
     };
-    let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
-    let at = if contacts.is_empty() {
-        contacts = poses.iter().filter(|_| !legs.is_empty()).map(|pose| lowest(legs, pose)).collect();
-        contacts.len() / 20
-    } else {
-        contacts.len() / 4
-    };
-    if contacts.is_empty() {
-        return None;
+    let mut heights: Vec<f64> = feet.iter().flat_map(in_contact).collect();
+    let mut at = heights.len() / 4;
+    if heights.is_empty() {
+        let lower = |at: usize| feet.iter().map(|(heights, _)| heights[at]).fold(f64::INFINITY, f64::min);
+        heights = (0..feet.first()?.0.len()).map(lower).collect();
+        at = heights.len() / 20;
     }
-    let hover = *contacts.select_nth_unstable_by(at, f64::total_cmp).1 - ground;
+    (!heights.is_empty()).then(|| *heights.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// Returns by how much the body is too high above the ground that its soles rest on. `None` without legs.
+pub fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
+    let heights = |leg: &LegContacts| poses.iter().map(|pose| leg.sole.lowest(pose)).collect();
+    let feet: Vec<_> = legs.iter().map(|leg| (heights(leg), leg.touching.as_slice())).collect();
+    let hover = standing_height(&feet)? - ground;
     let is_near = transfer.hips.is_some_and(|hips| hover.abs() < MAX_HOVER * hips.height);
     Some(if is_near { hover } else { 0.0 })
 }

@@ -10,6 +10,7 @@ mod plant;
 mod sole;
 mod width;
 
-pub use contacts::{SourceContacts, source_contacts, source_height};
+pub use contacts::{SourceContacts, contacts_of, ranges, source_contacts, source_height};
+pub use height::standing_height;
 pub use plant::{Planting, planted_channels};
-pub use sole::{Sole, Soles};
+pub use sole::{FEET, Sole, Soles};

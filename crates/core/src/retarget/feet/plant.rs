@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 use super::body::{body_shifts, means};
-use super::contacts::{Ground, SourceContacts, source_contacts, source_height};
+use super::contacts::{Ground, SourceContacts, contacts_of, ranges};
 use super::height::{floats, hover, lower};
 use super::leg::{Leg, drop_to_reach, solve_leg};
 use super::level::level_feet;
@@ -198,30 +198,21 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
         [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
     ];
     let mut legs = Vec::new();
-    let mut positions: Vec<Vec<DVec3>> = Vec::new();
+    let mut feet: Vec<JointIndex> = Vec::new();
     for (slots, sole) in sides.into_iter().zip(&soles.feet) {
         let [hip, knee, ankle, toes] = slots.map(|slot| transfer.pair(slot));
         if let (Some(hip), Some(knee), Some(ankle), Some(sole)) = (hip, knee, ankle, sole) {
             let toes = toes.unwrap_or(ankle);
             let joints = [hip.target, knee.target, ankle.target, toes.target];
             legs.push((Leg::new(joints, &transfer.alignment.target), sole.clone()));
-            positions.push(times.iter().map(|&time| transfer.source_position(toes.source, time)).collect());
+            feet.push(toes.source);
         }
     }
-    let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
-    let height = source_height(transfer.map, transfer.alignment);
-    let SourceContacts { touching, ground } = source_contacts(times, &positions, &hips, height);
+    let SourceContacts { touching, ground } = contacts_of(transfer, &feet, times);
     let legs = legs.into_iter().zip(touching);
     let legs =
         legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching, spread: vec![DVec3::ZERO; times.len()] });
     (legs.collect(), ground)
-}
-
-/// Ranges in which all are true.
-fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
-    let starts = (0..touching.len()).filter(|&at| touching[at] && (at == 0 || !touching[at - 1]));
-    let end = |from: usize| (from..touching.len()).find(|&at| !touching[at]).unwrap_or(touching.len());
-    starts.map(|from| from..end(from)).collect()
 }
 
 /// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.

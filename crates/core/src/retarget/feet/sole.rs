@@ -6,6 +6,7 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 use crate::anim::JointIndex;
 use crate::asset::{Asset, MeshInstance, Slot};
 use crate::mesh::{Influences, Skin};
+use crate::retarget::map::Pair;
 use crate::retarget::pose::{WorldPose, is_within};
 use crate::retarget::transfer::Transfer;
 
@@ -17,6 +18,9 @@ const TILTS_DEGREES: [f64; 3] = [25.0, 50.0, 75.0];
 
 /// Number of directions per tilt.
 const AZIMUTHS: u32 = 8;
+
+/// Ankle and toes of each foot.
+pub const FEET: [[Slot; 2]; 2] = [[Slot::LeftFoot, Slot::LeftToes], [Slot::RightFoot, Slot::RightToes]];
 
 /// The sole of one foot, as points attached to its joints.
 #[derive(Debug, Clone)]
@@ -48,7 +52,7 @@ impl Sole {
 }
 
 /// The soles of both feet, and the ground they stand on.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Soles {
     /// Left, right; `None` for a foot that is not mapped.
     pub feet: [Option<Sole>; 2],
@@ -57,12 +61,17 @@ pub struct Soles {
 }
 
 impl Soles {
+    /// The soles of the target.
     pub fn new(transfer: &Transfer) -> Self {
-        let rest = &transfer.alignment.unaligned_target;
-        let feet = [[Slot::LeftFoot, Slot::LeftToes], [Slot::RightFoot, Slot::RightToes]].map(|slots| {
-            let [ankle, toes] = slots.map(|slot| transfer.pair(slot).map(|pair| pair.target));
+        Self::of(transfer, transfer.target, &transfer.alignment.unaligned_target, |pair| pair.target)
+    }
+
+    /// The soles of either side.
+    pub fn of(transfer: &Transfer, asset: &Asset, rest: &WorldPose, joint: fn(&Pair) -> JointIndex) -> Self {
+        let feet = FEET.map(|slots| {
+            let [ankle, toes] = slots.map(|slot| transfer.pair(slot).map(joint));
             let foot = ankle.or(toes)?;
-            let of_mesh = mesh_sole(transfer.target, rest, foot);
+            let of_mesh = mesh_sole(asset, rest, foot);
             Some(if of_mesh.points.is_empty() { joint_sole(rest, foot, toes) } else { of_mesh })
         });
         let ground = feet.iter().flatten().map(|sole| sole.lowest(rest)).fold(f64::INFINITY, f64::min);

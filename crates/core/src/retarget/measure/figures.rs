@@ -1,7 +1,7 @@
 //! The quality of a retargeted clip in numbers: measured on the finished clip as the player plays it, at the source's keys
 //! and halfway between them, in the common frame.
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
@@ -9,13 +9,13 @@ use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
-use crate::retarget::contacts::{Bodies, TouchFigures};
+use crate::retarget::contacts::{Bodies, Ground, Motion, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
 use crate::retarget::math::{angle_between, degrees_between};
 use crate::retarget::pose::{Local, PartialPose, Scratch, WorldPose};
-use crate::retarget::transfer::{RemovedTravel, Transfer, lowest_leg_joint, removed_travel, rotation_laws};
+use crate::retarget::transfer::{Transfer, lowest_leg_joint, removed_travel, rotation_laws};
 
 /// Quality figures; `None` for what cannot be measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -51,7 +51,7 @@ pub struct Figures {
     /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
     /// parts are solids fitted to the mesh; `None` without one.
     pub self_penetration_share: Option<f64>,
-    /// Mean distance of the source's contacts with itself from where the target has them.
+    /// Mean distance of the contacts that the source's hands have with its body and the ground from where the target has them.
     pub contact_error_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
@@ -137,7 +137,7 @@ pub fn measure(
         let target = target_clip.pose(measured.clip, time);
         let unplanted = measured.unplanted.map_or(target, |clip| unplanted_clip.pose(clip, time));
         // Undoes the turning that the root options removed.
-        let turn_back = DQuat::from_rotation_y(-removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
+        let turn_back = removed.turn(time).conjugate();
         add_orientation_errors(&mut orientation, transfer, source, unplanted, turn_back);
         add_direction_errors(&mut direction, &segments, source, target, turn_back);
         add_direction_errors(&mut facing, &facing_segments, source, target, turn_back);
@@ -147,7 +147,7 @@ pub fn measure(
         }
         for foot in &mut feet {
             foot.source.push(source.position(foot.source_joint));
-            foot.target.push(with_travel(transfer, target, foot.target_joint, &removed, index, turn_back));
+            foot.target.push(removed.restored(transfer, target, foot.target_joint, index, turn_back));
             foot.heights.push(foot.sole.lowest(target) - soles.ground);
         }
     }
@@ -258,36 +258,24 @@ fn add_direction_errors(
     }
 }
 
-/// Where a target joint would be if no travel had been removed from the clip.
-fn with_travel(
-    transfer: &Transfer,
-    target: &WorldPose,
-    joint: JointIndex,
-    removed: &RemovedTravel,
-    index: usize,
-    turn_back: DQuat,
-) -> DVec3 {
-    let position = target.position(joint);
-    let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
-    let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
-    turned + removed.horizontal(index)
-}
-
 /// Measures contacts of the body on the clip, at even steps; nothing if the target has no mesh.
 fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFigures {
     let mut figures = TouchFigures::default();
     let Some(bodies) = bodies.filter(|bodies| bodies.target.has_mesh) else { return figures };
     let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
     let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
-    let source = bodies.source_frames(transfer, &times);
+    let source = bodies.source_motion(transfer, &times);
     let (laws, _) = rotation_laws(transfer);
     let removed = removed_travel(transfer, &laws, &times);
     let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
-    let mut target = PlayedClip::new(transfer, &bodies.target.joints);
-    for (&time, touches) in times.iter().zip(bodies.touches(&times, &source)) {
-        let target = bodies.target.frames(target.pose(clip, time));
-        let yaw = removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time));
-        figures.add(bodies, &touches, &target, (DQuat::from_rotation_y(yaw), scale));
+    let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());
+    let mut target = Motion::default();
+    times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));
+    let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
+    for (at, touches) in bodies.touches(&times, &source.frames).iter().enumerate() {
+        let frames = &target.frames[at];
+        let on_ground = ground.iter().flat_map(|ground| ground.misses(bodies, at, frames)).map(|(_, by)| by);
+        figures.add(bodies, touches, on_ground, frames, (removed.turn(times[at]), scale));
     }
     figures
 }

@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use crate::anim::JointIndex;
-use crate::asset::Slot;
-use crate::retarget::feet::{Sole, SourceContacts, source_contacts, source_height};
+use crate::retarget::feet::{FEET, Sole, SourceContacts, source_contacts, source_height};
 use crate::retarget::math::HORIZONTAL;
 use crate::retarget::transfer::Transfer;
 
@@ -36,10 +35,9 @@ pub struct FootPositions {
 
 /// Feet that both sides have: toes if both have those, else ankles.
 pub fn mapped_feet(transfer: &Transfer, soles: [Option<Sole>; 2]) -> Vec<FootPositions> {
-    [(Slot::LeftFoot, Slot::LeftToes), (Slot::RightFoot, Slot::RightToes)]
-        .into_iter()
+    FEET.into_iter()
         .zip(soles)
-        .filter_map(|((ankle, toes), sole)| Some((transfer.pair(toes).or_else(|| transfer.pair(ankle))?, sole?)))
+        .filter_map(|([ankle, toes], sole)| Some((transfer.pair(toes).or_else(|| transfer.pair(ankle))?, sole?)))
         .map(|(pair, sole)| FootPositions {
             source_joint: pair.source,
             target_joint: pair.target,

@@ -9,6 +9,7 @@ use crate::anim::{Interpolation, JointIndex, Keys};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::map::{ResolvedMap, RootPart};
 use crate::retarget::math::{HORIZONTAL, unit};
+use crate::retarget::pose::WorldPose;
 
 /// The root options by axis of the common frame: 1 where something applies, else 0.
 #[derive(Debug, Clone, Copy)]
@@ -94,12 +95,32 @@ pub fn root_joint_channels(
 pub struct RemovedTravel {
     /// One entry for each time asked for; empty if nothing travels.
     horizontal: Vec<DVec3>,
-    pub yaw: Option<Yaw>,
+    yaw: Option<Yaw>,
 }
 
 impl RemovedTravel {
     pub fn horizontal(&self, index: usize) -> DVec3 {
         self.horizontal.get(index).copied().unwrap_or(DVec3::ZERO)
+    }
+
+    /// The turning that was removed.
+    pub fn turn(&self, time_secs: f32) -> DQuat {
+        DQuat::from_rotation_y(self.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time_secs)))
+    }
+
+    /// Where a target joint would be if no travel had been removed, given the inverse of [`Self::turn`].
+    pub fn restored(
+        &self,
+        transfer: &Transfer,
+        target: &WorldPose,
+        joint: JointIndex,
+        index: usize,
+        turn_back: DQuat,
+    ) -> DVec3 {
+        let position = target.position(joint);
+        let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
+        let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
+        turned + self.horizontal(index)
     }
 }
 
