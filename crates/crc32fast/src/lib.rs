@@ -1,9 +1,9 @@
 //! CRC-32 as in zip archives and PNG images, in place of `crc32fast` 1.5.4 (see `[patch.crates-io]` in the workspace's
 //! Cargo.toml).
 //!
-//! That crate brings its tables along: 16 KB that no compression makes smaller, in the page and again in each part that reads
-//! zip archives. This one computes the same tables when they are first needed, within microseconds, and is then as fast as the
-//! original is in WebAssembly.
+//! That crate brings its tables along: 16 KB that no compression makes smaller, in the page and again in the part that reads
+//! .npz. This one computes the same tables when they are first needed, within microseconds, and is then as fast as the original
+//! is in WebAssembly.
 //!
 //! Left out: the original's faster ways on processors with instructions for it.
 
