@@ -20,18 +20,10 @@ const BLOCK: usize = 16;
 static TABLES: LazyLock<[[u32; 256]; BLOCK]> = LazyLock::new(tables);
 
 fn tables() -> [[u32; 256]; BLOCK] {
-    let mut tables = [[0; 256]; BLOCK];
-    for byte in 0..256 {
-        let mut remainder = byte as u32;
-        for _ in 0..8 {
-            remainder = times_x(remainder);
-        }
-        tables[0][byte] = remainder;
-    }
+    let first = std::array::from_fn(|byte| (0..8).fold(byte as u32, |remainder, _| times_x(remainder)));
+    let mut tables = [first; BLOCK];
     for more in 1..BLOCK {
-        for byte in 0..256 {
-            tables[more][byte] = with_byte(&tables[0], tables[more - 1][byte], 0);
-        }
+        tables[more] = tables[more - 1].map(|remainder| with_byte(&first, remainder, 0));
     }
     tables
 }
