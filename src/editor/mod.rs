@@ -20,6 +20,7 @@ mod validation;
 pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
+#[cfg(feature = "viewer")]
 pub(crate) use export::AWAITS_IMAGES;
 pub use export::{Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};
@@ -239,14 +240,15 @@ impl Editor {
         let clip = unknown_clip(model, &self.state);
         let layer = unknown_layer(model, &self.state.edits.layers);
         let variant = unknown_variant(model, &self.state);
-        if let Some(unknown) = clip {
-            self.notify(format!("clip: {unknown}; the rest pose is used."));
-        }
-        if let Some(unknown) = layer {
-            self.notify(format!("layers: {unknown}; the layer is left out."));
-        }
-        if let Some(unknown) = variant {
-            self.notify(format!("variant: {unknown}; the file's own materials are used."));
+        let notices = [
+            clip.map(|unknown| format!("clip: {unknown}; the rest pose is used.")),
+            layer.map(|unknown| format!("layers: {unknown}; the layer is left out.")),
+            variant.map(|unknown| format!("variant: {unknown}; the file's own materials are used.")),
+        ];
+        // A second notice would replace the first.
+        let notices: Vec<String> = notices.into_iter().flatten().collect();
+        if !notices.is_empty() {
+            self.notify(notices.join("\n"));
         }
     }
 

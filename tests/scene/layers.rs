@@ -162,6 +162,17 @@ fn an_unknown_layer_of_a_view_is_told() {
     assert!(events.iter().any(|event| matches!(event, Event::Notice { text, .. } if text == told)), "{events:?}");
 }
 
+#[test]
+fn unknown_names_of_a_view_are_told_together() {
+    let mut editor = editor("sample:walker");
+    let (view, errors) = from_object(editor.state(), &json!({ "clip": "Swim", "layers": ["Fly"] }));
+    assert!(errors.is_empty(), "{errors:?}");
+    editor.apply(Command::Replace(Box::new(view)));
+    let events = editor.take_events();
+    let told = |event: &Event| matches!(event, Event::Notice { text, .. } if text.contains("“Swim”") && text.contains("“Fly”"));
+    assert!(events.iter().any(told), "{events:?}");
+}
+
 /// The exported clip is read again and plays what the page showed.
 #[test]
 fn the_exported_clip_has_the_layers() {

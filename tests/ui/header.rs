@@ -91,6 +91,9 @@ fn export_offers_what_the_view_has() {
     assert!(matches!(actions[..], [UiAction::Save(Saved::Picture { .. }), UiAction::Record(_)]), "{actions:?}");
     choose(&mut harness, text::EXPORT, text::PICTURE_SETTINGS);
     assert_eq!(harness.state().panels.layout.tab, Tab::Camera);
+    harness.run();
+    let settings = harness.get_by_label(text::RECORD_IMAGES).rect();
+    assert!(settings.bottom() < WIDE[1], "the settings are in sight, {settings:?}");
 }
 
 #[test]

@@ -171,7 +171,7 @@ impl Messages {
         const BUTTON_WIDTH: f32 = 70.0;
         let Some(toast) = &self.toast else { return };
         let line = style::palette(ui).line;
-        let text = text::sentence(&toast.text);
+        let text = toast.text.lines().map(text::sentence).collect::<Vec<_>>().join("\n");
         if !toast.undoable {
             notice(ui, line, |ui| ui.label(text));
             return;
