@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
-use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
+use gaitway::ui::{RecordingProgress, Saved, Sheet, Tab, UiAction, VideoSettings, text};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, painted, press, press_key, sample_bench};
 use crate::motion::reach;
@@ -75,6 +75,24 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     harness.run();
     assert_eq!(reach(&mut harness, &text::reset_all_joints(1)), [Command::ClearPose]);
     assert!(harness.state().state().edits.pose.is_empty());
+}
+
+#[test]
+fn on_a_phone_the_sliders_scroll_into_sight() {
+    let mut harness = sample_bench(NARROW);
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(SHIN);
+    });
+    harness.state_mut().panels.layout.tab = Tab::Scene;
+    harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+    harness.run();
+    reach(&mut harness, text::POSE_MANUALLY);
+    harness.run();
+    let timeline = harness.get_by_label(text::TIME).rect();
+    for angle in text::POSE_ANGLES {
+        let slider = harness.get_by_label(angle).rect();
+        assert!(slider.bottom() < timeline.top(), "{angle}: {slider:?} above {timeline:?}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use egui::{Align2, Color32, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Contents, MotionTab, Pairing};
-use crate::retarget::{Figures, Planting, Verdict, Verdicts};
+use crate::retarget::{Contacts, Figures, Planting, Verdict, Verdicts};
 use crate::state::active_clip;
 use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Shown, style, text};
@@ -53,7 +53,12 @@ pub(super) fn show(
         let planting = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting);
         let verdicts = Verdicts::new(figures, pairing.model.size_metres());
         let overall = verdicts.worst().map(|worst| (worst, text::overall(worst)));
-        Fit { contents: contents.clone(), clip, overall, lines: lines(figures, &verdicts, planting) }
+        Fit {
+            contents: contents.clone(),
+            clip,
+            overall,
+            lines: lines(figures, &verdicts, planting, pairing.map.contacts),
+        }
     });
     if let Some((verdict, overall)) = &fit.overall {
         ui.label(RichText::new(overall).color(color(ui, *verdict)));
@@ -71,7 +76,7 @@ pub(super) fn show(
     }
 }
 
-fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> Vec<Line> {
+fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, contacts: Contacts) -> Vec<Line> {
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
     let length = |value: Option<f64>| value.map(|metres| format!("{:.1} cm", 100.0 * metres));
@@ -80,7 +85,11 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> 
     let angles = |mean: Option<f64>, mean_verdict, max: Option<f64>, max_verdict| {
         [figure(text::MEAN, degrees(mean), mean_verdict), figure("Largest", degrees(max), max_verdict)]
     };
-    let mut lines = vec![group("LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error.")];
+    let hint = match contacts {
+        Contacts::Off => "Angle between a limb and its source: the visible error.",
+        Contacts::Keep => "Angle between a limb and its source. Arms turn away from theirs to keep contacts.",
+    };
+    let mut lines = vec![group("LIMB DIRECTION ERROR", hint)];
     lines.extend(angles(
         figures.limb_direction_error_degrees_mean,
         verdicts.limb_direction_error_mean,
@@ -97,7 +106,8 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>) -> 
         figures.facing_error_degrees_max,
         verdicts.facing_error_max,
     ));
-    let hint = "Difference from the source's rotations, each from its own rest pose.";
+    let hint =
+        "Difference from the source's rotations, each from its own rest pose, before feet and contacts are kept.";
     lines.push(group(capitals!(text::ROTATION_ERROR), hint));
     lines.extend(angles(
         figures.orientation_error_degrees_mean,

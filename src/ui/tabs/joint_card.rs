@@ -44,14 +44,19 @@ pub fn show(
     }
     let local = shown.frame.pose().get(joint).unwrap_or_default();
     ui.add_space(2.0);
-    if controls::switch(ui, text::POSE_MANUALLY, card.is_posing) {
+    let is_switched = controls::switch(ui, text::POSE_MANUALLY, card.is_posing);
+    if is_switched {
         card.is_posing = !card.is_posing;
         if shown.state.camera_options.turntable != 0.0 {
             out.commands.push(Command::SetTurntable(0.0));
         }
     }
     if card.is_posing {
-        pose_sliders(ui, shown, asset, joint, local.rotation, out);
+        let sliders = ui.scope(|ui| pose_sliders(ui, shown, asset, joint, local.rotation, out));
+        if is_switched {
+            // On a phone they begin below the sheet.
+            sliders.response.scroll_to_me(None);
+        }
     }
     reset_buttons(ui, shown, asset.skeleton.source_index(joint), out);
     pin::show(ui, shown, model, joint, out);
