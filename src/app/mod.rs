@@ -27,4 +27,4 @@ pub use device::web_options;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{WindowError, run_native};
 #[cfg(target_arch = "wasm32")]
-pub use scene_texture::Rehearsal;
+pub use scene_texture::RehearsalPart;

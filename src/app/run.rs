@@ -205,7 +205,12 @@ impl App {
 
     /// Does a part of drawing a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, character: &crate::library::Model, frame: &crate::frame::Frame, part: super::Rehearsal) {
+    pub fn rehearse(
+        &mut self,
+        character: &crate::library::Model,
+        frame: &crate::frame::Frame,
+        part: super::RehearsalPart,
+    ) {
         self.viewport.scene.rehearse(character, frame, part);
     }
 

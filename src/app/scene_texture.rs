@@ -14,10 +14,10 @@ pub(super) struct SceneTexture {
     displayed: Option<([u32; 2], bool)>,
 }
 
-/// A part of drawing a picture. Each blocks a browser for a while.
+/// A part of drawing the first picture. Each blocks the page for a while.
 #[cfg(target_arch = "wasm32")]
 #[derive(Debug, Clone, Copy)]
-pub enum Rehearsal {
+pub enum RehearsalPart {
     /// What draws the surroundings is created.
     Scenery,
     /// The environment is computed.
@@ -31,7 +31,7 @@ pub enum Rehearsal {
 }
 
 #[cfg(target_arch = "wasm32")]
-impl Rehearsal {
+impl RehearsalPart {
     /// All parts, in order.
     pub const ALL: [Self; 5] = [Self::Scenery, Self::Light, Self::Upload, Self::Picture, Self::Refinement];
 }
@@ -89,16 +89,16 @@ impl SceneTexture {
 
     /// Does a part of drawing a model off screen before any other. The last part forgets it: its id may be that of the next one.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, model: &Model, frame: &Frame, part: Rehearsal) {
+    pub fn rehearse(&mut self, model: &Model, frame: &Frame, part: RehearsalPart) {
         const SIZE: [u32; 2] = [64, 64];
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         match part {
-            Rehearsal::Scenery => self.renderer.prepare_scenery(device),
-            Rehearsal::Light => self.renderer.prepare_light(device, queue, frame),
+            RehearsalPart::Scenery => self.renderer.prepare_scenery(device),
+            RehearsalPart::Light => self.renderer.prepare_light(device, queue, frame),
             // A model that can't be uploaded is skipped.
-            Rehearsal::Upload => drop(self.renderer.upload(device, queue, model)),
-            Rehearsal::Picture => drop(self.renderer.draw(device, queue, frame, SIZE)),
-            Rehearsal::Refinement => {
+            RehearsalPart::Upload => drop(self.renderer.upload(device, queue, model)),
+            RehearsalPart::Picture => drop(self.renderer.draw(device, queue, frame, SIZE)),
+            RehearsalPart::Refinement => {
                 while self.renderer.refine(device, queue, frame) {}
                 self.renderer.retain(&[]);
             }

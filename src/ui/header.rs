@@ -176,6 +176,6 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     }
     if ui.button(text::PICTURE_SETTINGS).clicked() {
         local.layout.show_tab(Tab::Camera);
-        local.picture_settings.is_wanted = true;
+        local.seeks_picture_settings = true;
     }
 }

@@ -124,6 +124,8 @@ pub struct UiState {
     scene_tree: tabs::SceneTree,
     vertex_probe: tabs::VertexProbe,
     picture_settings: tabs::PictureSettings,
+    /// The Camera tab was opened for them; they then scroll into view.
+    seeks_picture_settings: bool,
     key_marks: scrub::KeyMarks,
     motion: motion::MotionTab,
 }
@@ -413,7 +415,7 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
     }
 }
 
-/// Names the edge that resizes a panel of this `Ui`: egui calls each of them the same.
+/// Names the edge that resizes a panel of this `Ui`: egui calls each of them the same. The salt of its id is egui's own.
 fn name_edge(ui: &Ui, panel: &str, name: &str) {
     let edge = ui.scope_id().with(panel).with("__resize");
     ui.ctx().accesskit_node_builder(edge, |node| node.set_label(name));

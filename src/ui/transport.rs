@@ -36,6 +36,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
     }
+    // Without tracks, there are no names.
     if gutter > 0.0 {
         let max_height = MAX_SHARE_OF_TRACKS * ui.ctx().content_rect().height();
         egui::ScrollArea::vertical().id_salt("tracks").max_height(max_height).show(ui, |ui| {

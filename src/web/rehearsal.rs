@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use super::calls::with_app;
 use super::page::Page;
-use crate::app::Rehearsal;
+use crate::app::RehearsalPart;
 use crate::files::{Item, Role, open_items};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
@@ -31,7 +31,7 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
     let mut frame = Frame::default();
     evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
     let Some(character) = library.active() else { return Ok(()) };
-    for part in Rehearsal::ALL {
+    for part in RehearsalPart::ALL {
         next_turn().await;
         with_app(page, |app| app.rehearse(character, &frame, part))?;
     }

@@ -18,13 +18,11 @@ pub struct PictureSettings {
     transparent: bool,
     /// Of recordings.
     frames_per_sec: u32,
-    /// They scroll into view when they are next shown.
-    pub is_wanted: bool,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], transparent: false, frames_per_sec: 30, is_wanted: false }
+        Self { size: [1920, 1080], transparent: false, frames_per_sec: 30 }
     }
 }
 
@@ -36,7 +34,7 @@ impl PictureSettings {
 
     /// Returns the label, the tooltip and the action of the two buttons that record with these settings: a video, or images.
     pub fn recordings(&self) -> [(&'static str, &'static str, UiAction); 2] {
-        let Self { size, transparent, frames_per_sec, .. } = *self;
+        let Self { size, transparent, frames_per_sec } = *self;
         [
             (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
             (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
@@ -72,14 +70,14 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     ui.add_space(2.0);
     controls::hint(ui, "Y in glTF. Change it if the model lies on its back.");
     scenes(ui, shown, out);
+    if std::mem::take(&mut local.seeks_picture_settings) {
+        ui.scroll_to_cursor(Some(egui::Align::TOP));
+    }
     picture(ui, shown, &mut local.picture_settings, out);
 }
 
 /// Saving images and recording videos.
 fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: &mut Output) {
-    if std::mem::take(&mut settings.is_wanted) {
-        ui.scroll_to_cursor(Some(egui::Align::TOP));
-    }
     controls::section(ui, "IMAGE AND VIDEO");
     let sizes = [([1280, 720], "720p"), ([1920, 1080], "1080p"), ([3840, 2160], "4K"), ([1080, 1080], text::SQUARE)];
     if let Some(size) = controls::segmented(ui, text::PICTURE_SIZE, Some(settings.size), &sizes) {

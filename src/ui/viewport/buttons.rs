@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
     if local.joint_card.is_posing && shown.state.selection.joint.is_some() && !is_embedded {
         let palette = style::palette(ui);
         let width = controls::text_width(ui, text::POSING, style::BODY) + controls::button_width(ui, text::DONE_POSING);
-        // A sheet at the bottom leaves the upper half to the viewport, where the head of the character is.
+        // Above a sheet at the bottom, the viewport is low, and the character's head is where the note would be.
         let is_low = local.layout.sheet_rect.is_some_and(|sheet| sheet.top() > rect.top());
         let has_room = !is_low && bar.available_width() >= width + ui.spacing().item_spacing.x + 12.0;
         let left = if has_room { 10 } else { 2 };

@@ -4,7 +4,7 @@ use egui::{Painter, Rect, Ui, pos2, vec2};
 
 use super::hover::partner;
 use super::legend;
-use super::panes::{pane_index, pane_rects, to_screen};
+use super::panes::{label_height, pane_index, pane_rects, to_screen};
 use crate::frame::PickedJoint;
 use crate::state::{Comparison, compared_rests, source_on_stage, title};
 use crate::ui::tabs::{display, formula};
@@ -18,8 +18,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     }
     let painter = ui.painter_at(rect);
     pane_labels(ui, &painter, rect, &shown);
-    let above_labels = if pane_rects(&shown, rect).len() > 1 { PANE_LABEL_HEIGHT } else { 0.0 };
-    legend::show(ui, &painter, rect.with_max_y(rect.bottom() - above_labels), shown.state);
+    legend::show(ui, &painter, rect.with_max_y(rect.bottom() - label_height(&shown)), shown.state);
     if local.motion.is_clicking() {
         return;
     }
@@ -72,9 +71,6 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     painter.circle_stroke(position, 6.0, egui::Stroke::new(2.0, palette.accent));
     Some(())
 }
-
-/// Height of the labels at the lower edges of panes, with the gap below them.
-const PANE_LABEL_HEIGHT: f32 = 30.0;
 
 /// What each pane of the comparison shows, and the lines between them.
 fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {

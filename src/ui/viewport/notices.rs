@@ -2,6 +2,7 @@
 
 use egui::{Align, Align2, Area, Color32, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2};
 
+use super::panes::label_height;
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::{Output, Shown, UiAction, controls, style, text};
 
@@ -72,8 +73,7 @@ impl Messages {
             return;
         }
         let width = (viewport.width() - 28.0).min(520.0);
-        // Above the labels of the side-by-side comparison.
-        let bottom = viewport.bottom() - if shown.state.inspect.split { 38.0 } else { 14.0 };
+        let bottom = viewport.bottom() - 14.0 - label_height(shown);
         let area = Area::new(Id::unique("notices"))
             .order(Order::Foreground)
             .pivot(Align2::LEFT_BOTTOM)

@@ -13,6 +13,11 @@ pub fn pane_rects(shown: &Shown<'_>, rect: Rect) -> Vec<Rect> {
     (0..rows).flat_map(|row| (0..columns).map(move |column| at(row, column))).collect()
 }
 
+/// The height that the labels at the lower edges of panes take, if there are several.
+pub fn label_height(shown: &Shown<'_>) -> f32 {
+    if shown.frame.panes.iter().any(|&count| count > 1) { 24.0 } else { 0.0 }
+}
+
 /// The pane under a point, or else the first one.
 pub fn pane_at(shown: &Shown<'_>, rect: Rect, position: Option<Pos2>) -> Rect {
     let panes = pane_rects(shown, rect);

@@ -76,13 +76,13 @@ impl Body {
 
 /// A body at some times.
 #[derive(Debug, Default)]
-pub struct Motion {
+pub struct BodyMotion {
     pub frames: Vec<Frames>,
     /// Heights of the soles' lowest points, by foot.
     pub soles: Vec<Vec<f64>>,
 }
 
-impl Motion {
+impl BodyMotion {
     /// Adds the pose of one more time.
     pub fn push(&mut self, body: &Body, pose: &WorldPose) {
         self.frames.push(body.frames(pose));
@@ -198,10 +198,10 @@ impl Bodies {
     }
 
     /// Where the source is at each time.
-    pub fn source_motion(&self, transfer: &Transfer, times: &[f32]) -> Motion {
+    pub fn source_motion(&self, transfer: &Transfer, times: &[f32]) -> BodyMotion {
         let world_from_model = transfer.alignment.source.world_from_model;
         let mut pose = PartialPose::new(transfer.tracks.skeleton, world_from_model, self.source.moving_joints());
-        let mut motion = Motion::default();
+        let mut motion = BodyMotion::default();
         times.iter().for_each(|&time| motion.push(&self.source, pose.update(transfer.tracks.locals_at(time))));
         motion
     }

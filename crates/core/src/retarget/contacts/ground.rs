@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::{ArmPart, Bodies, Body, Frames, Motion, POINTS};
-use crate::asset::Slot;
-use crate::retarget::feet::{FEET, contacts_of, standing_height};
+use super::body::{ArmPart, Bodies, Body, BodyMotion, Frames, POINTS};
+use crate::retarget::feet::{contacts_of, foot_pairs, standing_height};
 use crate::retarget::transfer::Transfer;
 
 /// An arm that is deeper in the ground than this share of the body's height on the source is beside what the feet stand on.
@@ -35,13 +34,12 @@ impl Ground {
         transfer: &Transfer,
         bodies: &Bodies,
         times: &[f32],
-        [source, target]: [&Motion; 2],
+        [source, target]: [&BodyMotion; 2],
         scale: f64,
     ) -> Option<Self> {
-        let foot = |[ankle, toes]: [Slot; 2]| Some(transfer.pair(toes).or_else(|| transfer.pair(ankle))?.source);
-        let feet: Vec<_> = FEET.into_iter().filter_map(foot).collect();
+        let feet: Vec<_> = foot_pairs(transfer).into_iter().flatten().map(|pair| pair.source).collect();
         let contacts = contacts_of(transfer, &feet, times);
-        let ground = |motion: &Motion| {
+        let ground = |motion: &BodyMotion| {
             let touching = contacts.touching.iter().map(Vec::as_slice);
             standing_height(&motion.soles.iter().cloned().zip(touching).collect::<Vec<_>>())
         };

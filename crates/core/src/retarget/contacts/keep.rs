@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3};
 
 use super::arm::Arm;
-use super::body::{Bodies, Frames, Motion, place_of};
+use super::body::{Bodies, BodyMotion, Frames, place_of};
 use super::ground::{Ground, Sunken};
 use super::smooth::eased;
 use super::touch::Touches;
@@ -127,7 +127,7 @@ impl<'a> Solver<'a> {
         let source = bodies.source_motion(transfer, &times);
         let mut scratch = Scratch::default();
         let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
-        let mut target = Motion::default();
+        let mut target = BodyMotion::default();
         poses.iter().for_each(|pose| target.push(&bodies.target, pose));
         let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
         let mut moments = Vec::with_capacity(times.len());

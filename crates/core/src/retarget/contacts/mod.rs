@@ -11,7 +11,7 @@ mod smooth;
 mod solid;
 mod touch;
 
-pub use body::{Bodies, Motion};
+pub use body::{Bodies, BodyMotion};
 pub use ground::Ground;
 pub use keep::kept_contacts;
 pub use touch::TouchFigures;

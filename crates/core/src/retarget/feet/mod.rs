@@ -13,4 +13,4 @@ mod width;
 pub use contacts::{SourceContacts, contacts_of, ranges, source_contacts, source_height};
 pub use height::standing_height;
 pub use plant::{Planting, planted_channels};
-pub use sole::{FEET, Sole, Soles};
+pub use sole::{Sole, Soles, foot_pairs};

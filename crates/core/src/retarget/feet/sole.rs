@@ -20,7 +20,12 @@ const TILTS_DEGREES: [f64; 3] = [25.0, 50.0, 75.0];
 const AZIMUTHS: u32 = 8;
 
 /// Ankle and toes of each foot.
-pub const FEET: [[Slot; 2]; 2] = [[Slot::LeftFoot, Slot::LeftToes], [Slot::RightFoot, Slot::RightToes]];
+const FEET: [[Slot; 2]; 2] = [[Slot::LeftFoot, Slot::LeftToes], [Slot::RightFoot, Slot::RightToes]];
+
+/// The pair that a foot's contacts are found with: its toes if both sides have those, else its ankle.
+pub fn foot_pairs<'a>(transfer: &Transfer<'a>) -> [Option<&'a Pair>; 2] {
+    FEET.map(|[ankle, toes]| transfer.pair(toes).or_else(|| transfer.pair(ankle)))
+}
 
 /// The sole of one foot, as points attached to its joints.
 #[derive(Debug, Clone)]

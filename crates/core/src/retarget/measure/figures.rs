@@ -9,7 +9,7 @@ use super::turn::largest_turn_degrees;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
-use crate::retarget::contacts::{Bodies, Ground, Motion, TouchFigures};
+use crate::retarget::contacts::{Bodies, BodyMotion, Ground, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
@@ -269,7 +269,7 @@ fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFi
     let removed = removed_travel(transfer, &laws, &times);
     let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
     let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());
-    let mut target = Motion::default();
+    let mut target = BodyMotion::default();
     times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));
     let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
     for (at, touches) in bodies.touches(&times, &source.frames).iter().enumerate() {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::anim::JointIndex;
-use crate::retarget::feet::{FEET, Sole, SourceContacts, source_contacts, source_height};
+use crate::retarget::feet::{Sole, SourceContacts, foot_pairs, source_contacts, source_height};
 use crate::retarget::math::HORIZONTAL;
 use crate::retarget::transfer::Transfer;
 
@@ -33,11 +33,12 @@ pub struct FootPositions {
     pub heights: Vec<f64>,
 }
 
-/// Feet that both sides have: toes if both have those, else ankles.
+/// Feet that both sides have.
 pub fn mapped_feet(transfer: &Transfer, soles: [Option<Sole>; 2]) -> Vec<FootPositions> {
-    FEET.into_iter()
+    foot_pairs(transfer)
+        .into_iter()
         .zip(soles)
-        .filter_map(|([ankle, toes], sole)| Some((transfer.pair(toes).or_else(|| transfer.pair(ankle))?, sole?)))
+        .filter_map(|(pair, sole)| pair.zip(sole))
         .map(|(pair, sole)| FootPositions {
             source_joint: pair.source,
             target_joint: pair.target,
