@@ -244,6 +244,16 @@ export const controls = (page, role, name, exact = false) => page.locator("#mirr
 export const control = (page, role, name) => controls(page, role, name).first();
 
 /**
+ * Returns where the pointer hits a control, which must be in sight: the mirror lies over the panels, entry by entry.
+ * @param {import("playwright-core").Locator} control
+ */
+export async function centreOf(control) {
+  const box = await control.boundingBox();
+  if (box === null) throw new Error(`${control} isn't in sight`);
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+}
+
+/**
  * Presses a button of the panels and returns the file that it saves.
  * @param {Page} page
  * @param {string} name The button's.

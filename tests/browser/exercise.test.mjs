@@ -2,14 +2,11 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, toggleInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, centreOf, controls, drop, meanDifference, open, toggleInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
 /** Steps of a dragged slider. */
 const STEPS = 30;
-/** Where the controls of the chosen joint are; egui's panels are pixels to a page. */
-const POSE_MANUALLY = { x: 741, y: 360 };
-const FIRST_SLIDER = { x: 642, y: 458 };
 const KINDS = ["obj", "skel", "attach"];
 
 for (const renderer of BACK_ENDS) {
@@ -46,14 +43,16 @@ for (const renderer of BACK_ENDS) {
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
-      // The selected joint's “Pose manually” switch, then the handle of the first slider.
+      // The selected joint's “Pose manually” switch, then the handle of the first slider: an angle of 0, in the middle.
       await apply(page, { joint: 5 });
+      const posing = await centreOf(controls(page, "checkbox", "Pose manually"));
       // egui finds what is under the pointer in the previous frame.
-      await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
+      await page.mouse.move(posing.x, posing.y);
       await untilStill(page);
-      await page.mouse.click(POSE_MANUALLY.x, POSE_MANUALLY.y);
+      await page.mouse.click(posing.x, posing.y);
       await untilStill(page);
-      await page.mouse.move(FIRST_SLIDER.x, FIRST_SLIDER.y);
+      const handle = await centreOf(controls(page, "slider", "Rotation X", true));
+      await page.mouse.move(handle.x, handle.y);
       await untilStill(page);
       await page.mouse.down();
       await untilStill(page);
@@ -62,7 +61,7 @@ for (const renderer of BACK_ENDS) {
       let before = (await state(page)).pose;
       for (let step = 1; step <= STEPS; step++) {
         // egui picks the roundest number within a point to either side; no two steps share one.
-        await page.mouse.move(FIRST_SLIDER.x + 3 * step, FIRST_SLIDER.y);
+        await page.mouse.move(handle.x + 3 * step, handle.y);
         // Each step is shown before the next one.
         await until(page, async (before) => (await window.gaitway.state()).pose !== before, before);
         before = (await state(page)).pose;
