@@ -148,12 +148,19 @@ pub fn gltf_file(model: f64, uri: Option<String>) -> Result<Uint8Array, JsValue>
     with_app(&page, read).map_err(stopped)?.ok_or_else(|| error(ErrorCode::NotFound, "there is no such file"))
 }
 
-/// Resolves when the first image has been drawn, and starts time.
+/// Resolves when the first image has been drawn. The next frame shows it once more.
 #[wasm_bindgen]
-pub async fn begin() -> Result<(), JsValue> {
+pub async fn drawn() -> Result<(), JsValue> {
     let page = page().map_err(stopped)?;
     with_app(&page, |app| app.drawn()).map_err(stopped)?.await;
-    with_app(&page, App::begin).map_err(stopped)
+    page.context.request_repaint();
+    Ok(())
+}
+
+/// Starts time: the first image is on screen.
+#[wasm_bindgen]
+pub fn begin() -> Result<(), JsValue> {
+    with_app(&*page().map_err(stopped)?, App::begin).map_err(stopped)
 }
 
 /// Waits for the images of the model that [`run`](super::page::run) has shown without them, if so. Resolves to why they can't be

@@ -66,8 +66,9 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to a JSON list of problems; call [`super::calls::begin`] and [`super::calls::complete`] next. Rejects, and leaves
-/// nothing behind, if no device is available, nothing could be opened or the model doesn't fit on the device.
+/// requested, to a JSON list of problems; call [`drawn`](super::calls::drawn), [`begin`](super::calls::begin) and
+/// [`complete`](super::calls::complete) next. Rejects, and leaves nothing behind, if no device is available, nothing could be opened
+/// or the model doesn't fit on the device.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,

@@ -188,12 +188,13 @@ function newCanvas() {
 async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
   // One for the panels, one for the scene, and one to be sure that both came before it.
   await frames(3);
-  await Promise.race([bindings.begin(), aborted]);
+  await Promise.race([bindings.drawn(), aborted]);
   presentFrames();
-  // The first presented frame, before it is seen.
+  // The same image is presented, before it is seen. Time stands still until then: moving images would queue up behind it.
   await frames(2);
   if (session.stopReason !== null) throw coded("lost-device", session.stopReason);
   canvas.style.visibility = "";
+  bindings.begin();
   // egui makes its canvas a stop of the Tab key, and receives text through a hidden input while it has the keyboard.
   canvas.tabIndex = -1;
   const agent = byId("stage").querySelector(":scope > input");

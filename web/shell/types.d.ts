@@ -96,7 +96,8 @@ export interface Bindings {
   font(): Uint8Array<ArrayBuffer>;
   complete(): Promise<string>;
   complete_again(): Promise<string>;
-  begin(): Promise<void>;
+  drawn(): Promise<void>;
+  begin(): void;
   rehearse_opening(): Promise<void>;
   destroy(): void;
   mirror_act(id: string, action: "focus" | "click" | "more" | "less" | "set", value?: number | string): void;

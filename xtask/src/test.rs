@@ -2,8 +2,10 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, IsTerminal, Read};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::Stdio;
+use std::thread;
 
 use anyhow::Context;
 
@@ -48,6 +50,9 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
 }
 
+/// How many of Node's test files run at once at most: each starts browsers.
+const MAX_FILES: usize = 4;
+
 /// Returns the path of the command line.
 fn cli() -> PathBuf {
     target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX))
@@ -58,8 +63,11 @@ fn node_tests(cli: &str) -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
-    // One file at a time, since each drives a browser that renders on the CPU. A file takes minutes; one that hangs is killed.
-    let mut arguments = vec!["--test", "--test-concurrency=1", "--test-timeout=1200000"];
+    // Each file drives a browser that renders on the CPU and waits for it half of the time, so two cores have two files to do.
+    // A file takes minutes; one that hangs is killed.
+    let concurrency =
+        format!("--test-concurrency={}", thread::available_parallelism().map_or(1, NonZero::get).min(MAX_FILES));
+    let mut arguments = vec!["--test", &concurrency, "--test-timeout=1200000"];
     let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", text(&chromium)?)];
     // Node sees a pipe and would choose the form for programs.
     if std::io::stdout().is_terminal() {
