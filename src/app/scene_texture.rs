@@ -24,7 +24,7 @@ pub enum RehearsalPart {
     Light,
     /// The model is uploaded.
     Upload,
-    /// The model is drawn, with the pipelines that this takes.
+    /// The model is drawn; pipelines that it needs are created.
     Picture,
     /// The picture is refined.
     Refinement,
@@ -32,8 +32,9 @@ pub enum RehearsalPart {
 
 #[cfg(target_arch = "wasm32")]
 impl RehearsalPart {
-    /// All parts, in order.
-    pub const ALL: [Self; 5] = [Self::Scenery, Self::Light, Self::Upload, Self::Picture, Self::Refinement];
+    /// All parts, in order. There are two pictures, of more and more surfaces, since pipelines take the longest of all.
+    pub const ALL: [Self; 6] =
+        [Self::Scenery, Self::Light, Self::Upload, Self::Picture, Self::Picture, Self::Refinement];
 }
 
 impl SceneTexture {

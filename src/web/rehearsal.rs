@@ -10,7 +10,7 @@ use crate::files::{Item, Role, open_items};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::next_turn;
-use crate::state::ViewerState;
+use crate::state::{Hidden, ViewerState};
 
 /// A skinned triangle with the two commonest materials: a base colour map alone, and with a normal map.
 const CHARACTER: &[u8] = include_bytes!("rehearsal.gltf");
@@ -28,12 +28,18 @@ pub async fn rehearse_opening() {
 pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
     next_turn().await;
     let library = open_character().await;
-    let mut frame = Frame::default();
-    evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
     let Some(character) = library.active() else { return Ok(()) };
+    let mut state = ViewerState::default();
+    state.edits.hidden.materials.insert(Some(1));
+    let mut frame = Frame::default();
     for part in RehearsalPart::ALL {
+        evaluate(&library, &state, 1.0, &mut frame);
         next_turn().await;
         with_app(page, |app| app.rehearse(character, &frame, part))?;
+        if matches!(part, RehearsalPart::Picture) {
+            // The second picture compiles the second material's shaders.
+            state.edits.hidden = Hidden::default();
+        }
     }
     Ok(())
 }

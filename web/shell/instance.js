@@ -143,8 +143,9 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   }
   session.app = bindings;
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
-  // Not before: decoding and uploading images would delay the first picture without them.
-  awaitImages(bindings, bindings.complete(), aborted);
+  // Not before it moves: decoding and uploading images would delay that.
+  const images = frames(2).then(() => bindings.complete());
+  awaitImages(bindings, images, aborted);
   // Only a rehearsal: without it, files open a little later.
   whenIdle(async () => session.app === bindings && (await bindings.rehearse_opening().catch(() => {})));
   showPanel(null);
