@@ -88,6 +88,13 @@ fn advance_clock(state: &mut ViewerState, library: &Library, clock_secs: f64) {
     advance(state, library.active(), clock_secs);
 }
 
+/// Returns what is used of a view, whatever model it is for.
+pub(super) fn checked(view: ViewerState) -> ViewerState {
+    let mut state = ViewerState::default();
+    replace(&mut state, view);
+    state
+}
+
 /// Replaces the whole state, checking each number as if it had been set alone. Indices are not checked against the model, which
 /// may still be loading; those out of range have no effect.
 fn replace(state: &mut ViewerState, new: ViewerState) {
