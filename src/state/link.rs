@@ -68,11 +68,11 @@ pub enum LinkError {
         instead: &'static str,
     },
     /// The model has no joint, material or the like with this index.
-    #[error("{key}: expected the index of one of {count} {what}, found {found}; it is left out")]
+    #[error("{key}: expected the index of a {what} (of {count}), found {found}; it is left out")]
     UnknownIndex {
         /// The key.
         key: &'static str,
-        /// What the index is of, in the plural.
+        /// What the index is of.
         what: &'static str,
         /// How many the model has.
         count: usize,

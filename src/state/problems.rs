@@ -16,6 +16,7 @@ pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError
     let mut found = differences(view, &apply::checked(view.clone()));
     if let Some(model) = model.filter(|model| !model.is_placeholder()) {
         find_names(view, model, &mut found);
+        find_empty_clips(view, model, &mut found);
         find_indices(view, model, &mut found);
         find_pins(view, model, &mut found);
     }
@@ -46,6 +47,20 @@ fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     }
 }
 
+/// A trim may begin where its clip has ended.
+fn find_empty_clips(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
+    for (name, ClipChanges { trim, .. }) in &view.edits.clips {
+        let clip = clip_called(model, name).and_then(|clip| model.unchanged_clip(clip));
+        if let (Some(clip), Some(range)) = (clip, trim)
+            && range.start_secs >= f64::from(clip.duration_secs())
+        {
+            let value = format!("{name}:trim:{}:{}", range.start_secs, range.end_secs);
+            let instead = format!("it ends at {:.3} s, so nothing is left", clip.duration_secs());
+            found.push(LinkError::OutOfRange { key: "change", value, expected: "a start within the clip", instead });
+        }
+    }
+}
+
 fn find_indices(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     let (asset, edits) = (&model.asset, &view.edits);
     let mut check = |key, what, count: usize, indices: &mut dyn Iterator<Item = usize>| {
@@ -56,22 +71,27 @@ fn find_indices(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     };
     // The skeleton has a joint for each node of the file.
     let joints = asset.skeleton.len();
-    check("joint", "joints", joints, &mut view.selection.joint.into_iter());
-    check("pose", "joints", joints, &mut edits.pose.keys().copied());
-    check("names", "joints", joints, &mut edits.names.keys().copied());
-    check("layers", "joints", joints, &mut edits.layers.iter().flat_map(|layer| layer.mask.joints.iter().copied()));
-    check("hidden", "nodes", joints, &mut edits.hidden.nodes.iter().copied());
+    check("joint", "joint", joints, &mut view.selection.joint.into_iter());
+    check("pose", "joint", joints, &mut edits.pose.keys().copied());
+    check("names", "joint", joints, &mut edits.names.keys().copied());
+    check("layers", "joint", joints, &mut edits.layers.iter().flat_map(|layer| layer.mask.joints.iter().copied()));
+    check("hidden", "node", joints, &mut edits.hidden.nodes.iter().copied());
     let materials = &mut edits.hidden.materials.iter().flatten().copied();
-    check("hidden", "materials", asset.materials.len(), materials);
-    check("morph", "morph targets", asset.skeleton.rest().morph_weights.len(), &mut edits.morph.keys().copied());
-    check("scene", "scenes", asset.scenes.len(), &mut view.sources.scene.into_iter());
+    check("hidden", "material", asset.materials.len(), materials);
+    check("morph", "morph target", asset.skeleton.rest().morph_weights.len(), &mut edits.morph.keys().copied());
+    check("scene", "scene", asset.scenes.len(), &mut view.sources.scene.into_iter());
     if let CameraChoice::File(index) = view.camera {
-        check("camera", "cameras", asset.cameras.len(), &mut [index].into_iter());
+        check("camera", "camera", asset.cameras.len(), &mut [index].into_iter());
     }
     if let Some(VertexChoice { instance, primitive, vertex }) = view.selection.vertex {
         let mesh = asset.instances.get(instance).map(|instance| &asset.meshes[instance.mesh]);
         let geometry = mesh.and_then(|mesh| mesh.primitives.get(primitive));
-        check("vertex", "vertices", geometry.map_or(0, |geometry| geometry.positions.len()), &mut [vertex].into_iter());
+        check(
+            "vertex",
+            "vertex of that primitive",
+            geometry.map_or(0, |geometry| geometry.positions.len()),
+            &mut [vertex].into_iter(),
+        );
     }
 }
 
@@ -80,10 +100,10 @@ fn find_pins(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     let (pinning, skeleton) = (pinning(model, view, None), &model.asset.skeleton);
     for (&joint, pin) in view.edits.pins.iter().filter(|(joint, pin)| !pinning.allows(**joint, pin.goal)) {
         let (joint, what, count) = match pin.goal {
-            PinGoal::Joint(other, _) if other >= skeleton.len() => (other, "joints", skeleton.len()),
+            PinGoal::Joint(other, _) if other >= skeleton.len() => (other, "joint", skeleton.len()),
             goal => {
                 let allowed = (0..skeleton.len()).filter(|&joint| pinning.allows(joint, goal));
-                (joint, "joints that can be pinned like this", allowed.count())
+                (joint, "joint that can be pinned like this", allowed.count())
             }
         };
         found.push(LinkError::UnknownIndex { key: "pin", what, count, found: joint.to_string() });
