@@ -243,9 +243,11 @@ fn a_link_tells_all_that_is_wrong_with_it_once() {
         let contents = Box::new(Contents { problems, link_errors, ..Contents::default() });
         let opened = Rc::new(RefCell::new(None));
         let slot = opened.clone();
-        let reply = Some(Box::new(move |answer| *slot.borrow_mut() = Some(answer)) as Box<_>);
+        let reply = Some(
+            Box::new(move |answer: Result<serde_json::Value, String>| *slot.borrow_mut() = Some(answer)) as Box<_>
+        );
         desk.send(Message::Opened { contents, state: Some(Box::new(view)), is_change: false, reply });
-        let opened: serde_json::Value = opened.take().expect("is answered").expect("is loaded");
+        let opened = opened.take().expect("is answered").expect("is loaded");
         (opened[1].clone(), desk.shows("“Fly”"))
     };
     assert_eq!(told(&[]), (serde_json::json!([]), true));
