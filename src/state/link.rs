@@ -45,7 +45,7 @@ pub enum LinkError {
         /// The word.
         value: String,
     },
-    /// A number is out of range.
+    /// A number or an index is out of range.
     #[error("{key}={value}: expected {expected}; {instead}")]
     OutOfRange {
         /// The key.
@@ -67,18 +67,6 @@ pub enum LinkError {
         /// What is used instead.
         instead: &'static str,
     },
-    /// The model has no joint, material or the like with this index.
-    #[error("{key}: expected the index of a {what} (of {count}), found {found}; it is left out")]
-    UnknownIndex {
-        /// The key.
-        key: &'static str,
-        /// What the index is of.
-        what: &'static str,
-        /// How many the model has.
-        count: usize,
-        /// The index, or several separated by commas.
-        found: String,
-    },
 }
 
 impl LinkError {
@@ -87,7 +75,7 @@ impl LinkError {
         match self {
             Self::BadValue { key, .. } | Self::UnknownKey { key } => key,
             Self::UnknownShow { .. } => "show",
-            Self::OutOfRange { key, .. } | Self::UnknownName { key, .. } | Self::UnknownIndex { key, .. } => key,
+            Self::OutOfRange { key, .. } | Self::UnknownName { key, .. } => key,
         }
     }
 }
@@ -351,22 +339,19 @@ pub fn to_link(state: &ViewerState) -> String {
     text
 }
 
-/// Returns where a view isn't what is `used` of it, except where an angle is only written otherwise.
-pub(super) fn differences(view: &ViewerState, used: &ViewerState) -> Vec<LinkError> {
-    const ANGLES: [&str; 3] = ["camera", "environment", "pose"];
-    let mut errors = Vec::new();
-    for key in KEYS.iter().filter(|key| !ANGLES.contains(&key.name)) {
+/// Adds where a view isn't what is `used` of it, and `why`.
+pub(super) fn differences(view: &ViewerState, used: &ViewerState, why: &str, errors: &mut Vec<LinkError>) {
+    for key in KEYS {
         let [asked, used] = [view, used].map(|state| (key.write)(state).texts());
         let only = |of: &[String], others: &[String]| {
             of.iter().filter(|text| !others.contains(text)).cloned().collect::<Vec<_>>().join(", ")
         };
         let (value, used) = (only(&asked, &used), only(&used, &asked));
-        let instead = if used.is_empty() { "it is left out".to_owned() } else { format!("{used} is used") };
+        let instead = if used.is_empty() { format!("{why}it is left out") } else { format!("{why}{used} is used") };
         if !value.is_empty() {
             errors.push(LinkError::OutOfRange { key: key.name, value, expected: key.expected, instead });
         }
     }
-    errors
 }
 
 /// Reads a value of the key `layers`, as the command line has it.

@@ -1,24 +1,29 @@
 //! Compares a view with the model it is for: what is out of range, and what the model doesn't have.
 
+use super::apply::{checked, checked_for};
 use super::layers::unknown_layers;
 use super::link::differences;
 use super::playhead::{clip_called, unknown_clip};
 use super::variant::unknown_variant;
-use super::{CameraChoice, LinkError, NameKind, UnknownName, VertexChoice, ViewerState, apply, pinning};
+use super::{LinkError, NameKind, UnknownName, ViewerState};
 use crate::library::Model;
-use crate::retarget::{ClipChanges, PinGoal};
+use crate::retarget::ClipChanges;
 
 const LEFT_OUT: &str = "it is left out";
 
 /// Returns what a view asks for that can't be shown, key by key. Without a model, or while an empty stage stands in for it,
 /// only what no model could show.
 pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError> {
-    let mut found = differences(view, &apply::checked(view.clone()));
+    // Angles may only be written otherwise.
+    const ANGLES: [&str; 3] = ["camera", "environment", "pose"];
+    let checked = checked(view);
+    let mut found = Vec::new();
+    differences(view, &checked, "", &mut found);
+    found.retain(|problem| !ANGLES.contains(&problem.key()));
     if let Some(model) = model.filter(|model| !model.is_placeholder()) {
         find_names(view, model, &mut found);
         find_empty_clips(view, model, &mut found);
-        find_indices(view, model, &mut found);
-        find_pins(view, model, &mut found);
+        differences(&checked, &checked_for(&checked, model), "this model can't show it, so ", &mut found);
     }
     found
 }
@@ -58,54 +63,5 @@ fn find_empty_clips(view: &ViewerState, model: &Model, found: &mut Vec<LinkError
             let instead = format!("it ends at {:.3} s, so nothing is left", clip.duration_secs());
             found.push(LinkError::OutOfRange { key: "change", value, expected: "a start within the clip", instead });
         }
-    }
-}
-
-fn find_indices(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
-    let (asset, edits) = (&model.asset, &view.edits);
-    let mut check = |key, what, count: usize, indices: &mut dyn Iterator<Item = usize>| {
-        let unknown: Vec<String> = indices.filter(|&index| index >= count).map(|index| index.to_string()).collect();
-        if !unknown.is_empty() {
-            found.push(LinkError::UnknownIndex { key, what, count, found: unknown.join(", ") });
-        }
-    };
-    // The skeleton has a joint for each node of the file.
-    let joints = asset.skeleton.len();
-    check("joint", "joint", joints, &mut view.selection.joint.into_iter());
-    check("pose", "joint", joints, &mut edits.pose.keys().copied());
-    check("names", "joint", joints, &mut edits.names.keys().copied());
-    check("layers", "joint", joints, &mut edits.layers.iter().flat_map(|layer| layer.mask.joints.iter().copied()));
-    check("hidden", "node", joints, &mut edits.hidden.nodes.iter().copied());
-    let materials = &mut edits.hidden.materials.iter().flatten().copied();
-    check("hidden", "material", asset.materials.len(), materials);
-    check("morph", "morph target", asset.skeleton.rest().morph_weights.len(), &mut edits.morph.keys().copied());
-    check("scene", "scene", asset.scenes.len(), &mut view.sources.scene.into_iter());
-    if let CameraChoice::File(index) = view.camera {
-        check("camera", "camera", asset.cameras.len(), &mut [index].into_iter());
-    }
-    if let Some(VertexChoice { instance, primitive, vertex }) = view.selection.vertex {
-        let mesh = asset.instances.get(instance).map(|instance| &asset.meshes[instance.mesh]);
-        let geometry = mesh.and_then(|mesh| mesh.primitives.get(primitive));
-        check(
-            "vertex",
-            "vertex of that primitive",
-            geometry.map_or(0, |geometry| geometry.positions.len()),
-            &mut [vertex].into_iter(),
-        );
-    }
-}
-
-/// Not every joint can have every goal.
-fn find_pins(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
-    let (pinning, skeleton) = (pinning(model, view, None), &model.asset.skeleton);
-    for (&joint, pin) in view.edits.pins.iter().filter(|(joint, pin)| !pinning.allows(**joint, pin.goal)) {
-        let (joint, what, count) = match pin.goal {
-            PinGoal::Joint(other, _) if other >= skeleton.len() => (other, "joint", skeleton.len()),
-            goal => {
-                let allowed = (0..skeleton.len()).filter(|&joint| pinning.allows(joint, goal));
-                (joint, "joint that can be pinned like this", allowed.count())
-            }
-        };
-        found.push(LinkError::UnknownIndex { key: "pin", what, count, found: joint.to_string() });
     }
 }

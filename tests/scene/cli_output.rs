@@ -302,7 +302,7 @@ fn what_a_link_asks_for_in_vain_is_reported() {
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success());
     let says =
-        ["found 999", "speed=9: expected a factor from 0.1 to 4; 4 is used", "“grin”", "zoo: ", "trim:START:END"];
+        ["joint=999", "speed=9: expected a factor from 0.1 to 4; 4 is used", "“grin”", "zoo: ", "trim:START:END"];
     for part in says {
         assert_eq!(stderr.matches(part).count(), 1, "{part}: {stderr}");
     }

@@ -202,7 +202,7 @@ fn what_is_wrong_with_a_change_by_a_script_is_told() {
     let mut editor = editor("sample:walker");
     editor.apply_partial(&json!({ "joint": 999, "speed": 9 })).expect("is no error");
     let told = notices(&editor.take_events()).join("");
-    assert!(told.contains("found 999") && told.contains("4 is used"), "{told}");
+    assert!(told.contains("joint=999") && told.contains("4 is used"), "{told}");
     editor.apply_partial(&json!({ "t": 0.5 })).expect("is fine");
     assert_eq!(notices(&editor.take_events()), [""; 0]);
     let error = editor.apply_partial(&json!({ "change": ["Walk:trim:5:1"] })).expect_err("keeps nothing");
