@@ -22,7 +22,8 @@ pub enum Message {
         state: Option<Box<ViewerState>>,
         /// Whether `state` is a change of the current state rather than a link's.
         is_change: bool,
-        /// Answered with the active model's inspect document once the viewport shows it, or with the error.
+        /// Answered with a list, the active model's inspect document and the problems that the shell shows, once the viewport shows
+        /// the model, or with the error.
         reply: Option<Reply<serde_json::Value>>,
     },
     /// Nothing was opened; shows the message.

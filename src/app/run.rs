@@ -127,6 +127,23 @@ impl App {
         self.opening(|editor, admit| editor.open(contents, view, admit))
     }
 
+    /// Opens a link. If a part of it couldn't be opened, returns all that is wrong with it, for the shell to show at once.
+    ///
+    /// # Errors
+    /// If the model doesn't fit on the device.
+    pub fn open_link(&mut self, mut contents: Contents, view: ViewerState) -> Result<Vec<String>, String> {
+        let mut problems = std::mem::take(&mut contents.problems);
+        self.open(contents, Some(view))?;
+        if !problems.is_empty() {
+            let messages = &mut self.panels.messages;
+            let toast = messages.toast.take().map(|toast| toast.text);
+            for text in [messages.error.take(), toast].into_iter().flatten() {
+                problems.extend(text.lines().map(str::to_owned));
+            }
+        }
+        Ok(problems)
+    }
+
     /// Completes a model that was opened before its images had arrived.
     ///
     /// # Errors
@@ -152,9 +169,12 @@ impl App {
                 let progress = self.panels.messages.progress.take();
                 let opened = match state {
                     Some(view) if is_change => {
-                        self.opening(|editor, admit| editor.open_change(*contents, *view, admit))
+                        let problems = contents.problems.clone();
+                        let opened = self.opening(|editor, admit| editor.open_change(*contents, *view, admit));
+                        opened.map(|()| problems)
                     }
-                    view => self.open(*contents, view.map(|view| *view)),
+                    Some(view) => self.open_link(*contents, *view),
+                    None => self.open(*contents, None).map(|()| Vec::new()),
                 };
                 if let Err(error) = &opened {
                     self.panels.messages.fail_to_open(error, progress);
@@ -184,13 +204,15 @@ impl App {
         }
     }
 
-    fn answer_opened(&mut self, opened: Result<(), String>, reply: Reply<serde_json::Value>) {
-        if let Err(error) = opened {
-            return reply(Err(error));
-        }
+    fn answer_opened(&mut self, opened: Result<Vec<String>, String>, reply: Reply<serde_json::Value>) {
+        let problems = match opened {
+            Ok(problems) => problems,
+            Err(error) => return reply(Err(error)),
+        };
         let sources = &self.editor.state().sources.model;
         let document = self.editor.library().active().map(|model| inspect(model, sources)).unwrap_or_default();
-        self.after_draw.push(Box::new(move || reply(Ok(document))));
+        let opened = serde_json::json!([document, problems]);
+        self.after_draw.push(Box::new(move || reply(Ok(opened))));
     }
 
     fn script(&mut self, call: ScriptCall) {

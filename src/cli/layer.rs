@@ -10,7 +10,7 @@ use crate::library::Model;
 use crate::retarget::{
     Baking, Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking,
 };
-use crate::state::{read_layer, unknown_layer};
+use crate::state::{read_layer, unknown_layers};
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]
@@ -32,7 +32,7 @@ fn read(text: &str) -> Result<ClipLayer, String> {
 
 /// Fails if the model lacks a clip or a joint that a layer names.
 pub(super) fn check(layers: &[ClipLayer], model: &Model) -> Outcome {
-    if let Some(unknown) = unknown_layer(model, layers) {
+    if let Some(unknown) = unknown_layers(model, layers).next() {
         return Err(Failure::from(unknown).at("--layer").in_file(&model.source));
     }
     check_joints(layers, &model.asset).map_err(|failure| failure.in_file(&model.source))

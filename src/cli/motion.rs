@@ -12,9 +12,7 @@ use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Held, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{
-    ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip, unknown_layer, unknown_variant,
-};
+use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, view_problems};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
@@ -156,24 +154,23 @@ pub(super) fn apply_link(
         let motions = contents.motions.iter().flatten();
         motions.for_each(|motion| print_warnings(&motion.source, &motion.asset.warnings));
     }
-    editor.open(contents, Some(view), &mut |_| Ok(()))?;
-    let problems = take_problems(editor);
+    editor.open(contents, Some(view.clone()), &mut |_| Ok(()))?;
+    let unknown = view_problems(&view, editor.library().active());
+    let mut problems = take_problems(editor);
+    problems.retain(|problem| !unknown.iter().any(|unknown| unknown.to_string() == *problem));
     // The editor keeps an empty map to itself, since it may be about to be edited.
     let errors = editor.library().borrow_errors().iter().map(ToString::to_string);
     let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
     problems.iter().chain(&unreported).for_each(|problem| warn(problem));
-    // A motion's first clip overrides the link's, too.
-    let unknown = editor.library().active().and_then(|model| unknown_clip(model, editor.state()));
-    if let Some(unknown) = unknown.filter(|_| !overrides.clip && arguments.motion.is_none()) {
-        warn(&format!("--view: clip: {unknown}; the rest pose is used"));
-    }
-    let unknown = editor.library().active().and_then(|model| unknown_layer(model, &editor.state().edits.layers));
-    if let Some(unknown) = unknown.filter(|_| !overrides.layers) {
-        warn(&format!("--view: layers: {unknown}; the layer is left out"));
-    }
-    let unknown = editor.library().active().and_then(|model| unknown_variant(model, editor.state()));
-    if let Some(unknown) = unknown.filter(|_| !overrides.variant) {
-        warn(&format!("--view: variant: {unknown}; the file's own materials are used"));
+    let is_overridden = |key: &str| match key {
+        // A motion's first clip overrides the link's, too.
+        "clip" => overrides.clip || arguments.motion.is_some(),
+        "layers" => overrides.layers,
+        "variant" => overrides.variant,
+        _ => false,
+    };
+    for unknown in unknown.iter().filter(|unknown| !is_overridden(unknown.key())) {
+        warn(&format!("--view: {unknown}"));
     }
     Ok(())
 }

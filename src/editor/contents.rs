@@ -3,7 +3,7 @@
 use crate::formats::FileSet;
 use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::MEMBER_SEPARATOR;
+use crate::state::{LinkError, MEMBER_SEPARATOR};
 
 /// Opened files, ready for the library.
 #[derive(Debug, Default)]
@@ -22,6 +22,8 @@ pub struct Contents {
     pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
+    /// What was not understood of the link whose view is opened.
+    pub link_errors: Vec<LinkError>,
 }
 
 /// A joint map that was just read.

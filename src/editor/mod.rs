@@ -33,8 +33,8 @@ use serde_json::Value;
 
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
-    Command, DEFAULT_ASPECT, EnvironmentChoice, History, OrbitCamera, ViewerState, from_object, unknown_clip,
-    unknown_layer, unknown_variant,
+    Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
+    view_problems,
 };
 use motions::ClipIdentity;
 use open::Shelved;
@@ -56,6 +56,8 @@ pub struct Editor {
     waiting_clip: Option<ClipIdentity>,
     /// Name of the joint map's file while it is being opened.
     opened_map: Option<String>,
+    /// What was not understood of a link while its view is being opened.
+    link_errors: Vec<LinkError>,
     /// A joint map was opened from the user's local files.
     has_private_map: bool,
     /// Errors about retargeted clips that have been reported.
@@ -89,6 +91,7 @@ impl Editor {
             refused: Vec::new(),
             waiting_clip: None,
             opened_map: None,
+            link_errors: Vec::new(),
             has_private_map: false,
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
@@ -139,6 +142,7 @@ impl Editor {
         if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
             return;
         }
+        let view = if let Command::Replace(view) = &command { Some(view.clone()) } else { None };
         let command = self.command_with_reduced_motion(command);
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
@@ -149,7 +153,6 @@ impl Editor {
         let reframes = matches!(command, Command::SetUp(_));
         let is_other_clip = matches!(command, Command::SetClip(_)) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
-        let is_view = matches!(command, Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
         let view_before = if is_map_edit { self.automatic_view() } else { None };
         self.notify_follow(&command);
@@ -163,7 +166,10 @@ impl Editor {
         }
         if affects_retargeting {
             let problems = self.retarget();
-            self.report(problems);
+            match view {
+                Some(view) => self.report_view(&view, problems),
+                None => self.report(problems),
+            }
         }
         if is_map_edit {
             self.follow_clip(playing);
@@ -171,9 +177,6 @@ impl Editor {
         }
         if let Some((motion, before)) = rematched {
             self.notify_rematch(motion, &before);
-        }
-        if is_view {
-            self.notify_unknown_names();
         }
     }
 
@@ -189,6 +192,8 @@ impl Editor {
         if !self.has_files_of(&state) {
             return Err(OTHER_FILES.to_owned());
         }
+        let mut unusable = view_problems(&state, self.library.active());
+        unusable.retain(|problem| partial.get(problem.key()).is_some());
         let before = self.state.clone();
         // What it says is no longer chosen automatically.
         self.suits_follow &= partial.get("follow").is_none();
@@ -197,6 +202,7 @@ impl Editor {
         let problems = self.retarget();
         (self.needs_redraw, self.is_changed) = (true, true);
         if problems.is_empty() {
+            self.tell(&unusable, problems);
             return Ok(());
         }
         self.state = before;
@@ -233,22 +239,29 @@ impl Editor {
         new.model == now.model && new.motion == now.motion
     }
 
-    /// Notifies about a clip, layer or variant that the model lacks. It isn't an error: the rest of the view is shown.
-    pub(super) fn notify_unknown_names(&mut self) {
-        let model = self.library.active().filter(|model| !model.is_placeholder());
-        let Some(model) = model else { return };
-        let clip = unknown_clip(model, &self.state);
-        let layer = unknown_layer(model, &self.state.edits.layers);
-        let variant = unknown_variant(model, &self.state);
-        let notices = [
-            clip.map(|unknown| format!("clip: {unknown}; the rest pose is used.")),
-            layer.map(|unknown| format!("layers: {unknown}; the layer is left out.")),
-            variant.map(|unknown| format!("variant: {unknown}; the file's own materials are used.")),
-        ];
-        // A second notice would replace the first.
-        let notices: Vec<String> = notices.into_iter().flatten().collect();
-        if !notices.is_empty() {
-            self.notify(notices.join("\n"));
+    /// Tells all that is wrong with a view that was just applied, and `problems` of retargeting.
+    pub(super) fn report_view(&mut self, view: &ViewerState, problems: Vec<String>) {
+        let mut errors = std::mem::take(&mut self.link_errors);
+        errors.extend(view_problems(view, self.library.active()));
+        self.tell(&errors, problems);
+    }
+
+    /// Tells what can't be used of a view, below its problems if there are any. Alone it isn't an error: the rest of the view is
+    /// shown.
+    fn tell(&mut self, errors: &[LinkError], problems: Vec<String>) {
+        const MAX_LINES: usize = 12;
+        let mut lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        let more = lines.len().saturating_sub(MAX_LINES);
+        lines.truncate(MAX_LINES);
+        if more > 0 {
+            lines.push(format!("and {more} more"));
+        }
+        if !problems.is_empty() {
+            self.report(problems);
+            self.report(lines);
+        } else if !lines.is_empty() {
+            // One notice: a second one would replace the first.
+            self.notify(lines.join(".\n") + ".");
         }
     }
 

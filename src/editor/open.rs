@@ -57,13 +57,15 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems } = contents;
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems, link_errors } =
+            contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
         self.opened_map = map.as_ref().map(|opened| opened.name.clone());
         self.has_private_map |= is_map_private;
         self.refused.clear();
+        self.link_errors = link_errors;
         let opened = match motions {
             motions if has_models => {
                 let opened = self.open_models(models, Companions { motions, map: waiting, view, is_by_hand }, admit);
@@ -73,9 +75,18 @@ impl Editor {
                 opened
             }
             Some(motions) => self.open_motions(motions, waiting, view, is_by_hand, admit),
-            None => map.map_or(Ok(()), |opened| self.open_map(&opened.map)),
+            None => match (map, view) {
+                (Some(opened), _) => self.open_map(&opened.map),
+                // The view is of what is loaded.
+                (None, Some(view)) => {
+                    self.apply(Command::Replace(Box::new(view)));
+                    Ok(())
+                }
+                (None, None) => Ok(()),
+            },
         };
         self.opened_map = None;
+        self.link_errors.clear();
         if opened.is_ok()
             && let Some(environment) = environment
         {
@@ -162,12 +173,12 @@ impl Editor {
             self.carry_motions_over(playing, motions, map)
         } else {
             self.library.set_motions(motions);
-            match view {
+            match view.clone() {
                 Some(view) => self.set_view(view),
                 None => self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view),
             }
             self.state.retarget.map.extend(map);
-            self.finish_view(is_view);
+            self.finish_view(view.as_ref());
             None
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
@@ -348,19 +359,19 @@ impl Editor {
             self.events.extend([Event::ViewOpened, Event::ModelOpened]);
         }
         self.remember(before);
-        self.set_view(view);
+        self.set_view(view.clone());
         self.state.retarget.map.extend(map);
         self.library.set_motions(motions);
-        self.finish_view(true);
+        self.finish_view(Some(&view));
         Ok(())
     }
 
-    /// Retargets the motions that were loaded with a model, and reports what a link's view names but can't be shown.
-    fn finish_view(&mut self, is_link: bool) {
+    /// Retargets the motions that were loaded with a model, and reports what can't be shown of a link's view.
+    fn finish_view(&mut self, view: Option<&ViewerState>) {
         let problems = self.retarget();
-        self.report(problems);
-        if is_link {
-            self.notify_unknown_names();
+        match view {
+            Some(view) => self.report_view(view, problems),
+            None => self.report(problems),
         }
     }
 

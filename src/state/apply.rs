@@ -9,8 +9,8 @@ use super::maps;
 use super::pins;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, VertexChoice,
-    ViewerState,
+    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, Selection,
+    VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
@@ -86,6 +86,37 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
 fn advance_clock(state: &mut ViewerState, library: &Library, clock_secs: f64) {
     advance_turntable(state, library, clock_secs);
     advance(state, library.active(), clock_secs);
+}
+
+/// Returns what is used of a view, whatever model it is for.
+pub(super) fn checked(view: &ViewerState) -> ViewerState {
+    let mut state = ViewerState::default();
+    replace(&mut state, view.clone());
+    state
+}
+
+/// Returns what is used of a checked view with this model, except for what has a name.
+pub(super) fn checked_for(view: &ViewerState, model: &Model) -> ViewerState {
+    let mut state = view.clone();
+    let has_joint = |joint: &usize| model.asset.skeleton.joint_of_source(*joint).is_some();
+    state.edits.names.retain(|joint, _| has_joint(joint));
+    state.edits.pose.retain(|joint, _| has_joint(joint));
+    state.edits.layers.iter_mut().for_each(|layer| layer.mask.joints.retain(has_joint));
+    state.edits.hidden.retain_known(&model.asset);
+    state.edits.morph.clear();
+    for (&index, &weight) in &view.edits.morph {
+        set_morph(&mut state, Some(model), index, Some(weight));
+    }
+    state.edits.pins.clear();
+    for (&joint, &pin) in &view.edits.pins {
+        pins::set_pin(&mut state, Some(model), joint, Some(pin));
+    }
+    (state.selection, state.sources.scene, state.camera) = (Selection::default(), None, CameraChoice::Auto);
+    select_joint(&mut state, Some(model), view.selection.joint);
+    select_vertex(&mut state, Some(model), view.selection.vertex);
+    set_scene(&mut state, Some(model), view.sources.scene);
+    set_camera(&mut state, Some(model), view.camera);
+    state
 }
 
 /// Replaces the whole state, checking each number as if it had been set alone. Indices are not checked against the model, which

@@ -75,9 +75,11 @@ pub fn stacked_layers<'a>(model: &'a Model, state: &'a ViewerState) -> Vec<Stack
     stacked.collect()
 }
 
-/// Returns the first clip of a layer that the model lacks.
-pub fn unknown_layer(model: &Model, layers: &[ClipLayer]) -> Option<UnknownName> {
-    let unknown = layers.iter().find(|layer| clip_of_layer(model, layer).is_none())?;
-    let (name, names) = (unknown.clip.clone(), model.clip_titles().to_vec());
-    Some(UnknownName { kind: NameKind::Clip, name, names })
+/// Returns the clips of layers that the model lacks.
+pub fn unknown_layers(model: &Model, layers: &[ClipLayer]) -> impl Iterator<Item = UnknownName> {
+    let unknown = layers.iter().filter(|layer| clip_of_layer(model, layer).is_none());
+    unknown.map(|layer| {
+        let (name, names) = (layer.clip.clone(), model.clip_titles().to_vec());
+        UnknownName { kind: NameKind::Clip, name, names }
+    })
 }

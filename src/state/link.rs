@@ -17,10 +17,10 @@ pub use self::files::{
 pub use self::pins::read_pin;
 pub use self::values::with_current_member;
 use self::values::*;
-use super::ViewerState;
+use super::{UnknownName, ViewerState};
 use crate::retarget::ClipLayer;
 
-/// A part of a link, or of an object from a script, that is not understood. All other parts still apply.
+/// A part of a link, or of an object from a script, that is not understood or that can't be shown. All other parts still apply.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
     /// A key's value is unusable and was skipped.
@@ -45,6 +45,39 @@ pub enum LinkError {
         /// The word.
         value: String,
     },
+    /// A number or an index is out of range.
+    #[error("{key}={value}: expected {expected}; {instead}")]
+    OutOfRange {
+        /// The key.
+        key: &'static str,
+        /// Its value, or those of its values that are out of range.
+        value: String,
+        /// What the key takes, in words.
+        expected: &'static str,
+        /// What is used instead.
+        instead: String,
+    },
+    /// The model has no clip, variant or the like of this name.
+    #[error("{key}: {unknown}; {instead}")]
+    UnknownName {
+        /// The key.
+        key: &'static str,
+        /// The name, and those that exist.
+        unknown: UnknownName,
+        /// What is used instead.
+        instead: &'static str,
+    },
+}
+
+impl LinkError {
+    /// Returns the key that it is about.
+    pub fn key(&self) -> &str {
+        match self {
+            Self::BadValue { key, .. } | Self::UnknownKey { key } => key,
+            Self::UnknownShow { .. } => "show",
+            Self::OutOfRange { key, .. } | Self::UnknownName { key, .. } => key,
+        }
+    }
 }
 
 /// How one key of the link is read and written: a row of [`KEYS`].
@@ -52,6 +85,8 @@ struct Key {
     name: &'static str,
     /// May appear several times in a link; an array in JSON.
     repeatable: bool,
+    /// What its values are, in words.
+    expected: &'static str,
     read: fn(&mut ViewerState, &str) -> Read,
     write: fn(&ViewerState) -> Written,
     /// Resets the field to its default.
@@ -96,6 +131,7 @@ macro_rules! key {
         Key {
             name: $name,
             repeatable: false,
+            expected: $expected,
             read: |state, text| match $read(text) {
                 Some(value) => {
                     state.$group$(.$field)? = value;
@@ -122,6 +158,7 @@ macro_rules! list {
         Key {
             name: $name,
             repeatable: true,
+            expected: $expected,
             read: |state, text| match $read(text) {
                 Some(value) => {
                     state.$group.$field.push(value);
@@ -158,7 +195,7 @@ const KEYS: &[Key] = &[
     key!("contacts", retarget.contacts, read_some(read_contacts), write_some(contacts_text), "off or keep"),
     key!("scene", sources.scene, read_index, write_index, "a scene's index"),
     key!("clip", playhead.clip, read_clip, write_clip, "a clip's name or index"),
-    key!("t", playhead.time_secs, finite, write_number, "seconds"),
+    key!("t", playhead.time_secs, finite, write_number, "seconds from 0 on"),
     key!(
         "fade",
         playhead.fade,
@@ -170,6 +207,7 @@ const KEYS: &[Key] = &[
     Key {
         name: "mirror",
         repeatable: true,
+        expected: changes::MIRROR,
         read: changes::read_mirror,
         write: changes::write_mirror,
         reset: changes::reset_mirror,
@@ -177,22 +215,23 @@ const KEYS: &[Key] = &[
     Key {
         name: "change",
         repeatable: true,
+        expected: changes::CHANGE,
         read: changes::read_change,
         write: changes::write_change,
         reset: changes::reset_change,
     },
     list!("layers", edits.layers, layers::read, layers::text, layers::EXPECTED),
-    key!("speed", playback.speed, finite, write_number, "a factor such as 0.5"),
+    key!("speed", playback.speed, finite, write_number, "a factor from 0.1 to 4"),
     word!("loop", playback.loop_mode, LOOP_MODES, "once, loop or ping-pong"),
     key!(
         "range",
         playhead.range,
         read_unless_empty(read_range),
         write_some(range_text),
-        "two times in seconds: 0.5,1.5"
+        "two times in seconds from 0 on: 0.5,1.5"
     ),
     word!("skinning", display.skinning, SKINNING_MODES, "linear, rigid or dual-quaternion"),
-    key!("morph", edits.morph, read_morph, write_morph, "pairs of index and weight: 0:0.5,3:1"),
+    key!("morph", edits.morph, read_morph, write_morph, "pairs of index and weight from -10 to 10: 0:0.5,3:1"),
     key!(
         "expression",
         edits.expressions,
@@ -203,7 +242,14 @@ const KEYS: &[Key] = &[
     key!("look", display.look_at, read_look, write_look, "camera, x,y,z in metres, or off"),
     key!("springs", display.springs, flag, write_flag, "0 or 1"),
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
-    Key { name: "pin", repeatable: true, read: pins::read, write: pins::write, reset: pins::reset },
+    Key {
+        name: "pin",
+        repeatable: true,
+        expected: pins::EXPECTED,
+        read: pins::read,
+        write: pins::write,
+        reset: pins::reset,
+    },
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
     word!(
         "channel",
@@ -212,7 +258,7 @@ const KEYS: &[Key] = &[
         "shaded, base-color, normal, tangent, roughness, metallic, occlusion, emissive, uv, vertex-color, influences or \
          wireframe"
     ),
-    Key { name: "show", repeatable: false, read: read_show, write: write_show, reset: reset_show },
+    Key { name: "show", repeatable: false, expected: "", read: read_show, write: write_show, reset: reset_show },
     key!("joint", selection.joint, read_index, write_index, "a joint's index in the file"),
     key!(
         "vertex",
@@ -228,9 +274,9 @@ const KEYS: &[Key] = &[
         write_camera,
         "yaw,pitch,distance,x,y,z in degrees and metres, gltf:INDEX or auto"
     ),
-    key!("fov", camera_options.fov_degrees, finite, write_number, "degrees"),
+    key!("fov", camera_options.fov_degrees, finite, write_number, "degrees from 5 to 120"),
     key!("follow", camera_options.follow, flag, write_flag, "0 or 1"),
-    key!("turntable", camera_options.turntable, finite, write_number, "degrees per second"),
+    key!("turntable", camera_options.turntable, finite, write_number, "degrees per second from -360 to 360"),
     key!(
         "variant",
         edits.variant,
@@ -240,22 +286,16 @@ const KEYS: &[Key] = &[
     ),
     key!("hidden", edits.hidden, read_hidden, write_hidden, "node indices, and materials as m and their index: 4,7,m2"),
     word!("up", edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
-    key!("exposure", display.exposure, finite, write_number, "stops"),
+    key!("exposure", display.exposure, finite, write_number, "stops from -10 to 10"),
     word!("tonemap", display.tone_map, TONE_MAPS, "neutral, aces, agx or none"),
     key!("environment", display.environment_degrees, finite, write_number, "degrees"),
-    key!(
-        "light",
-        lighting.environment,
-        read_light,
-        write_light,
-        "studio, white, soft, hard, outdoor, a URL or a file name"
-    ),
+    key!("light", lighting.environment, read_light, write_light, "studio, white, soft, hard, outdoor or an .hdr image"),
     key!(
         "key",
         lighting.key,
         read_unless_empty(read_key_light),
         write_some(key_light_text),
-        "STRENGTH,YAW,PITCH, the angles in degrees"
+        "STRENGTH,YAW,PITCH: 0 to 10, and the angles in degrees"
     ),
     key!(
         "background",
@@ -297,6 +337,21 @@ pub fn to_link(state: &ViewerState) -> String {
         }
     }
     text
+}
+
+/// Adds where a view isn't what is `used` of it, and `why`.
+pub(super) fn differences(view: &ViewerState, used: &ViewerState, why: &str, errors: &mut Vec<LinkError>) {
+    for key in KEYS {
+        let [asked, used] = [view, used].map(|state| (key.write)(state).texts());
+        let only = |of: &[String], others: &[String]| {
+            of.iter().filter(|text| !others.contains(text)).cloned().collect::<Vec<_>>().join(", ")
+        };
+        let (value, used) = (only(&asked, &used), only(&used, &asked));
+        let instead = if used.is_empty() { format!("{why}it is left out") } else { format!("{why}{used} is used") };
+        if !value.is_empty() {
+            errors.push(LinkError::OutOfRange { key: key.name, value, expected: key.expected, instead });
+        }
+    }
 }
 
 /// Reads a value of the key `layers`, as the command line has it.

@@ -19,6 +19,7 @@ mod maps;
 mod names;
 mod pins;
 mod playhead;
+mod problems;
 mod stage;
 mod unknown;
 mod variant;
@@ -35,7 +36,7 @@ pub use framing::{
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
-pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layer};
+pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layers};
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
 pub use link::{
@@ -51,9 +52,10 @@ pub use playhead::{
     PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_secs, manual_degrees, manual_rotation,
     play_range, unknown_clip, world_from_model,
 };
+pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};
-pub use variant::{active_variant, unknown_variant};
+pub use variant::active_variant;
 pub use view::{
     Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
     RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,

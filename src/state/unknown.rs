@@ -11,9 +11,11 @@ pub enum NameKind {
     Variant,
     /// A joint, by name, index or body part.
     Joint,
+    /// An avatar's expression.
+    Expression,
 }
 
-/// A requested clip, variant or joint that doesn't exist.
+/// A requested clip, variant, joint or expression that doesn't exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownName {
     /// What was requested.
@@ -34,6 +36,7 @@ impl UnknownName {
             NameKind::Clip => "the name or index of a clip",
             NameKind::Variant => "the name of a material variant",
             NameKind::Joint => "the name, index or body part of a joint",
+            NameKind::Expression => "the name of an expression",
         }
     }
 
@@ -56,6 +59,7 @@ impl fmt::Display for UnknownName {
             NameKind::Clip => "clips",
             NameKind::Variant => "variants",
             NameKind::Joint => "joints",
+            NameKind::Expression => "expressions",
         };
         write!(f, "expected {}, found “{}”; ", self.expected(), self.name)?;
         let names = self.suggestions().join(", ");

@@ -10,7 +10,7 @@ pub fn active_variant(model: &Model, state: &ViewerState) -> Option<usize> {
 }
 
 /// Returns the variant that the state names and the model lacks.
-pub fn unknown_variant(model: &Model, state: &ViewerState) -> Option<UnknownName> {
+pub(super) fn unknown_variant(model: &Model, state: &ViewerState) -> Option<UnknownName> {
     let name = state.edits.variant.clone().filter(|_| active_variant(model, state).is_none())?;
     Some(UnknownName { kind: NameKind::Variant, name, names: model.asset.variants.clone() })
 }

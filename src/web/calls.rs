@@ -20,7 +20,7 @@ use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
 use crate::samples;
 use crate::state::{
-    Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
+    EnvironmentChoice, LinkError, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
 };
 use crate::ui::{Progress, text, title_and_hint};
 
@@ -48,8 +48,8 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
 #[wasm_bindgen]
 pub async fn follow_link(link: String, reload: bool) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
-    let state = state_of_link(&link, &page.shell);
-    Ok(open_state(&page, state, reload, true).await?)
+    let (state, errors) = state_of_link(&link);
+    Ok(open_state(&page, state, reload, Some(errors)).await?)
 }
 
 /// Sets some keys of the link; resolves like [`follow_link`], after the frame that shows the result.
@@ -65,7 +65,7 @@ pub async fn apply(partial: String) -> Result<String, JsValue> {
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| report(&[], &[])).map_err(malformed);
     }
-    Ok(open_state(&page, state.or_sample(samples::WALKER), false, false).await?)
+    Ok(open_state(&page, state.or_sample(samples::WALKER), false, None).await?)
 }
 
 /// Returns what the files of a set refer to and what isn't among them: relative URIs, percent-decoded. Ignores URLs.
@@ -251,12 +251,19 @@ fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
     has_other_sources || has_other_light || has_map_file()
 }
 
-/// Opens a state. Loads its files if they differ from the loaded ones, or all of them with `reload`. For a link, the shell
-/// reports what is missing.
-async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: bool) -> Result<String, Refusal> {
+/// Opens a state. Loads its files if they differ from the loaded ones, or all of them with `reload`. For a link, given with what
+/// was not understood of it, the shell reports what is missing.
+async fn open_state(
+    page: &Rc<Page>,
+    state: ViewerState,
+    reload: bool,
+    link_errors: Option<Vec<LinkError>>,
+) -> Result<String, Refusal> {
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
-        page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
+        let contents = Contents { link_errors: link_errors.unwrap_or_default(), ..Contents::default() };
+        let (contents, state) = (Box::new(contents), Some(Box::new(state)));
+        page.inbox.send(Message::Opened { contents, state, is_change: false, reply: None });
         return Ok(report(&[], &[]));
     }
     let with_model = reload || !with_app(page, |app| app.editor().holds(&state))?;
@@ -266,7 +273,7 @@ async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: 
     let motions =
         state.sources.motion.iter().filter(|source| !current_motions.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
-    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, is_link };
+    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, link_errors };
     let opened = load(page, request).await?;
     Ok(report(&loaded, &opened.problems))
 }
@@ -279,13 +286,14 @@ fn report(loaded: &[String], problems: &[String]) -> String {
 enum Request {
     /// Files; as much of the current state as fits is kept.
     Items { items: Vec<Item>, role: Role, is_private: bool, is_by_hand: bool },
-    /// A whole view, with its model or on the active one. For a link, the shell reports what is missing.
+    /// A whole view, with its model or on the active one. For a link, given with what was not understood of it, the shell reports
+    /// what is missing.
     View {
         state: Box<ViewerState>,
         with_model: bool,
         current_motions: Vec<Motion>,
         environments: Vec<Environment>,
-        is_link: bool,
+        link_errors: Option<Vec<LinkError>>,
     },
 }
 
@@ -310,7 +318,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
         }
         latest.replace(progress_of(name, received_bytes, total_bytes));
     };
-    let shell_reports = matches!(request, Request::View { is_link: true, .. });
+    let shell_reports = matches!(request, Request::View { link_errors: Some(_), .. });
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
@@ -318,10 +326,11 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
                 let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
                 contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
             }
-            Request::View { state, with_model, current_motions, environments, .. } => {
+            Request::View { state, with_model, current_motions, environments, link_errors } => {
                 let held = Held { motions: &current_motions, environments: &environments };
                 let opened = open_view(*state, with_model, held, &progress, None).await;
-                opened.map(|(contents, state)| (contents, Some(Box::new(state))))
+                let link_errors = link_errors.unwrap_or_default();
+                opened.map(|(contents, state)| (Contents { link_errors, ..contents }, Some(Box::new(state))))
             }
         }
     };
@@ -367,11 +376,11 @@ pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> 
     Message::OpenProgress(Progress { name: name.to_owned(), received_bytes, total_bytes })
 }
 
-/// Hands opened files to the app; resolves once they are on screen. The shell reports the problems of links, and only
+/// Hands opened files to the app; resolves once they are on screen. The shell reports missing files of links, and only
 /// of links, so a `state` whose problems it doesn't report is a change of the current one.
 async fn show(
     page: &Rc<Page>,
-    mut contents: Contents,
+    contents: Contents,
     state: Option<Box<ViewerState>>,
     shell_reports: bool,
 ) -> Result<Opened, String> {
@@ -381,17 +390,14 @@ async fn show(
         Contents { environment: Some(_), .. } => "light",
         _ => "map",
     };
-    let problems = contents.problems.clone();
-    if shell_reports {
-        contents.problems.clear();
-    } else if !problems.is_empty() {
-        page.shell.warn(&problems.join("\n"));
+    if !shell_reports && !contents.problems.is_empty() {
+        page.shell.warn(&contents.problems.join("\n"));
     }
-    let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
+    let (promise, reply) = promise::<Value>(|opened| JsValue::from_str(&opened.to_string()));
     let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };
     page.inbox.send(opened);
     let text = settled(promise).await?.as_string().unwrap_or_default();
-    let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+    let (document, problems) = serde_json::from_str(&text).map_err(|error| error.to_string())?;
     Ok(Opened { kind, document, problems })
 }
 

@@ -20,7 +20,7 @@ use crate::editor::{Contents, ExportedFile, short_name};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Model, ModelId};
 use crate::samples;
-use crate::state::{EnvironmentChoice, ViewerState, from_link, to_link};
+use crate::state::{EnvironmentChoice, LinkError, ViewerState, from_link, to_link};
 
 /// A running instance on its canvas.
 pub(super) struct Page {
@@ -80,9 +80,10 @@ pub async fn run(
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
     let first: Rc<RefCell<Option<First>>> = Rc::default();
+    let (wanted, link_errors) = state_of_link(&link);
     let all = {
         let (shell, early) = (shell.clone(), first.clone());
-        Box::pin(async move { first_contents(&link, items, motion_items, is_private, &shell, &early).await })
+        Box::pin(async move { first_contents(wanted, items, motion_items, is_private, &shell, &early).await })
     };
     // Request the files first: the network takes longest. Meanwhile, create the device and rehearse.
     let shown = pin!(async {
@@ -94,7 +95,7 @@ pub async fn run(
         poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, String>(first)))).await
     });
     let started = async {
-        let ((contents, state, problems), rest) = match select(all, shown).await {
+        let ((contents, state, missing), rest) = match select(all, shown).await {
             Either::Left((all, shown)) => {
                 first.replace(Some(all?));
                 (shown.await?, None)
@@ -104,10 +105,12 @@ pub async fn run(
         let page = page()?;
         let name = contents.models.first().map(|opened| short_name(&opened.model.source));
         let shown = with_app(&page, |app| {
-            app.open(contents, Some(state))?;
-            Ok::<_, String>(app.library().active().map(|model| model.id))
+            let contents = Contents { problems: missing, link_errors, ..contents };
+            let problems = app.open_link(contents, state)?;
+            Ok::<_, String>((app.library().active().map(|model| model.id), problems))
         });
-        if let (Some(model), Some(rest), Some(name)) = (shown??, rest, name) {
+        let (model, problems) = shown??;
+        if let (Some(model), Some(rest), Some(name)) = (model, rest, name) {
             page.rest.replace(Some((model, rest)));
             page.inbox.send(progress_of(&name, 0, 0));
         }
@@ -147,14 +150,13 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
 /// Loads the first contents: the items, otherwise the files of the link. If the model cannot be opened, falls back to the
 /// skeleton of the first motion that can, then to an empty stage. `early` receives the same without images, if that helps.
 async fn first_contents(
-    link: &str,
+    wanted: ViewerState,
     items: Array,
     motion_items: Array,
     is_private: bool,
     shell: &Shell,
     early: &RefCell<Option<First>>,
 ) -> Result<First, String> {
-    let wanted = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     let progress = |name: &str, received: u64, total: u64| match page() {
@@ -237,13 +239,10 @@ async fn open_fallback(
     Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
 }
 
-/// Reads a link; shows its errors as warnings.
-pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
+/// Reads a link, and what is not understood of it.
+pub(super) fn state_of_link(link: &str) -> (ViewerState, Vec<LinkError>) {
     let (state, errors) = from_link(link);
-    if !errors.is_empty() {
-        shell.warn(&errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
-    }
-    state.or_sample(samples::WALKER)
+    (state.or_sample(samples::WALKER), errors)
 }
 
 pub(super) fn page() -> Result<Rc<Page>, String> {

@@ -1,11 +1,14 @@
 //! Opening files, and undoing all of it.
 
+use std::cell::RefCell;
 use std::io::Write;
 use std::path::PathBuf;
+use std::rc::Rc;
 
-use gaitway::editor::ClipFormat;
+use gaitway::app::Message;
+use gaitway::editor::{ClipFormat, Contents};
 use gaitway::samples;
-use gaitway::state::{ClipChoice, Command, to_link};
+use gaitway::state::{ClipChoice, Command, from_link, to_link};
 use gaitway::ui::{Tab, text};
 
 use crate::desk::{desk, real};
@@ -227,4 +230,30 @@ fn real_files_get_the_right_roles() {
     assert!(!desk.library().active().expect("a model").asset.skins.is_empty());
     let objs = desk.models().iter().filter(|name| name.ends_with(".obj")).count();
     assert_eq!(objs, 1, "the complete model replaces the jointless one");
+}
+
+/// The shell lists what is wrong with a link beside what couldn't be opened of it; nothing is told twice.
+#[test]
+fn a_link_tells_all_that_is_wrong_with_it_once() {
+    let Some(mut desk) = desk("sample:walker") else { return };
+    let link = "v=1&model=sample:walker&speed=fast&clip=Fly&fov=200";
+    let mut told = |missing: &[&str]| {
+        let (view, link_errors) = from_link(link);
+        let problems = missing.iter().map(|problem| (*problem).to_owned()).collect();
+        let contents = Box::new(Contents { problems, link_errors, ..Contents::default() });
+        let opened = Rc::new(RefCell::new(None));
+        let slot = opened.clone();
+        let reply = Some(
+            Box::new(move |answer: Result<serde_json::Value, String>| *slot.borrow_mut() = Some(answer)) as Box<_>
+        );
+        desk.send(Message::Opened { contents, state: Some(Box::new(view)), is_change: false, reply });
+        let opened = opened.take().expect("is answered").expect("is loaded");
+        (opened[1].clone(), desk.shows("“Fly”"))
+    };
+    assert_eq!(told(&[]), (serde_json::json!([]), true));
+    let (problems, is_shown) = told(&["walk.bvh: the server answered 404"]);
+    assert!(!is_shown, "the shell shows it");
+    let keys = problems.as_array().expect("a list").iter().map(|problem| problem.as_str().expect("a text"));
+    let keys: Vec<&str> = keys.map(|problem| problem.split([':', '=']).next().unwrap_or_default()).collect();
+    assert_eq!(keys, ["walk.bvh", "speed", "fov", "clip"]);
 }

@@ -112,9 +112,10 @@ for (const renderer of BACK_ENDS)
           ["t", "noon"],
         ]),
       async (page) => {
-        const problem = (await page.locator("#problem").textContent()) ?? "";
-        assert.match(problem, /speed/);
-        assert.match(problem, /noon/);
+        await until(page, () => document.querySelector("#news")?.textContent !== "");
+        const notice = (await page.locator("#news").textContent()) ?? "";
+        assert.match(notice, /speed/);
+        assert.match(notice, /noon/);
       },
     );
 

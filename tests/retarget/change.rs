@@ -281,6 +281,8 @@ fn numbers_out_of_range_are_clamped() {
     };
     let clamped = ClipChanges { loop_secs: Some(10.0), offset: [0.0, -1000.0], turn_degrees: 360.0, ..NONE };
     assert_eq!(wild.clone().clamped(), clamped);
+    let reversed = Some(TimeRange { start_secs: 5.0, end_secs: 1.0 });
+    assert_eq!(ClipChanges { trim: reversed, ..NONE }.clamped(), NONE, "it would keep nothing");
     let figure = dancer(Interpolation::Linear);
     let clip = changed(&figure, &figure.asset.clips[0], &wild).clip;
     assert!(figure.world(&clip, 0.5).iter().all(|(turn, at)| turn.is_finite() && at.is_finite()));

@@ -296,6 +296,20 @@ fn an_unknown_clip_of_a_link_is_reported() {
 }
 
 #[test]
+fn what_a_link_asks_for_in_vain_is_reported() {
+    let output =
+        run(&["pose", "sample:walker", "--view", "v=1&joint=999&speed=9&expression=grin:1&zoo=1&change=Walk:trim:5:1"]);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success());
+    let says =
+        ["joint=999", "speed=9: expected a factor from 0.1 to 4; 4 is used", "“grin”", "zoo: ", "trim:START:END"];
+    for part in says {
+        assert_eq!(stderr.matches(part).count(), 1, "{part}: {stderr}");
+    }
+    assert_eq!(stderr.lines().count(), says.len(), "{stderr}");
+}
+
+#[test]
 fn a_warning_about_a_converted_file_names_it_once() {
     let desk = Desk::new("converted");
     let path = desk.path("odd.x");

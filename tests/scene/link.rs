@@ -448,6 +448,34 @@ fn bad_values_are_reported_and_skipped() {
     check_bad("pose=3:1:2:3:4", "pose");
     check_bad("pose=hips:1:2:3", "pose");
     check_bad("turntable=fast", "turntable");
+    check_bad("change=Walk:jump", "change");
+}
+
+#[test]
+fn a_trim_that_keeps_nothing_is_refused() {
+    for bad in ["5:1", "1:1", "-2:-1"] {
+        let link = format!("change=Walk:reverse,trim:{bad}");
+        check_bad(&link, "change");
+        let told = format!("{link}: expected trim:START:END in seconds, the end after the start");
+        assert_eq!(from_link(&link).1[0].to_string(), told);
+    }
+    let (same, errors) = from_object(&ViewerState::default(), &serde_json::json!({ "change": ["Walk:trim:5:1"] }));
+    assert_eq!((same, errors.len()), (ViewerState::default(), 1));
+    check_bad("change=Walk:trim:5", "change");
+}
+
+#[test]
+fn a_light_is_a_file_only_if_it_looks_like_one() {
+    for bad in ["studoi", "", "Studio", "hdr"] {
+        check_bad(&format!("light={bad}"), "light");
+    }
+    let told = from_link("light=studoi").1[0].to_string();
+    assert_eq!(told, "light=studoi: expected studio, white, soft, hard, outdoor or an .hdr image");
+    for file in ["beach.HDR", "lights/beach", "file:beach", "https://example.org/light?id=4", "blob:1234"] {
+        let mut expected = ViewerState::default();
+        expected.lighting.environment = EnvironmentChoice::File(file.to_owned());
+        check_read(&format!("light={file}"), expected);
+    }
 }
 
 #[test]

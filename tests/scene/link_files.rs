@@ -144,6 +144,7 @@ fn an_image_that_lights_the_scene_is_a_file_of_the_link() {
     let roles = |link: &str| linked_files(link).iter().map(|file| (file.role, file.is_to_bring)).collect::<Vec<_>>();
     assert_eq!(roles(link), [(LinkRole::Model, false), (LinkRole::Light, false)]);
     assert_eq!(roles("v=1&light=outdoor"), [], "a generated light is none");
+    assert_eq!(roles("v=1&light=outdor"), [], "nor is a misspelt one");
     let public = public_link(link, &["beach.hdr".to_owned()]);
     assert_eq!(public, "v=1&model=fox.glb&clip=Run&light=file:beach.hdr");
     assert_eq!(link_without_missing(&public), "v=1&model=fox.glb&clip=Run");

@@ -51,4 +51,5 @@ mod skeletons;
 mod stage;
 mod state;
 mod variants;
+mod view_problems;
 mod walker;

@@ -7,13 +7,17 @@ use crate::anim::TimeRange;
 use crate::retarget::ClipChanges;
 use crate::state::ViewerState;
 
+pub(super) const MIRROR: &str = "a clip's name or index";
+pub(super) const CHANGE: &str = "a clip and its changes: Walk:trim:0.5:1.5,reverse,speed:2,loop:0.2,offset:1:0,turn:90; the speed is from 0.1 to 10";
+const TRIM: &str = "trim:START:END in seconds, the end after the start";
+
 pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
     match clip_name(text) {
         Some(name) => {
             state.edits.clips.entry(name).or_default().mirror = true;
             Read::Done
         }
-        None => Read::Bad("a clip's name or index"),
+        None => Read::Bad(MIRROR),
     }
 }
 
@@ -28,14 +32,14 @@ pub(super) fn reset_mirror(state: &mut ViewerState) {
 
 pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
     match read(text) {
-        Some((name, changes)) => {
+        Ok((name, changes)) => {
             let clips = &mut state.edits.clips;
             let mirror = clips.get(&name).is_some_and(|before| before.mirror);
             clips.insert(name, ClipChanges { mirror, ..changes });
             clips.retain(|_, changes| !changes.is_none());
             Read::Done
         }
-        None => Read::Bad("a clip and its changes: Walk:trim:0.5:1.5,reverse,speed:2,loop:0.2,offset:1:0,turn:90"),
+        Err(expected) => Read::Bad(expected),
     }
 }
 
@@ -85,21 +89,29 @@ fn words(changes: &ClipChanges) -> Vec<String> {
     words
 }
 
-fn read(text: &str) -> Option<(String, ClipChanges)> {
-    let (name, words) = text.split_once(':')?;
+/// The error is what was expected.
+fn read(text: &str) -> Result<(String, ClipChanges), &'static str> {
+    let (name, words) = text.split_once(':').ok_or(CHANGE)?;
     let mut changes = ClipChanges::default();
     for word in words.split(',') {
         let mut parts = word.split(':').map(str::trim);
-        let (kind, numbers) = (parts.next()?, parts.map(finite).collect::<Option<Vec<f64>>>()?);
+        let kind = parts.next().unwrap_or_default();
+        let numbers = parts.map(finite).collect::<Option<Vec<f64>>>().ok_or(CHANGE)?;
         match (kind, &numbers[..]) {
-            ("trim", &[start_secs, end_secs]) => changes.trim = Some(TimeRange { start_secs, end_secs }),
+            ("trim", &[start_secs, end_secs]) => {
+                changes.trim = Some(TimeRange { start_secs, end_secs });
+                // Nothing would be left of the clip.
+                if changes.clone().clamped().trim.is_none() {
+                    return Err(TRIM);
+                }
+            }
             ("reverse", []) => changes.reverse = true,
             ("speed", &[speed]) => changes.speed = speed,
             ("loop", &[secs]) => changes.loop_secs = Some(secs),
             ("offset", &[x, z]) => changes.offset = [x, z],
             ("turn", &[degrees]) => changes.turn_degrees = degrees,
-            _ => return None,
+            _ => return Err(CHANGE),
         }
     }
-    Some((clip_name(name)?, changes))
+    Ok((clip_name(name).ok_or(CHANGE)?, changes))
 }

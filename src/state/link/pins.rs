@@ -8,7 +8,7 @@ use super::{Read, Written};
 use crate::retarget::{Pin, PinGoal, PinTimes};
 use crate::state::ViewerState;
 
-const EXPECTED: &str =
+pub(super) const EXPECTED: &str =
     "a joint and where it goes: 9:at:0.2,1.1,0.3@1,2,0.25, 9:joint:4,0,0,0, 6:look:0,1,5 or 6:look:camera";
 
 pub(super) fn read(state: &mut ViewerState, text: &str) -> Read {

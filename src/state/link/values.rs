@@ -507,10 +507,11 @@ pub(super) fn write_light(environment: &EnvironmentChoice) -> Written {
     }
 }
 
+/// A file has an extension or is a URL or a path; anything else is a misspelt set-up.
 pub(super) fn read_light(text: &str) -> Option<EnvironmentChoice> {
     match from_word(&LIGHT_SETUPS, text) {
         Some(setup) => Some(EnvironmentChoice::Setup(setup)),
-        None => (!text.is_empty()).then(|| EnvironmentChoice::File(text.to_owned())),
+        None => text.contains(['.', '/', ':']).then(|| EnvironmentChoice::File(text.to_owned())),
     }
 }
 

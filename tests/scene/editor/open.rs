@@ -14,8 +14,9 @@ use gaitway::state::{
     CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, from_link,
 };
 use glam::Vec3;
+use serde_json::json;
 
-use super::{active, any, contents, editor, id_of, motions, notices, open, open_motion, title};
+use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion, title};
 
 #[test]
 fn a_model_that_is_not_admitted_changes_nothing() {
@@ -148,6 +149,64 @@ fn an_unknown_clip_of_a_view_is_told() {
     assert_eq!(notices(&editor.take_events()), [told]);
     editor.apply(Command::Replace(Box::new(ViewerState::of_model("sample:walker".to_owned()))));
     assert_eq!(notices(&editor.take_events()), [""; 0]);
+}
+
+/// What isn't understood, what is out of range and what the model lacks.
+#[test]
+fn all_that_is_wrong_with_a_link_is_told_at_once() {
+    let (view, link_errors) = from_link("v=1&model=sample:walker&t=noon&fov=200&clip=Fly&joint=999&zoo=1");
+    assert_eq!(link_errors.len(), 2);
+    let is_complete = |text: &str| {
+        let lines: Vec<&str> = text.lines().collect();
+        let keys = lines.iter().map(|line| line.split([':', '=']).next().unwrap_or_default());
+        assert_eq!(keys.collect::<Vec<_>>(), ["t", "zoo", "fov", "clip", "joint"]);
+        assert_eq!(lines[0], "t=noon: expected seconds from 0 on.");
+        assert_eq!(lines[2], "fov=200: expected degrees from 5 to 120; 120 is used.");
+        assert!(lines.iter().all(|line| line.ends_with('.') && !line.ends_with("..")), "{text}");
+    };
+    let mut editor = Editor::default();
+    let with_errors = |contents| Contents { link_errors: link_errors.clone(), ..contents };
+    editor.open(with_errors(contents(&["sample:walker"])), Some(view.clone()), &mut any).expect("fits");
+    let events = editor.take_events();
+    is_complete(notices(&events)[0]);
+    assert_eq!((notices(&events).len(), editor.state().camera_options.fov_degrees), (1, 120.0));
+    // A link to the files that are loaded.
+    editor.open(with_errors(Contents::default()), Some(view.clone()), &mut any).expect("is loaded");
+    let events = editor.take_events();
+    is_complete(notices(&events)[0]);
+    assert_eq!(notices(&events).len(), 1);
+    // Nothing is left for the next view.
+    editor
+        .open(Contents::default(), Some(ViewerState::of_model("sample:walker".to_owned())), &mut any)
+        .expect("is loaded");
+    assert_eq!(notices(&editor.take_events()), [""; 0]);
+}
+
+#[test]
+fn what_is_wrong_with_a_link_is_told_with_the_problems_of_its_maps() {
+    let (view, link_errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=noon&clip=Fly");
+    let contents = Contents { motions: Some(vec![motion("walk.bvh")]), link_errors, ..contents(&["sample:walker"]) };
+    let mut editor = Editor::default();
+    editor.open(contents, Some(view), &mut any).expect("fits");
+    let events = editor.take_events();
+    assert_eq!(notices(&events), [""; 0]);
+    let problem = |event: &Event| if let Event::Problem(problem) = event { Some(problem.clone()) } else { None };
+    let problems: Vec<String> = events.iter().filter_map(problem).collect();
+    assert_eq!(problems.len(), 3, "{problems:?}");
+    assert!(problems[1].starts_with("t=noon: ") && problems[2].starts_with("clip: "), "{problems:?}");
+}
+
+/// A script hears nothing of what it didn't set.
+#[test]
+fn what_is_wrong_with_a_change_by_a_script_is_told() {
+    let mut editor = editor("sample:walker");
+    editor.apply_partial(&json!({ "joint": 999, "speed": 9 })).expect("is no error");
+    let told = notices(&editor.take_events()).join("");
+    assert!(told.contains("joint=999") && told.contains("4 is used"), "{told}");
+    editor.apply_partial(&json!({ "t": 0.5 })).expect("is fine");
+    assert_eq!(notices(&editor.take_events()), [""; 0]);
+    let error = editor.apply_partial(&json!({ "change": ["Walk:trim:5:1"] })).expect_err("keeps nothing");
+    assert!(error.contains("the end after the start"), "{error}");
 }
 
 #[test]

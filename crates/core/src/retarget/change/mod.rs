@@ -71,14 +71,15 @@ impl ClipChanges {
         *self == Self::NONE
     }
 
-    /// Clamps numbers to their ranges, and replaces those that aren't finite with the default.
+    /// Clamps numbers to their ranges, and replaces those that aren't finite with the default. Drops a trim that keeps nothing.
     pub fn clamped(mut self) -> Self {
         let symmetric = |value, max: f64| clamped(value, 0.0, -max, max);
         self.speed = clamped(self.speed, Self::NONE.speed, Self::MIN_SPEED, Self::MAX_SPEED);
         self.loop_secs = self.loop_secs.map(|secs| clamped(secs, 0.0, 0.0, Self::MAX_LOOP_SECS));
         self.offset = self.offset.map(|metres| symmetric(metres, Self::MAX_OFFSET_METRES));
         self.turn_degrees = symmetric(self.turn_degrees, Self::MAX_TURN_DEGREES);
-        self.trim = self.trim.filter(|range| range.start_secs.is_finite() && range.end_secs.is_finite());
+        let is_part = |start: f64, end: f64| start.is_finite() && end.is_finite() && start.max(0.0) < end;
+        self.trim = self.trim.filter(|range| is_part(range.start_secs, range.end_secs));
         self
     }
 }
