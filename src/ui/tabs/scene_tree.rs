@@ -344,14 +344,7 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let depth = row.depth as f32;
     let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
     let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
-    let mut pressed = response.clicked().then_some(Pressed::Row);
-    if line.takes_focus {
-        response.request_focus();
-    } else if response.has_focus() {
-        let is_pressed = |key: &Key| ui.input(|input| input.key_pressed(*key));
-        let leap = [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed);
-        pressed = leap.map(Pressed::Leap).or(pressed);
-    }
+    let mut pressed = leap(&response, line.takes_focus).or(response.clicked().then_some(Pressed::Row));
     if is_toggled || row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
         pressed = Some(Pressed::Triangle);
     }
@@ -392,6 +385,17 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
         });
     }
     pressed
+}
+
+/// Gives the focus to a row, or returns the key that leads from it to a distant one.
+fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
+    if takes_focus {
+        row.request_focus();
+    } else if row.has_focus() {
+        let is_pressed = |key: &Key| row.ctx.input(|input| input.key_pressed(*key));
+        return [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed).map(Pressed::Leap);
+    }
+    None
 }
 
 /// Expands or collapses a row; returns true when clicked.
