@@ -2,7 +2,7 @@
 // view, the messages, and `window.gaitway`. The build bundles this file with the modules in shell/.
 import { addBenches, gaitway } from "./shell/api.js";
 import { forcedBackend } from "./shell/capabilities.js";
-import { button } from "./shell/dom.js";
+import { button, byId } from "./shell/dom.js";
 import "./shell/drop.js";
 import { answerParent } from "./shell/embed.js";
 import { launch } from "./shell/instance.js";
@@ -13,6 +13,13 @@ window.gaitway = gaitway;
 
 button("gallery-own").addEventListener("click", () => showOpenDialog());
 button("gallery-borrow").addEventListener("click", () => showOpenDialog("motion"));
+
+// Chrome's emulation of other devices still counts the pixels of the real one here, by which egui sizes its canvas: everything would
+// be too large. Without the property, egui multiplies.
+new ResizeObserver(([{ contentBoxSize, devicePixelContentBoxSize }]) => {
+  const difference = devicePixelContentBoxSize?.[0].inlineSize - contentBoxSize[0].inlineSize * devicePixelRatio;
+  if (Math.abs(difference) > 2) Reflect.deleteProperty(ResizeObserverEntry.prototype, "devicePixelContentBoxSize");
+}).observe(byId("stage"));
 
 launch(forcedBackend()).then(addBenches, () => {});
 answerParent();

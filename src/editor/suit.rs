@@ -35,7 +35,7 @@ impl Editor {
         let model = self.library.active()?;
         let clip = active_clip(model, &self.state)?;
         let figures = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none())?;
-        let verdicts = Verdicts::new(figures, model.size_metres());
+        let verdicts = Verdicts::new(figures, model.size_metres(), self.state.retarget.contacts.unwrap_or_default());
         if ![verdicts.foot_slide, verdicts.foot_hover].contains(&Some(Verdict::NeedsReview)) {
             return None;
         }

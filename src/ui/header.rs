@@ -58,7 +58,7 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
 fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Inspector, local);
     let were_open = (local.help.is_open, local.about_open);
-    let button = ui.menu_button(text::MENU, |ui| {
+    let button = controls::menu_button(ui, text::MENU, |ui| {
         // All of it is higher than the screen of a phone.
         let max_height = ui.ctx().content_rect().height() - 80.0;
         let area = egui::ScrollArea::vertical().max_height(max_height).min_scrolled_height(max_height);
@@ -66,7 +66,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     });
     // The entry that was pressed is gone when what it opened is closed.
     if were_open != (local.help.is_open, local.about_open) && ui.memory(|memory| memory.focused().is_some()) {
-        button.response.request_focus();
+        button.request_focus();
     }
     let share = match local.layout.is_small {
         true => icon_button(ui, Icon::Share, text::SHARE, false),
@@ -76,7 +76,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
         out.actions.push(UiAction::ShareLink);
     }
     if !local.layout.is_small {
-        ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
+        controls::menu_button(ui, text::EXPORT, |ui| export(ui, shown, local, out));
     }
     let steps = [
         (Icon::Redo, text::REDO_STEP, local.host.can_redo, UiAction::Redo),

@@ -5,8 +5,9 @@ use egui::{Response, Ui};
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text, tracks};
+use crate::asset::Slot;
 use crate::library::Model;
-use crate::retarget::{BodyPart, ClipLayer, LayerMode};
+use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
 use crate::state::{ClipChoice, Command, choice_of_clip, clip_of_layer, title};
 
 const WEIGHT: SliderSettings =
@@ -17,6 +18,7 @@ const SPEED: SliderSettings =
 const START: SliderSettings =
     SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 2, suffix: " s", logarithmic: false };
 const BUTTON_SIZE: f32 = 28.0;
+const UPPER_BODY: [BodyPart; 4] = [BodyPart::Torso, BodyPart::Head, BodyPart::LeftArm, BodyPart::RightArm];
 
 /// Shows the section for a model with clips.
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
@@ -52,7 +54,10 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         // Another clip than the one that plays, if there is one.
         let playing = shown.clip_index();
         let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
-        layers.push(ClipLayer { clip: name_of(model, clip), ..ClipLayer::default() });
+        // On the upper body, so that the legs show what a layer is for: the clip below goes on.
+        let has_arms = model.body().slots.0.contains_key(&Slot::LeftUpperArm);
+        let mask = if has_arms { LayerMask::of_parts(&UPPER_BODY) } else { LayerMask::default() };
+        layers.push(ClipLayer { clip: name_of(model, clip), mask, ..ClipLayer::default() });
         ui.data_mut(|data| data.insert_temp(added_id, before.len()));
     }
     controls::hint(ui, text::ABOUT_LAYERS);

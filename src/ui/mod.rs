@@ -117,7 +117,7 @@ pub struct UiState {
     focus_before_modal: Option<Option<egui::Id>>,
     /// A menu was open at the end of the last frame.
     had_popup: bool,
-    /// The Info tab last showed the Khronos validator running; its summary then scrolls into view.
+    /// The Khronos validator was asked for in the Info tab, or runs there; its results then scroll into view.
     is_validating: bool,
     lists: tabs::Lists,
     clip_list: clips::ClipList,
@@ -363,7 +363,13 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         header::show(ui, &shown, local, out);
     }
     let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
-    let side_sheet = has_sheet.then(|| sheet::side_rect(ui.available_rect_before_wrap())).flatten();
+    let below_header = ui.available_rect_before_wrap();
+    let side_sheet = has_sheet.then(|| sheet::side_rect(below_header)).flatten();
+    if has_sheet && side_sheet.is_none() && sheet::takes_all(below_header) {
+        // The viewport keeps its size behind the sheet, and so the camera its framing.
+        local.layout.sheet_rect = Some(below_header);
+        return below_header;
+    }
     if let Some(rect) = side_sheet {
         // Beside the transport, since such screens are low.
         let place = egui::Panel::right("side sheet").frame(egui::Frame::NONE).exact_size(rect.width());

@@ -211,7 +211,7 @@ fn speed_text(shown: &Shown<'_>) -> String {
 }
 
 fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let button = ui.menu_button(speed_text(shown), |ui| {
+    let button = controls::menu_button(ui, &speed_text(shown), |ui| {
         for speed in [0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0] {
             let chosen = (shown.state.playback.speed - speed).abs() < 1e-6;
             if controls::option(ui, chosen, &text::speed(speed)) {
@@ -219,5 +219,5 @@ fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             }
         }
     });
-    button.response.on_hover_text(text::SPEED);
+    button.on_hover_text(text::SPEED);
 }

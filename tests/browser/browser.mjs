@@ -24,6 +24,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {Backend} [renderer]
  * @property {string} [link] Empty for a first visit; without it, the walker.
  * @property {{ width: number, height: number }} [viewport]
+ * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device.
  * @property {() => void} [before] Runs in the page before its scripts.
  * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
  * @property {boolean} [ready] False: don't wait for the first image.
@@ -101,9 +102,9 @@ export function watched(page) {
  * @param {string} address
  * @param {PageOptions} options
  */
-async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, before, files = {}, ready = true }) {
+async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, deviceScaleFactor, before, files = {}, ready = true }) {
   // Service workers would store megabytes for each fresh profile; offline.test.mjs tests them.
-  const context = await browser.newContext({ viewport, serviceWorkers: "block" });
+  const context = await browser.newContext({ viewport, deviceScaleFactor, serviceWorkers: "block" });
   const page = watched(await context.newPage());
   page.setDefaultTimeout(TIMEOUT_MS);
   await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import http from "node:http";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
-import { BACK_ENDS, apply, control, eventually, open, picture, startSite, state, toggleInspector, until } from "./browser.mjs";
+import { BACK_ENDS, apply, control, drop, eventually, open, picture, startSite, state, toggleInspector, until } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
@@ -186,6 +186,16 @@ for (const renderer of BACK_ENDS)
       await eventually(async () => isRed(await middle(page)), "the cube should get its image");
       assert.equal(Object(await state(page)).speed, 0.25, "the view is kept");
       assert.equal(server.requests(), 2);
+    });
+
+    onPage("a dropped copy has the images that didn't arrive, and the view is kept", async (page, server) => {
+      await apply(page, { camera: "30,10,4,0,0,0" });
+      server.cut();
+      await page.locator("#missing-continue").click();
+      await drop(page, [{ name: "cube.glb", url: server.url }]);
+      await until(page, async () => (await window.gaitway.state()).model.join() === "cube.glb" && (await window.gaitway.state()).camera !== "auto");
+      assert.match(String(Object(await state(page)).camera), /^30,10,4,/);
+      await eventually(async () => isRed(await middle(page)), "the cube should get its image");
     });
 
     onPage("the rest is awaited beside what else is opened, and can be cancelled then", async (page, server) => {

@@ -138,7 +138,12 @@ for (const renderer of BACK_ENDS)
       await until(page, () => /\.glb|PNG|clip/i.test(document.activeElement?.getAttribute("aria-label") ?? ""));
       await page.keyboard.press("Escape");
       await until(page, () => /^Export/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+      await page.keyboard.press("Enter");
+      const entry = control(page, "button", "Image and video settings…");
+      await entry.waitFor({ state: "attached" });
       await tabTo(page, /^Share/);
+      await entry.waitFor({ state: "detached" });
+      assert.match((await focused(page))?.name ?? "", /^Share/, "Tab closes the menu that it leaves");
       await page.keyboard.press("Enter");
       await page.locator("#share").waitFor({ state: "visible" });
       const link = await page.locator("#share-link").inputValue();
@@ -151,6 +156,10 @@ for (const renderer of BACK_ENDS)
       const joint = control(page, "treeitem", /Hips/);
       await joint.press("Enter");
       await until(page, async () => (await window.gaitway.state()).joint !== null);
+      for (const [key, index] of /** @type {const} */ ([["End", -1], ["Home", 0]])) {
+        await page.keyboard.press(key);
+        await until(page, (index) => [...document.querySelectorAll("#mirror [role=treeitem]")].at(index) === document.activeElement, index);
+      }
       // Arrow keys move the program's focus, and the keyboard follows.
       await control(page, "tab", "Scene").press("ArrowRight");
       await until(page, () => document.activeElement?.getAttribute("aria-label") === "Display");

@@ -198,6 +198,24 @@ for (const renderer of BACK_ENDS) {
       assert.ok(colorsOf(narrow) > 16, "something should be drawn");
     });
 
+    test("fills the screen of an emulated device", async () => {
+      const page = await site.page({ renderer, link: "model=sample:walker&play=0", viewport: { width: 500, height: 400 }, deviceScaleFactor: 2 });
+      /** Waits until the canvas has all of the screen's pixels, and the panels its width. @param {number} width */
+      const fills = (width) =>
+        until(page, (width) => {
+          const edges = [...document.querySelectorAll("#mirror *")].map((control) => control.getBoundingClientRect().right);
+          const [edge, canvas] = [Math.max(...edges), document.querySelector("canvas")];
+          return canvas?.width === width * devicePixelRatio && edge > 0.9 * width && edge < 1.1 * width;
+        }, width);
+      await fills(500);
+      const session = await page.context().newCDPSession(page);
+      for (const [width, height, deviceScaleFactor] of [[390, 600, 3], [600, 390, 1], [500, 400, 2]]) {
+        await session.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor, mobile: true });
+        await fills(width);
+      }
+      await page.finish();
+    });
+
     onPage("draws nothing while nothing changes", {}, async (page) => {
       await apply(page, { play: 0 });
       // Let animations such as a fading tooltip finish.

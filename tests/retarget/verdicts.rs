@@ -1,13 +1,14 @@
 //! The verdicts on quality figures, against the limits that docs/retargeting.md states.
 
-use gaitway::retarget::{Figures, Verdict, Verdicts};
+use gaitway::retarget::{Contacts, Figures, Verdict, Verdicts};
 
 const DOCUMENT: &str = include_str!("../../docs/retargeting.md");
 const PAIRS: &str = include_str!("../../docs/retargeting-pairs.tsv");
 const SIZE_METRES: f64 = 1.8;
 
-/// Figures with nothing but the one of a row in the document, at a value as the document writes it; and the verdict on it.
-type Row = (fn(f64) -> Figures, fn(&Verdicts) -> Option<Verdict>);
+/// Figures with nothing but the one of a row in the document, at a value as the document writes it; the verdict on it; and what was
+/// done about contacts.
+type Row = (fn(f64) -> Figures, fn(&Verdicts) -> Option<Verdict>, Contacts);
 
 /// As a share in percent.
 fn metres(percent: f64) -> Option<f64> {
@@ -15,30 +16,46 @@ fn metres(percent: f64) -> Option<f64> {
 }
 
 /// In the order of the document.
-const ROWS: [Row; 11] = [
+const ROWS: [Row; 15] = [
     (
         |value| Figures { limb_direction_error_degrees_mean: Some(value), ..Figures::default() },
         |verdicts| verdicts.limb_direction_error_mean,
+        Contacts::Off,
     ),
     (
         |value| Figures { limb_direction_error_degrees_max: Some(value), ..Figures::default() },
         |verdicts| verdicts.limb_direction_error_max,
+        Contacts::Off,
+    ),
+    (
+        |value| Figures { limb_direction_error_degrees_mean: Some(value), ..Figures::default() },
+        |verdicts| verdicts.limb_direction_error_mean,
+        Contacts::Keep,
+    ),
+    (
+        |value| Figures { limb_direction_error_degrees_max: Some(value), ..Figures::default() },
+        |verdicts| verdicts.limb_direction_error_max,
+        Contacts::Keep,
     ),
     (
         |value| Figures { facing_error_degrees_mean: Some(value), ..Figures::default() },
         |verdicts| verdicts.facing_error_mean,
+        Contacts::Off,
     ),
     (
         |value| Figures { facing_error_degrees_max: Some(value), ..Figures::default() },
         |verdicts| verdicts.facing_error_max,
+        Contacts::Off,
     ),
     (
         |value| Figures { orientation_error_degrees_mean: Some(value), ..Figures::default() },
         |verdicts| verdicts.orientation_error_mean,
+        Contacts::Off,
     ),
     (
         |value| Figures { orientation_error_degrees_max: Some(value), ..Figures::default() },
         |verdicts| verdicts.orientation_error_max,
+        Contacts::Off,
     ),
     (
         |value| Figures {
@@ -47,17 +64,38 @@ const ROWS: [Row; 11] = [
             ..Figures::default()
         },
         |verdicts| verdicts.foot_slide,
+        Contacts::Off,
     ),
-    (|value| Figures { foot_hover_metres_mean: metres(-value), ..Figures::default() }, |verdicts| verdicts.foot_hover),
+    (
+        |value| Figures { foot_hover_metres_mean: metres(-value), ..Figures::default() },
+        |verdicts| verdicts.foot_hover,
+        Contacts::Off,
+    ),
     (
         |value| Figures { sole_penetration_metres_max: metres(value), ..Figures::default() },
         |verdicts| verdicts.sole_penetration,
+        Contacts::Off,
     ),
     (
         |value| Figures { ground_penetration_metres_max: metres(value), ..Figures::default() },
         |verdicts| verdicts.ground_penetration,
+        Contacts::Off,
     ),
-    (|value| Figures { coverage: Some(1.0 - value / 100.0), ..Figures::default() }, |verdicts| verdicts.coverage),
+    (
+        |value| Figures { contact_error_metres_mean: metres(value), ..Figures::default() },
+        |verdicts| verdicts.contact_error,
+        Contacts::Keep,
+    ),
+    (
+        |value| Figures { self_penetration_share: Some(value / 100.0), ..Figures::default() },
+        |verdicts| verdicts.self_penetration,
+        Contacts::Keep,
+    ),
+    (
+        |value| Figures { coverage: Some(1.0 - value / 100.0), ..Figures::default() },
+        |verdicts| verdicts.coverage,
+        Contacts::Off,
+    ),
 ];
 
 /// The two limits of each row in the document's table.
@@ -79,9 +117,9 @@ fn documented() -> Vec<[f64; 2]> {
 fn limits_are_those_of_the_document() {
     let limits = documented();
     assert_eq!(limits.len(), ROWS.len());
-    for ((figures, verdict), [good, acceptable]) in ROWS.into_iter().zip(limits) {
+    for ((figures, verdict, contacts), [good, acceptable]) in ROWS.into_iter().zip(limits) {
         let judged = |value: f64| {
-            let verdicts = Verdicts::new(&figures(value), SIZE_METRES);
+            let verdicts = Verdicts::new(&figures(value), SIZE_METRES, contacts);
             let verdict = verdict(&verdicts);
             assert_eq!(verdicts.worst(), verdict, "there is no other figure");
             verdict
@@ -101,18 +139,22 @@ fn limits_are_those_of_the_document() {
 
 #[test]
 fn what_cannot_be_measured_is_not_judged_and_the_worst_counts() {
-    let nothing = Verdicts::new(&Figures::default(), SIZE_METRES);
+    let nothing = Verdicts::new(&Figures::default(), SIZE_METRES, Contacts::Off);
     assert_eq!(nothing.worst(), None);
     let mixed = Figures { coverage: Some(1.0), facing_error_degrees_mean: Some(15.0), ..Figures::default() };
-    assert_eq!(Verdicts::new(&mixed, SIZE_METRES).worst(), Some(Verdict::Acceptable));
+    assert_eq!(Verdicts::new(&mixed, SIZE_METRES, Contacts::Off).worst(), Some(Verdict::Acceptable));
     let still = Figures {
         foot_slide_metres_per_sec: Some(0.1),
         foot_slide_source_metres_per_sec: Some(0.4),
         ..Figures::default()
     };
-    assert_eq!(Verdicts::new(&still, SIZE_METRES).foot_slide, Some(Verdict::Good), "less than its source");
+    assert_eq!(
+        Verdicts::new(&still, SIZE_METRES, Contacts::Off).foot_slide,
+        Some(Verdict::Good),
+        "less than its source"
+    );
     let flat = Figures { foot_hover_metres_mean: Some(0.0), ..Figures::default() };
-    assert_eq!(Verdicts::new(&flat, 0.0).foot_hover, Some(Verdict::Good), "a model without a size");
+    assert_eq!(Verdicts::new(&flat, 0.0, Contacts::Off).foot_hover, Some(Verdict::Good), "a model without a size");
 }
 
 /// The limits on angles were chosen by the pairs of the test data, which are mapped correctly.
@@ -135,7 +177,7 @@ fn real_pairs_are_as_good_as_the_document_says() {
             orientation_error_degrees_max: orientation[1],
             ..Figures::default()
         };
-        Verdicts::new(&figures, SIZE_METRES).worst().expect("angles")
+        Verdicts::new(&figures, SIZE_METRES, Contacts::Off).worst().expect("angles")
     });
     let worst: Vec<Verdict> = worst.collect();
     let percent = |limit| 100 * worst.iter().filter(|&&verdict| verdict <= limit).count() / worst.len();

@@ -44,6 +44,9 @@ test("codes are explained in plain words", async () => {
     assert.ok(listed.includes(`|${code}|`), `the validator has no ${code}`);
     assert.match(meaning, /^[A-Z][^_]*[^.]$/, code);
   }
+  const aboutCharacters = [...listed.matchAll(/^\|((?:SKIN|ANIMATION|NODE)_\w+)\|/gm)].map(([, code]) => code);
+  assert.ok(aboutCharacters.length > 10);
+  assert.deepEqual(aboutCharacters.filter((code) => !(code in MEANINGS)), [], "codes about skins, clips and nodes");
 });
 
 test("other files are read by their URIs, and a missing one is a finding", async () => {

@@ -13,13 +13,13 @@ use gaitway::mesh::{
 };
 use gaitway::samples;
 use gaitway::state::{
-    Background, CameraChoice, Command, EnvironmentChoice, Hidden, Inspect, KeyLight, LightSetup, LookTarget, Show,
-    ToneMap, UpAxis,
+    Background, CameraChoice, Channel, Command, EnvironmentChoice, Hidden, Inspect, KeyLight, LightSetup, LookTarget,
+    Show, ToneMap, UpAxis,
 };
 use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
-use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, press_key, sample_bench};
 use crate::motion::reach;
 
 #[test]
@@ -320,22 +320,82 @@ fn warnings_lead_to_their_nodes_and_have_badges() {
 }
 
 #[test]
-fn the_validators_summary_comes_into_sight() {
-    let mut harness = bench([1280.0, 480.0], model_with_clips(3));
-    press(&mut harness, Tab::Info.label());
-    let host = &mut harness.state_mut().panels.host;
-    (host.has_validator, host.has_gltf) = (true, true);
+fn the_validators_results_come_into_sight() {
+    let group = |name: &str, count: usize| ValidatorGroup {
+        severity: 0,
+        code: name.to_owned(),
+        meaning: name.to_owned(),
+        count: count as u64,
+        findings: (0..count).map(|at| (format!("{name} {at}"), None)).collect(),
+    };
+    let groups = (0..9).map(|at| group(&format!("Group {at}"), 1)).collect();
+    let many = ValidatorReport { groups, ..ValidatorReport::default() };
+    let few = ValidatorReport { groups: vec![group("Alone", 2)], ..ValidatorReport::default() };
+    for (report, last) in [(ValidatorReport::default(), text::NO_FINDINGS), (few, "Alone 1"), (many, "Group 1 0")] {
+        let mut harness = bench([1280.0, 480.0], model_with_clips(3));
+        press(&mut harness, Tab::Info.label());
+        let host = &mut harness.state_mut().panels.host;
+        (host.has_validator, host.has_gltf) = (true, true);
+        harness.run();
+        let id = harness.state().library().active().unwrap().id;
+        harness.state_mut().panels.host.validation = Some((id, Validation::Running));
+        harness.run();
+        let timeline = harness.get_by_label(text::TIME).rect();
+        let below = harness.get_by_label(text::VALIDATING).rect().bottom();
+        assert!(below > timeline.top(), "out of sight at {below}");
+        harness.state_mut().panels.host.validation = Some((id, Validation::Done(report)));
+        harness.run();
+        for label in [text::VALIDATE_AGAIN, text::NO_FINDINGS, last] {
+            let rect = harness.get_by_label(label).rect();
+            assert!(rect.top() > 60.0 && rect.bottom() < timeline.top(), "{label}: {rect:?} and {timeline:?}");
+        }
+    }
+}
+
+#[test]
+fn keys_lead_through_the_whole_tree() {
+    let mut harness = sample_bench([1280.0, 480.0]);
+    let asset = harness.state().library().active().expect("a model").asset.clone();
+    let names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
+    let last = names.len() - 1;
+    harness.get_by_role_and_label(Role::TreeItem, names[0]).focus();
     harness.run();
-    let id = harness.state().library().active().unwrap().id;
-    let report = Validation::Done(ValidatorReport::default());
-    harness.state_mut().panels.host.validation = Some((id, Validation::Running));
-    harness.run();
-    let below = harness.get_by_label(text::VALIDATING).rect().bottom();
-    assert!(below > harness.get_by_label(text::TIME).rect().top(), "out of sight at {below}");
-    harness.state_mut().panels.host.validation = Some((id, report));
-    harness.run();
-    let (summary, timeline) = (harness.get_by_label(text::NO_FINDINGS).rect(), harness.get_by_label(text::TIME).rect());
-    assert!(summary.top() > 60.0 && summary.bottom() < timeline.top(), "{summary:?} and {timeline:?}");
+    let mut at_after = |key| {
+        assert_eq!(press_key(&mut harness, key), [], "{key:?} does nothing else");
+        let rows: Vec<_> = harness.get_all_by_role(Role::TreeItem).collect();
+        assert!(rows.len() < last, "the tree scrolls");
+        let row = rows.iter().find(|row| row.accesskit_node().is_focused()).expect("a row has the focus");
+        let name = row.accesskit_node().label().expect("a name");
+        names.iter().position(|other| *other == name).expect("a joint")
+    };
+    assert_eq!(at_after(egui::Key::End), last);
+    let page = last - at_after(egui::Key::PageUp);
+    assert!(page > 1, "{page}");
+    assert_eq!(at_after(egui::Key::PageDown), last);
+    assert_eq!(at_after(egui::Key::Home), 0);
+    assert_eq!(at_after(egui::Key::PageDown), page);
+}
+
+#[test]
+fn lists_that_drop_down_fit_low_windows() {
+    for size in [WIDE, [1280.0, 320.0], [844.0, 390.0], [320.0, 240.0]] {
+        let mut harness = sample_bench(size);
+        if harness.query_by_label(Tab::Display.label()).is_none() {
+            press(&mut harness, text::INSPECTOR);
+        }
+        press(&mut harness, Tab::Display.label());
+        harness.get_by_label(text::CHANNEL).scroll_to_me();
+        harness.run();
+        press(&mut harness, text::CHANNEL);
+        // A switch of the tab is named Wireframe, too.
+        let role = harness.get_by_label(text::channel(Channel::Metallic)).accesskit_node().role();
+        for channel in Channel::ALL {
+            harness.get_by_role_and_label(role, text::channel(channel)).scroll_to_me();
+            harness.run();
+            let rect = harness.get_by_role_and_label(role, text::channel(channel)).rect();
+            assert!(rect.top() >= 0.0 && rect.bottom() <= size[1], "{channel:?} at {rect:?} on {size:?}");
+        }
+    }
 }
 
 #[test]

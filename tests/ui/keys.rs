@@ -236,6 +236,33 @@ fn escape_closes_a_list_and_nothing_else() {
 }
 
 #[test]
+fn a_menu_closes_when_the_focus_leaves_it_and_gives_it_back_on_escape() {
+    let mut harness = sample_bench(WIDE);
+    let focused = |harness: &Harness<'_, Bench>| harness.ctx.memory(egui::Memory::focused);
+    for menu in [text::EXPORT, text::MENU] {
+        let open = |harness: &mut Harness<'_, Bench>| {
+            harness.get_by_label(menu).focus();
+            harness.run();
+            let button = focused(harness);
+            press_key(harness, Key::Enter);
+            press_key(harness, Key::Tab);
+            assert!(egui::Popup::is_any_open(&harness.ctx) && focused(harness) != button, "{menu}: Tab leads into it");
+            button
+        };
+        let button = open(&mut harness);
+        press_key(&mut harness, Key::Escape);
+        assert!(!egui::Popup::is_any_open(&harness.ctx));
+        assert_eq!(focused(&harness), button, "{menu}");
+        open(&mut harness);
+        for _ in 0..20 {
+            press_key(&mut harness, Key::Tab);
+        }
+        assert!(!egui::Popup::is_any_open(&harness.ctx), "{menu}: Tab leads out of it");
+        assert!(focused(&harness).is_some_and(|id| Some(id) != button));
+    }
+}
+
+#[test]
 fn choosing_with_a_key_closes_the_list() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::Display.label());

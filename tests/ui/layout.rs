@@ -92,7 +92,7 @@ fn mapping_manually_shows_the_joint_table() {
 /// The viewport is the area that a sheet leaves free: the character stays visible while a clip is chosen.
 #[test]
 fn a_sheet_does_not_hide_the_picture() {
-    for size in [NARROW, [320.0, 240.0]] {
+    for size in [NARROW, [320.0, 480.0]] {
         let mut harness = sample_bench(size);
         let whole = harness.state().viewport;
         press(&mut harness, text::CLIPS);
@@ -102,6 +102,30 @@ fn a_sheet_does_not_hide_the_picture() {
         assert!(above.bottom() <= row.top(), "{above:?} and {row:?}");
         press(&mut harness, text::CLOSE_SHEET);
         assert_eq!(harness.state().viewport, whole);
+    }
+}
+
+/// There, a sheet beside anything else would be a strip.
+#[test]
+fn a_sheet_takes_a_tiny_screen() {
+    for size in [[320.0, 240.0], [480.0, 320.0]] {
+        let mut harness = sample_bench(size);
+        let whole = harness.state().viewport;
+        for key in [None, Some(egui::Key::Escape)] {
+            press(&mut harness, text::INSPECTOR);
+            press(&mut harness, Tab::Info.label());
+            let tab = harness.get_by_label(Tab::Info.label()).rect();
+            assert!(size[1] - tab.bottom() >= 90.0, "{tab:?} on {size:?}");
+            for label in [text::PLAY, text::FRAME_ALL] {
+                assert!(harness.query_by_label(label).is_none(), "{label} is behind it on {size:?}");
+            }
+            match key {
+                Some(key) => drop(press_key(&mut harness, key)),
+                None => drop(press(&mut harness, text::CLOSE_SHEET)),
+            }
+            assert_eq!(harness.state().viewport, whole);
+            assert!(harness.query_by_label(text::PLAY).is_some());
+        }
     }
 }
 

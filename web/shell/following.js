@@ -1,5 +1,5 @@
 // Following links: back and forward, another link typed into the address bar, and reporting what couldn't be loaded.
-import { awaitCopies, awaitFiles, showAwaited } from "./awaited.js";
+import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
@@ -117,12 +117,20 @@ export function showMissing(problems, link, isUnchanged = false) {
 }
 
 /**
- * Says why the images of the model that is shown couldn't be loaded, and offers to load them `again`.
+ * Says why the images of the model that is shown couldn't be loaded, and offers to load them `again`. A copy of its file also
+ * completes the view.
  * @param {string} problem
- * @param {() => void} again
+ * @param {() => void} load
  */
-export const showMissingImages = (problem, again) =>
+export function showMissingImages(problem, load) {
+  const { link } = session;
+  awaitCopies(link, linkedFiles(link).flatMap(({ role, name }) => (role === "model" ? [name] : [])));
+  const again = () => {
+    forgetAwaited();
+    load();
+  };
   showProblems([problem], { title: "The images of this model couldn't be loaded", rest: "It is shown without them.", without: "them", again });
+}
 
 /**
  * @param {string[]} problems

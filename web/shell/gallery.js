@@ -8,7 +8,14 @@ const gallery = byId("gallery");
 const lowScreen = matchMedia("(max-height: 450px)");
 const cards = /** @type {HTMLAnchorElement[]} */ ([...gallery.querySelectorAll("a.card")]);
 
+/**
+ * What had the focus before the samples were asked for.
+ * @type {Element | null}
+ */
+let opener = null;
+
 export function showGallery() {
+  opener = document.activeElement;
   setShown(true);
   const first = cards.find((card) => card.ariaCurrent === "true") ?? gallery.querySelector(".card");
   /** @type {HTMLElement | null} */ (first)?.focus();
@@ -26,7 +33,9 @@ function setShown(isShown) {
   if (gallery.hidden !== isShown) return;
   const hadFocus = gallery.contains(document.activeElement);
   gallery.hidden = !isShown;
-  if (hadFocus && !isShown) focusCanvas();
+  if (!hadFocus || isShown) return;
+  if (opener instanceof HTMLElement && opener.isConnected && opener !== document.body) opener.focus();
+  else focusCanvas();
 }
 
 /** @param {boolean} isWanted */

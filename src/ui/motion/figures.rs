@@ -51,7 +51,7 @@ pub(super) fn show(
     tab.fit.take_if(|fit| fit.clip != clip || !Rc::ptr_eq(&fit.contents, contents));
     let fit = tab.fit.get_or_insert_with(|| {
         let planting = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting);
-        let verdicts = Verdicts::new(figures, pairing.model.size_metres());
+        let verdicts = Verdicts::new(figures, pairing.model.size_metres(), pairing.map.contacts);
         let overall = verdicts.worst().map(|worst| (worst, text::overall(worst)));
         Fit {
             contents: contents.clone(),
@@ -128,8 +128,8 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
             "CONTACTS",
             "Where the source's hands touch its body or the ground, and limbs inside other parts of the body.",
         ),
-        figure("Contact error", length(figures.contact_error_metres_mean), None),
-        figure("Limbs inside the body", share(figures.self_penetration_share), None),
+        figure("Contact error", length(figures.contact_error_metres_mean), verdicts.contact_error),
+        figure("Limbs inside the body", share(figures.self_penetration_share), verdicts.self_penetration),
     ]);
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));

@@ -118,7 +118,8 @@ fn overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// The choice of what surfaces show.
 fn channel(ui: &mut Ui, now: Channel, out: &mut Output) {
-    let combo = egui::ComboBox::from_id_salt("channel").width(ui.available_width()).height(400.0);
+    let combo = egui::ComboBox::from_id_salt("channel").width(ui.available_width());
+    let combo = combo.height(controls::list_height(ui, 400.0));
     let combo = combo.selected_text(text::labelled(text::CHANNEL, text::channel(now)));
     let response = combo
         .show_ui(ui, |ui| {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use egui::{Color32, Rect, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Key, Rect, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{hiding, joint_card};
 use crate::anim::JointIndex;
@@ -30,6 +30,8 @@ pub struct SceneTree {
     collapsed: HashSet<usize>,
     /// The joint that the tree last scrolled to.
     scrolled_to: Option<usize>,
+    /// Index of the row that a key leads to: scrolled to, then focused.
+    leap: Option<usize>,
     /// By joint.
     nodes: Vec<Node>,
     /// `None` at first and after a row is expanded or collapsed.
@@ -155,9 +157,11 @@ impl SceneTree {
             area = area.vertical_scroll_offset(offset);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let leap = self.leap.take();
         area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
-            for row in rows.get(visible).unwrap_or_default() {
+            let page = visible.len().saturating_sub(2).max(1);
+            for (at, row) in rows.iter().enumerate().take(visible.end).skip(visible.start) {
                 let number = asset.skeleton.source_index(row.joint);
                 let Some(&Node { kind, has_content, warnings }) = self.nodes.get(row.joint.get()) else { continue };
                 let name = &*title(Some(shown.state), asset, row.joint);
@@ -170,6 +174,7 @@ impl SceneTree {
                     is_shown: has_content.then(|| !hidden.nodes.contains(&number)),
                     warnings,
                     is_dimmed: has_content && !shown.frame.is_visible(row.joint),
+                    takes_focus: leap == Some(at),
                 };
                 match tree_row(ui, row, &line) {
                     Some(Pressed::Row) => {
@@ -186,6 +191,16 @@ impl SceneTree {
                     Some(Pressed::Triangle) => {
                         is_folded = true;
                         self.fold(number);
+                    }
+                    Some(Pressed::Leap(key)) => {
+                        let last = rows.len() - 1;
+                        self.leap = Some(match key {
+                            Key::Home => 0,
+                            Key::End => last,
+                            Key::PageUp => at.saturating_sub(page),
+                            _ => (at + page).min(last),
+                        });
+                        ui.ctx().request_repaint();
                     }
                     None => {}
                 }
@@ -233,16 +248,19 @@ impl SceneTree {
             .collect()
     }
 
-    /// The scroll offset that shows a newly selected joint.
+    /// The scroll offset that shows a newly selected joint, or the row that a key leads to.
     fn scroll_offset(&mut self, ui: &Ui, shown: &Shown<'_>, asset: &Asset, rows: &[Row]) -> Option<f32> {
         /// Fewer in a tree that shows few rows, as on a phone.
         const MAX_ROWS_ABOVE: f32 = 4.0;
         let selected = shown.state.selection.joint;
-        if self.scrolled_to == selected {
-            return None;
-        }
-        self.scrolled_to = selected;
-        let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)?;
+        let at = if self.leap.is_some() {
+            self.leap
+        } else if self.scrolled_to == selected {
+            None
+        } else {
+            self.scrolled_to = selected;
+            rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)
+        }?;
         let max = rows.len() as f32 * row_height(ui) - ui.available_height();
         let rows_above = (0.5 * ui.available_height() / row_height(ui)).floor().min(MAX_ROWS_ABOVE);
         let wanted = (at as f32 - rows_above) * row_height(ui);
@@ -296,12 +314,14 @@ struct Line<'a> {
     warnings: usize,
     /// Has content that isn't shown, for whatever reason.
     is_dimmed: bool,
+    takes_focus: bool,
 }
 
 enum Pressed {
     Row,
     Eye(hiding::Pressed),
     Triangle,
+    Leap(Key),
 }
 
 fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
@@ -324,7 +344,7 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let depth = row.depth as f32;
     let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
     let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
-    let mut pressed = response.clicked().then_some(Pressed::Row);
+    let mut pressed = leap(&response, line.takes_focus).or(response.clicked().then_some(Pressed::Row));
     if is_toggled || row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
         pressed = Some(Pressed::Triangle);
     }
@@ -365,6 +385,17 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
         });
     }
     pressed
+}
+
+/// Gives the focus to a row, or returns the key that leads from it to a distant one.
+fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
+    if takes_focus {
+        row.request_focus();
+    } else if row.has_focus() {
+        let is_pressed = |key: &Key| row.ctx.input(|input| input.key_pressed(*key));
+        return [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed).map(Pressed::Leap);
+    }
+    None
 }
 
 /// Expands or collapses a row; returns true when clicked.

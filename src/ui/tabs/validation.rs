@@ -26,26 +26,30 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, 
         Some(_) => text::VALIDATE_AGAIN,
     };
     // Shown in every state, so that it keeps the focus.
-    if ui.add(egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0))).clicked() {
+    let button = ui.add(egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0)));
+    if button.clicked() {
         out.actions.push(UiAction::Validate);
     }
     let is_running = matches!(validation, Some(Validation::Running));
-    let was_running = std::mem::replace(&mut local.is_validating, is_running);
-    let summary = match validation {
-        None | Some(Validation::Running) => return,
+    let was_asked = std::mem::replace(&mut local.is_validating, is_running || button.clicked());
+    match validation {
+        None | Some(Validation::Running) => {}
         Some(Validation::Failed(error)) => {
             let failure = RichText::new(text::validator_failed(error)).color(style::palette(ui).error);
-            ui.add(egui::Label::new(failure).wrap())
+            ui.add(egui::Label::new(failure).wrap());
         }
-        Some(Validation::Done(report)) => ui.scope(|ui| controls::hint(ui, text::validator_summary(report))).response,
-    };
-    if was_running {
-        summary.scroll_to_me(None);
+        Some(Validation::Done(report)) => {
+            controls::hint(ui, text::validator_summary(report));
+            for group in &report.groups {
+                findings(ui, shown, model, group, &mut local.layout, out);
+            }
+        }
     }
-    if let Some(Validation::Done(report)) = validation {
-        for group in &report.groups {
-            findings(ui, shown, model, group, &mut local.layout, out);
-        }
+    if was_asked && !local.is_validating {
+        // As many of the results as there is room for below the button, which has the focus.
+        let results = button.rect.with_max_y(ui.cursor().top());
+        let height = results.height().min(ui.clip_rect().height() - 2.0 * ui.spacing().item_spacing.y);
+        ui.scroll_to_rect(results.with_max_y(results.top() + height), None);
     }
 }
 

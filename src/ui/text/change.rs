@@ -59,7 +59,7 @@ pub const LAYERS: &str = "Layers";
 pub const ADD_LAYER: &str = "Add layer";
 /// What layers are.
 pub const ABOUT_LAYERS: &str = "Layers play over this clip, the last one on top. Choose body parts, or select a joint, \
-                                to limit a layer to them.";
+                                to limit a layer to them. Without either, it replaces the whole pose.";
 /// Chooser of a layer's clip.
 pub const LAYER_CLIP: &str = "Layer's clip";
 /// Button that swaps a layer with the next.

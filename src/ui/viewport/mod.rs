@@ -72,9 +72,12 @@ pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, 
     let painter = ui.painter_at(rect);
     checkerboard(&painter, rect, &shown, style::palette(ui));
     let index = painter.add(Shape::Noop);
-    if rect.is_positive() {
+    local.viewport.has_focus = false;
+    let is_covered = local.layout.sheet_rect.is_some_and(|sheet| sheet.contains_rect(rect));
+    if rect.is_positive() && !is_covered {
         input(ui, &painter, rect, &shown, local, out);
     }
+    keys::listen(ui.ctx(), &shown, local, out);
     ViewportSlot { painter, index, rect }
 }
 
@@ -105,7 +108,6 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
     if !formula::point_at_vertex(&response, shown, local, out) {
         hover::show(canvas, local, out);
     }
-    keys::listen(ui.ctx(), shown, local, out);
     buttons::show(ui, rect, shown, local, out);
 }
 

@@ -12,6 +12,8 @@ const SIDE_WIDTH: f32 = 280.0;
 const MIN_VIEWPORT_HEIGHT: f32 = 56.0;
 /// The same when the user raises it: what the buttons in the viewport's corner take.
 const MIN_HEIGHT_ABOVE_RAISED: f32 = 76.0;
+/// Where there is less height below the header, a sheet takes all of it: beside a viewport and the transport, it would show nothing.
+const MIN_HEIGHT_TO_SHARE: f32 = 300.0;
 /// Sheets at least this wide have their close button beside the tabs, narrower ones above.
 const MIN_WIDTH_BESIDE_TABS: f32 = 360.0;
 /// Height of the handle that a sheet is dragged by.
@@ -23,6 +25,11 @@ const CLOSING_DISTANCE: f32 = 48.0;
 pub fn side_rect(free: Rect) -> Option<Rect> {
     let has_room = free.width() > free.height() && free.width() >= 2.0 * SIDE_WIDTH;
     has_room.then(|| free.with_min_x(free.right() - (0.5 * free.width()).min(1.25 * SIDE_WIDTH)))
+}
+
+/// Whether a sheet takes all that the header leaves free, the transport's place included.
+pub fn takes_all(free: Rect) -> bool {
+    free.height() < MIN_HEIGHT_TO_SHARE
 }
 
 /// The rectangle of a sheet at the bottom of what the panels leave free, `raised` above its usual height as far as there is room.

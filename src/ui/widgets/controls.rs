@@ -75,6 +75,37 @@ pub fn small_button(ui: &mut Ui, label: &str) -> Response {
     ui.add(egui::Button::new(label).small().min_size(vec2(0.0, height)))
 }
 
+/// A button with a menu. Moving the focus to a control outside closes the menu; Esc also gives the focus back to the button.
+pub fn menu_button(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) -> Response {
+    let (button, menu) = egui::containers::menu::MenuButton::new(label).ui(ui, contents);
+    keep_menu_focus(ui, &button, menu.is_some());
+    button
+}
+
+fn keep_menu_focus(ui: &Ui, button: &Response, is_open: bool) {
+    let before = button.id.with("focus before");
+    if !is_open {
+        ui.data_mut(|data| data.remove::<Option<egui::Id>>(before));
+        return;
+    }
+    let focused = ui.memory(egui::Memory::focused);
+    let before = ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(before, focused), focused));
+    let is_outside = |id| ui.ctx().read_response(id).is_some_and(|control| control.layer_id == button.layer_id);
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        // Only if the keyboard was used: after a click, keys go on controlling the viewport.
+        if before.is_some() {
+            button.request_focus();
+        }
+    } else if focused != before && focused.is_some_and(|id| id != button.id && is_outside(id)) {
+        egui::Popup::close_id(ui.ctx(), egui::Popup::default_response_id(button));
+    }
+}
+
+/// Returns the height of a list that drops down: `height`, if the window is that high. A higher one would be cut off.
+pub fn list_height(ui: &Ui, height: f32) -> f32 {
+    height.min(ui.ctx().content_rect().height() - 40.0)
+}
+
 /// A button that is on or off, in lists and groups.
 pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
     // Pale like rows and segments. Set only here, since egui fills sliders with the same colour.

@@ -1,6 +1,7 @@
 //! Whether a quality figure is good: the limits, in one place. docs/retargeting.md lists them with their reasons.
 
 use super::figures::Figures;
+use crate::retarget::map::Contacts;
 
 /// What a figure says about a retargeted clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,6 +28,9 @@ const fn limits(good: f64, acceptable: f64) -> Limits {
 // Degrees.
 const LIMB_DIRECTION_MEAN: Limits = limits(2.0, 5.0);
 const LIMB_DIRECTION_MAX: Limits = limits(15.0, 30.0);
+/// Where contacts are kept, arms turn away from their source's, by up to 50°.
+const KEPT_LIMB_DIRECTION_MEAN: Limits = limits(5.0, 10.0);
+const KEPT_LIMB_DIRECTION_MAX: Limits = limits(65.0, 80.0);
 const FACING_MEAN: Limits = limits(10.0, 20.0);
 const FACING_MAX: Limits = limits(25.0, 40.0);
 const ORIENTATION_MEAN: Limits = limits(0.1, 1.0);
@@ -37,6 +41,10 @@ const FOOT_SLIDE: Limits = limits(0.02, 0.06);
 const FOOT_HOVER: Limits = limits(0.01, 0.025);
 const SOLE_PENETRATION: Limits = limits(0.01, 0.04);
 const GROUND_PENETRATION: Limits = limits(0.02, 0.05);
+/// Sizes of the model.
+const CONTACT_ERROR: Limits = limits(0.02, 0.06);
+/// Share of the points on limbs.
+const SELF_PENETRATION: Limits = limits(0.01, 0.04);
 /// Share of the body parts that are not mapped.
 const UNMAPPED: Limits = limits(0.05, 0.2);
 
@@ -64,20 +72,26 @@ pub struct Verdicts {
     pub ground_penetration: Option<Verdict>,
     pub foot_hover: Option<Verdict>,
     pub sole_penetration: Option<Verdict>,
+    pub contact_error: Option<Verdict>,
+    pub self_penetration: Option<Verdict>,
     pub coverage: Option<Verdict>,
 }
 
 impl Verdicts {
-    /// Judges the figures of a model whose largest dimension is this.
-    pub fn new(figures: &Figures, size_metres: f64) -> Self {
+    /// Judges the figures of a model whose largest dimension is this; `contacts` is what was done about them.
+    pub fn new(figures: &Figures, size_metres: f64, contacts: Contacts) -> Self {
         let judged = |value: Option<f64>, limits: Limits| value.map(|value| limits.verdict(value));
         let size_metres = size_metres.max(f64::MIN_POSITIVE);
         let sizes = |value: Option<f64>| value.map(|metres| metres.abs() / size_metres);
         let slide = figures.foot_slide_metres_per_sec;
         let source_slide = figures.foot_slide_source_metres_per_sec.unwrap_or_default();
+        let (limb_mean, limb_max) = match contacts {
+            Contacts::Off => (LIMB_DIRECTION_MEAN, LIMB_DIRECTION_MAX),
+            Contacts::Keep => (KEPT_LIMB_DIRECTION_MEAN, KEPT_LIMB_DIRECTION_MAX),
+        };
         Self {
-            limb_direction_error_mean: judged(figures.limb_direction_error_degrees_mean, LIMB_DIRECTION_MEAN),
-            limb_direction_error_max: judged(figures.limb_direction_error_degrees_max, LIMB_DIRECTION_MAX),
+            limb_direction_error_mean: judged(figures.limb_direction_error_degrees_mean, limb_mean),
+            limb_direction_error_max: judged(figures.limb_direction_error_degrees_max, limb_max),
             facing_error_mean: judged(figures.facing_error_degrees_mean, FACING_MEAN),
             facing_error_max: judged(figures.facing_error_degrees_max, FACING_MAX),
             orientation_error_mean: judged(figures.orientation_error_degrees_mean, ORIENTATION_MEAN),
@@ -86,6 +100,8 @@ impl Verdicts {
             ground_penetration: judged(sizes(figures.ground_penetration_metres_max), GROUND_PENETRATION),
             foot_hover: judged(sizes(figures.foot_hover_metres_mean), FOOT_HOVER),
             sole_penetration: judged(sizes(figures.sole_penetration_metres_max), SOLE_PENETRATION),
+            contact_error: judged(sizes(figures.contact_error_metres_mean), CONTACT_ERROR),
+            self_penetration: judged(figures.self_penetration_share, SELF_PENETRATION),
             coverage: judged(figures.coverage.map(|coverage| 1.0 - coverage), UNMAPPED),
         }
     }
@@ -103,6 +119,8 @@ impl Verdicts {
             self.ground_penetration,
             self.foot_hover,
             self.sole_penetration,
+            self.contact_error,
+            self.self_penetration,
             self.coverage,
         ];
         all.into_iter().flatten().max()
