@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, control, eventually, fragment, startSite, until, whenBorrowed, whenModel } from "./browser.mjs";
+import { BACK_ENDS, control, eventually, fragment, startSite, until, untilStill, whenBorrowed, whenModel } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const WALK = "bvh/cmu_01_01.bvh";
@@ -157,6 +157,7 @@ for (const renderer of BACK_ENDS)
       await joint.press("Enter");
       await until(page, async () => (await window.gaitway.state()).joint !== null);
       for (const [key, index] of /** @type {const} */ ([["End", -1], ["Home", 0]])) {
+        await untilStill(page);
         await page.keyboard.press(key);
         await until(page, (index) => [...document.querySelectorAll("#mirror [role=treeitem]")].at(index) === document.activeElement, index);
       }

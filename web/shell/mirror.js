@@ -167,6 +167,8 @@ export class Mirror {
     const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? stopsIn(this.root)[0]);
     const target = first ?? (next.isConnected ? next : fallback);
     if (target !== document.activeElement) target?.focus();
+    // Its own move, which it won't report again.
+    if (target?.dataset.id === focus) this.#wanted = null;
   }
 
   /** @param {KeyboardEvent} event */
