@@ -1,5 +1,5 @@
-//! Settings chosen for what the user opens: the camera follows a clip that travels, and feet that would slide or hover are held
-//! on the ground. Links and scripts get exactly what they say.
+//! Settings chosen for what the user opens: the camera follows a clip that travels, and feet that would slide, hover or
+//! sink in are held on the ground. Links and scripts get exactly what they say.
 
 use super::Editor;
 use crate::retarget::{Feet, Verdict, Verdicts};
@@ -29,20 +29,21 @@ impl Editor {
         }
     }
 
-    /// Holds the feet on the ground if the borrowed clip that plays slides or hovers more than is acceptable, in a step of its own.
-    /// Returns what to tell the user about it.
+    /// Holds the feet on the ground if the borrowed clip that plays slides, hovers or sinks in more than is acceptable, in a step of
+    /// its own. Returns what to tell the user about it.
     pub(super) fn suit_feet(&mut self) -> Option<&'static str> {
         let model = self.library.active()?;
         let clip = active_clip(model, &self.state)?;
         let figures = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none())?;
         let verdicts = Verdicts::new(figures, model.size_metres(), self.state.retarget.contacts.unwrap_or_default());
-        if ![verdicts.foot_slide, verdicts.foot_hover].contains(&Some(Verdict::NeedsReview)) {
+        if ![verdicts.foot_slide, verdicts.foot_hover, verdicts.sole_penetration].contains(&Some(Verdict::NeedsReview))
+        {
             return None;
         }
         self.end_gesture();
         self.apply(Command::SetFeet(Some(Feet::Plant)));
         self.end_gesture();
         self.state.retarget.feet_are_automatic = true;
-        Some("The feet would slide or hover, so they are held on the ground. Undo turns this off.")
+        Some("The feet would slide, hover or sink in, so they are held on the ground. Undo turns this off.")
     }
 }

@@ -195,7 +195,7 @@ pub const REDO_KEY: &str = "Redo (Ctrl+Y)";
 pub const PLANT_FEET: &str = "Hold feet on the ground";
 /// Shown below it while the editor, not the user, has switched it on.
 pub const PLANTED_AUTOMATICALLY: &str =
-    "Switched on automatically: without it, the feet of the borrowed clip would slide or hover.";
+    "Switched on automatically: without it, the feet of the borrowed clip would slide, hover or sink in.";
 /// Switch that keeps contacts of hands with the body and the ground.
 pub const KEEP_CONTACTS: &str = "Keep contacts of the hands";
 /// Option of several choices: decides by the file.

@@ -5,15 +5,18 @@ use std::sync::Arc;
 use gaitway::anim::{ClipBuilder, Interpolation, Keys};
 use gaitway::asset::Asset;
 use gaitway::editor::{Contents, Editor, Event};
+use gaitway::files::{Role, read_paths};
 use gaitway::library::Model;
 use gaitway::retarget::{Feet, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, from_link, resolve_camera, to_link,
+    CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, active_clip, from_link, resolve_camera,
+    to_link,
 };
 use glam::Vec3;
 
 use super::{any, contents, editor, id_of, motions, open, open_motion, orbit};
+use crate::data_folder::data_folder;
 
 #[test]
 fn framing_uses_the_viewports_aspect() {
@@ -149,6 +152,23 @@ fn a_script_that_sets_follow_is_obeyed_from_then_on() {
     editor.apply(Command::SetClip(ClipChoice::RestPose));
     editor.apply(Command::SetClip(ClipChoice::First));
     assert!(!editor.state().camera_options.follow);
+}
+
+/// They neither slide nor hover, but sink in by 14 cm.
+#[test]
+fn feet_that_would_sink_in_are_held() {
+    let Some(folder) = data_folder() else { return };
+    let path = |name: &str| folder.join(name);
+    let mut editor = editor(path("kaykit/Knight.glb").to_str().expect("is UTF-8"));
+    let motion = read_paths(&[path("mesh2motion/cmu_91_48.glb")], Role::Motion).expect("can be read");
+    editor.open(Contents { is_by_hand: true, ..motion }, None, &mut any).expect("fits");
+    assert!(are_automatic(&editor));
+    assert!(editor.undo());
+    let clip = active_clip(editor.library().active().expect("is open"), editor.state()).expect("plays");
+    let figures = editor.library().figures(clip).expect("is borrowed");
+    let slides = figures.foot_slide_metres_per_sec.expect("has feet");
+    assert!(slides < 0.1 && figures.foot_hover_metres_mean.expect("has feet").abs() < 0.001, "{figures:?}");
+    assert!(figures.sole_penetration_metres_max.expect("has soles") > 0.1, "{figures:?}");
 }
 
 #[test]
