@@ -23,6 +23,8 @@ pub struct Ground {
     heights: Vec<Vec<f64>>,
     /// Whether a hand or knee of the source rests on its ground, by the same index and time.
     pub touching: Vec<Vec<bool>>,
+    /// The same for feet, in the order of their soles.
+    pub feet: Vec<Vec<bool>>,
 }
 
 /// A point of an arm in the ground.
@@ -50,7 +52,8 @@ impl Ground {
         };
         let (source_height, height) = (ground(source)?, ground(target)?);
         let is_guess = bodies.target.has_mesh && !bodies.source.has_mesh;
-        let mut ground = Self { height, source_height, scale, is_guess, heights: Vec::new(), touching: Vec::new() };
+        let (heights, touching) = (Vec::new(), Vec::new());
+        let mut ground = Self { height, source_height, scale, is_guess, heights, touching, feet: Vec::new() };
         for part in &bodies.ground_parts {
             let lowest = |frames| lowest(&bodies.source, part, frames) - source_height;
             let lowest: Vec<f64> = source.frames.iter().map(lowest).collect();
@@ -63,6 +66,7 @@ impl Ground {
             let heights = lowest.into_iter().map(|y| ground.scaled(y)).collect();
             ground.heights.push(heights);
         }
+        ground.feet = contacts.touching;
         Some(ground)
     }
 
@@ -79,11 +83,15 @@ impl Ground {
         })
     }
 
-    /// How much higher a sole of the target should be than it is: as high above the ground as the source's, if that is lower than
-    /// `low`; else not below it. `None` if it may stay where it is.
-    pub fn sole_miss(&self, source: f64, target: f64, low: f64) -> Option<f64> {
+    /// How much higher a sole of the target should be behind a knee that goes up by `along`: on the ground if it is planted there, else
+    /// as high as the source's. One that isn't as low as `low` goes along, but stays out of the ground.
+    pub fn sole_miss(&self, [source, target]: [f64; 2], is_planted: bool, low: f64, along: f64) -> f64 {
         let (wanted, height) = (self.scaled(source - self.source_height), target - self.height);
-        if wanted < low { Some(wanted - height) } else { Some(-height).filter(|&depth| depth > 0.0) }
+        match wanted < low {
+            true if is_planted => -height,
+            true => wanted - height,
+            false => along.max(-height),
+        }
     }
 
     /// Points of the target's arms that are deeper in the ground than the source's arm, by more than `tolerated`.

@@ -10,6 +10,7 @@ use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::{Leg, solve_leg};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
+use crate::retarget::map::Feet;
 use crate::retarget::math::slerp;
 use crate::retarget::pose::{WorldPose, moved};
 use crate::retarget::two_bones::limb_rotations;
@@ -78,10 +79,11 @@ fn wishes(scene: &Scene, side: usize) -> Option<(Leg, Vec<Option<Wish>>)> {
     let sole = bodies.target.soles.feet[..side].iter().flatten().count();
     let (source, soles) = (source.soles.get(sole)?, target.soles.get(sole)?);
     let low = LOW * bodies.target.height;
+    let plants = scene.transfer.map.feet == Feet::Plant;
     let wish = |at: usize| {
         let (_, knee) = ground.misses(bodies, at, &target.frames[at]).find(|(part, _)| *part == shin)?;
-        let ankle = ground.sole_miss(source[at], soles[at], low);
-        Some(Wish { knee, ankle: ankle.unwrap_or(knee) })
+        let is_planted = plants && ground.feet[sole][at];
+        Some(Wish { knee, ankle: ground.sole_miss([source[at], soles[at]], is_planted, low, knee) })
     };
     Some((leg, (0..soles.len()).map(wish).collect()))
 }
