@@ -37,7 +37,7 @@ fn points([from, to]: [Vec3; 2]) -> Vec<Vec3> {
 }
 
 /// A figure with rigid boxes on its joints, which are not turned at rest.
-fn with_boxes(rig: &Rig, belly: f32) -> Figure {
+pub fn with_boxes(rig: &Rig, belly: f32) -> Figure {
     with_hands(rig, belly, 0.02)
 }
 
@@ -144,7 +144,7 @@ fn fingertips(model: &Figure, clip: &Clip, time: f32) -> f64 {
     (tips.y - place(&rest, Slot::LeftToes).1.y) / height
 }
 
-fn retarget(model: &Figure, motion: &Figure, contacts: Contacts) -> (Retargeted, Figures) {
+pub fn retarget(model: &Figure, motion: &Figure, contacts: Contacts) -> (Retargeted, Figures) {
     let map = ResolvedMap { contacts, ..map(model, motion) };
     let pair = Retargeting::new(body(model), body(motion), 0, &map).unwrap();
     let done = pair.bake().unwrap();
@@ -152,7 +152,7 @@ fn retarget(model: &Figure, motion: &Figure, contacts: Contacts) -> (Retargeted,
     (done, figures)
 }
 
-fn keys_of(clip: &Clip, joint: JointIndex) -> Vec<Keys> {
+pub fn keys_of(clip: &Clip, joint: JointIndex) -> Vec<Keys> {
     clip.channels().iter().filter(|channel| channel.joint == joint).map(|channel| channel.keys.clone()).collect()
 }
 

@@ -54,6 +54,8 @@ pub struct Rig {
     pub size: f64,
     /// Additional factor on the legs.
     pub leg_length: f64,
+    /// Additional factor on the thighs; shins are shorter by as much.
+    pub thigh_length: f64,
     /// An armature node on top: turned by −90° about X and scaled by 0.01, with joints in centimetres.
     pub armature: bool,
     /// Turn of the whole figure about +Y at rest.
@@ -70,6 +72,7 @@ impl Default for Rig {
             prefix: "",
             size: 1.0,
             leg_length: 1.0,
+            thigh_length: 1.0,
             armature: false,
             facing_degrees: 0.0,
         }
@@ -207,6 +210,9 @@ fn t_pose_position(rig: &Rig, slot: Slot) -> DVec3 {
     let (_, _, position) = BODY.iter().find(|(other, ..)| *other == slot).unwrap();
     let mut position = DVec3::from(*position);
     let hip = 0.95;
+    if matches!(slot, Slot::LeftLowerLeg | Slot::RightLowerLeg) {
+        position.y = hip - (hip - position.y) * rig.thigh_length;
+    }
     if position.y < hip {
         // Longer or shorter, in the same direction.
         position.y = hip - (hip - position.y) * rig.leg_length;

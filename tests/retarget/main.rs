@@ -17,6 +17,7 @@ mod contacts;
 mod coursework;
 mod feet;
 mod figure;
+mod knees;
 mod laws;
 mod layers;
 mod pairs;

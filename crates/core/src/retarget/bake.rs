@@ -1,6 +1,6 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use super::contacts::{Bodies, kept_contacts};
+use super::contacts::{Bodies, Scene, kept_hands, rested_knees};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
@@ -64,15 +64,26 @@ pub struct Retargeted {
 /// Retargets the clip, then plants its feet and keeps its contacts if the map asks for it.
 pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>) -> Result<Retargeted, RetargetError> {
     let planted = bake_planted(transfer)?;
-    let kept = match transfer.map.contacts {
-        Contacts::Off => None,
-        Contacts::Keep => {
-            bodies().and_then(|bodies| kept_contacts(transfer, bodies, &planted.clip, &planted.resampled))
-        }
-    };
-    let Some(channels) = kept else { return Ok(planted) };
-    let built = build(transfer, reattached(transfer, channels)?)?;
+    let bodies = if transfer.map.contacts == Contacts::Keep { bodies() } else { None };
+    let kept = bodies.map(|bodies| bake_kept(transfer, bodies, &planted)).transpose()?.flatten();
+    let Some(built) = kept else { return Ok(planted) };
     Ok(Retargeted { unplanted: planted.unplanted.or(Some(planted.clip)), planting: planted.planting, ..built })
+}
+
+/// Brings knees to the ground, then hands to where they rest; `None` if there is nothing to do.
+fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Result<Option<Retargeted>, RetargetError> {
+    let rebuilt = |channels: Option<Vec<NewChannel>>| {
+        channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
+    };
+    let scene = Scene::new(transfer, bodies, &planted.clip);
+    let knelt = rebuilt(rested_knees(&scene, &planted.clip, &planted.resampled))?;
+    let scene = match &knelt {
+        Some(knelt) => scene.playing(&knelt.clip),
+        None => scene,
+    };
+    let before = knelt.as_ref().unwrap_or(planted);
+    let kept = rebuilt(kept_hands(scene, &before.clip, &before.resampled))?;
+    Ok(kept.or(knelt))
 }
 
 fn bake_planted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {

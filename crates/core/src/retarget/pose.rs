@@ -1,6 +1,6 @@
 //! Poses in double precision: local transforms, and the rotation and position of every joint that follow from them.
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::math::unit;
 use crate::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, Transform};
@@ -110,6 +110,14 @@ impl<'a> PartialPose<'a> {
         }
         &self.pose
     }
+}
+
+/// Translations of a joint that is moved in each pose, from where it is there.
+pub fn moved(skeleton: &Skeleton, joint: JointIndex, poses: &[WorldPose], moves: &[DVec3]) -> Vec<Vec3> {
+    let translation = |(pose, by): (&WorldPose, &DVec3)| {
+        pose.parent_frame(skeleton, joint).inverse().transform_point3(pose.position(joint) + by).as_vec3()
+    };
+    poses.iter().zip(moves).map(translation).collect()
 }
 
 /// `world_from_parent` of a joint whose ancestors have the given local transforms.

@@ -16,6 +16,7 @@ use crate::retarget::transfer::Transfer;
 /// Points on each part of a limb: heights along its axis and directions about it.
 const RINGS: usize = 4;
 const SECTORS: usize = 6;
+const SECTOR: f64 = TAU / SECTORS as f64;
 pub const POINTS: usize = RINGS * SECTORS;
 
 /// Joints of the arms, as in [`Region::arm`].
@@ -68,6 +69,12 @@ impl Body {
         position + turn * self.solids[part].surface(place)
     }
 
+    /// How high the lowest point of a knee is, around the beginning of its shin.
+    pub fn knee(&self, shin: usize, frames: &Frames) -> f64 {
+        let around = (0..SECTORS).map(|sector| Place { share: 0.0, angle: SECTOR * sector as f64 });
+        around.map(|place| self.surface(shin, place, frames).y).fold(f64::INFINITY, f64::min)
+    }
+
     /// The direction away from a part's axis.
     pub fn outward(&self, part: usize, place: Place, frames: &Frames) -> DVec3 {
         frames[part].1 * self.solids[part].outward(place)
@@ -93,11 +100,13 @@ impl BodyMotion {
     }
 }
 
-/// A part of an arm with points.
+/// A part of an arm, or a shin with its knee.
 #[derive(Debug)]
-pub struct ArmPart {
+pub struct GroundPart {
     pub part: usize,
-    pub is_hand: bool,
+    pub is_knee: bool,
+    /// Whether it is a hand or knee: these rest on the ground.
+    pub rests: bool,
 }
 
 /// A limb's part and another that it may touch: arms touch everything but themselves, legs only each other.
@@ -135,7 +144,8 @@ pub struct Bodies {
     /// Number of points on each body's limbs.
     pub limb_points: u32,
     pub pairs: Vec<PartPair>,
-    pub arm_parts: Vec<ArmPart>,
+    /// Parts with a place on the ground.
+    pub ground_parts: Vec<GroundPart>,
     /// Shoulder, elbow and wrist of the target's arms, as in [`Region::arm`]. The wrist needn't be mapped.
     pub arms: [Option<[JointIndex; 3]>; 2],
 }
@@ -171,11 +181,12 @@ impl Bodies {
         let levers = parts.iter().map(|part| part.kind.levers.unwrap_or([0.0, 0.5])).collect();
         let mut limb_points = 0;
         let mut pairs = Vec::new();
-        let mut arm_parts = Vec::new();
+        let mut ground_parts = Vec::new();
         for (limb, part) in parts.iter().enumerate().filter(|(_, part)| part.kind.levers.is_some()) {
             limb_points += POINTS as u32;
-            if part.kind.region.arm().is_some() {
-                arm_parts.push(ArmPart { part: limb, is_hand: part.is_hand() });
+            let is_knee = part.is_shin();
+            if is_knee || !part.kind.region.is_leg() {
+                ground_parts.push(GroundPart { part: limb, is_knee, rests: is_knee || part.is_hand() });
             }
             for (other, &region) in regions.iter().enumerate() {
                 let own = part.kind.region;
@@ -189,7 +200,7 @@ impl Bodies {
             let wrist = target_joint(wrist).or_else(|| slots[1].joint(wrist))?;
             Some([target_joint(shoulder)?, target_joint(elbow)?, wrist])
         });
-        let mut bodies = Self { source, target, regions, levers, limb_points, pairs, arm_parts, arms };
+        let mut bodies = Self { source, target, regions, levers, limb_points, pairs, ground_parts, arms };
         let rest = bodies.target.frames(&alignment.unaligned_target);
         for meeting in bodies.meetings(&bodies.target, &rest, 0.0) {
             bodies.pairs[meeting.pair].at_rest[meeting.point] = -meeting.distance;
@@ -249,5 +260,5 @@ impl Bodies {
 /// Where a point of a limb is on the surface of its part.
 pub fn place_of(point: usize) -> Place {
     let share = ((point / SECTORS) as f64 + 0.5) / RINGS as f64;
-    Place { share, angle: TAU * (point % SECTORS) as f64 / SECTORS as f64 }
+    Place { share, angle: SECTOR * (point % SECTORS) as f64 }
 }

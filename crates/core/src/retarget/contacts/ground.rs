@@ -1,23 +1,30 @@
-//! The ground as something that hands rest on and arms stay out of. It is where the feet stand, as for planting them.
+//! The ground as something that hands and knees rest on and arms stay out of. It is where the feet stand, as for planting them.
 
 use glam::DVec3;
 
-use super::body::{ArmPart, Bodies, Body, BodyMotion, Frames, POINTS};
+use super::body::{Bodies, Body, BodyMotion, Frames, GroundPart, POINTS};
 use crate::retarget::feet::{contacts_of, foot_pairs, standing_height};
 use crate::retarget::transfer::Transfer;
 
 /// An arm that is deeper in the ground than this share of the body's height on the source is beside what the feet stand on.
 const BESIDE: f64 = 0.04;
 
-/// The ground of a clip, and where the source's arms are above it.
+/// The ground of a clip, and where the source's arms and knees are above it.
 #[derive(Debug)]
 pub struct Ground {
     /// Height of the target's ground.
     height: f64,
-    /// Heights of the source's lowest points above its ground, scaled to the target, by index into [`Bodies::arm_parts`] and time.
+    source_height: f64,
+    scale: f64,
+    /// How deep a guessed body is in the ground says nothing.
+    is_guess: bool,
+    /// Heights of the source's lowest points above its ground, scaled to the target, by index into [`Bodies::ground_parts`] and
+    /// time.
     heights: Vec<Vec<f64>>,
-    /// Whether a hand of the source rests on its ground, by the same index and time.
+    /// Whether a hand or knee of the source rests on its ground, by the same index and time.
     pub touching: Vec<Vec<bool>>,
+    /// The same for feet, in the order of their soles.
+    pub feet: Vec<Vec<bool>>,
 }
 
 /// A point of an arm in the ground.
@@ -43,39 +50,56 @@ impl Ground {
             let touching = contacts.touching.iter().map(Vec::as_slice);
             standing_height(&motion.soles.iter().cloned().zip(touching).collect::<Vec<_>>())
         };
-        let (source_ground, height) = (ground(source)?, ground(target)?);
-        // How deep a guessed body is in the ground says nothing.
+        let (source_height, height) = (ground(source)?, ground(target)?);
         let is_guess = bodies.target.has_mesh && !bodies.source.has_mesh;
-        let mut heights = Vec::new();
-        let mut touching = Vec::new();
-        for part in &bodies.arm_parts {
-            let lowest = |frames| lowest(&bodies.source, part.part, frames) - source_ground;
+        let (heights, touching) = (Vec::new(), Vec::new());
+        let mut ground = Self { height, source_height, scale, is_guess, heights, touching, feet: Vec::new() };
+        for part in &bodies.ground_parts {
+            let lowest = |frames| lowest(&bodies.source, part, frames) - source_height;
             let lowest: Vec<f64> = source.frames.iter().map(lowest).collect();
             let path = source.frames.iter().zip(&lowest).map(|(frames, &y)| DVec3 { y, ..frames[part.part].0 });
-            touching.push(if part.is_hand {
-                contacts.of_hand(times, &path.collect::<Vec<_>>(), bodies.source.height)
+            ground.touching.push(if part.rests {
+                contacts.of_part(times, &path.collect::<Vec<_>>(), bodies.source.height)
             } else {
                 vec![false; times.len()]
             });
-            let scaled = |y: f64| scale * if is_guess { y.max(0.0) } else { y };
-            heights.push(lowest.into_iter().map(scaled).collect());
+            let heights = lowest.into_iter().map(|y| ground.scaled(y)).collect();
+            ground.heights.push(heights);
         }
-        Some(Self { height, heights, touching })
+        ground.feet = contacts.touching;
+        Some(ground)
     }
 
-    /// How much higher the target's hands should be where the source's rest on the ground: the hands' parts, and by how much.
+    /// A height of the source above its ground, scaled to the target.
+    fn scaled(&self, y: f64) -> f64 {
+        self.scale * if self.is_guess { y.max(0.0) } else { y }
+    }
+
+    /// How much higher the target's hands and knees should be where the source's rest on the ground: their parts, and by how much.
     pub fn misses(&self, bodies: &Bodies, at: usize, target: &Frames) -> impl Iterator<Item = (usize, f64)> {
-        let parts = bodies.arm_parts.iter().enumerate().filter(move |(index, _)| self.touching[*index][at]);
+        let parts = bodies.ground_parts.iter().enumerate().filter(move |(index, _)| self.touching[*index][at]);
         parts.map(move |(index, part)| {
-            (part.part, self.heights[index][at] - (lowest(&bodies.target, part.part, target) - self.height))
+            (part.part, self.heights[index][at] - (lowest(&bodies.target, part, target) - self.height))
         })
+    }
+
+    /// How much higher a sole of the target should be behind a knee that goes up by `along`: on the ground if it is planted there, else
+    /// as high as the source's. One that isn't as low as `low` goes along, but stays out of the ground.
+    pub fn sole_miss(&self, [source, target]: [f64; 2], is_planted: bool, low: f64, along: f64) -> f64 {
+        let (wanted, height) = (self.scaled(source - self.source_height), target - self.height);
+        match wanted < low {
+            true if is_planted => -height,
+            true => wanted - height,
+            false => along.max(-height),
+        }
     }
 
     /// Points of the target's arms that are deeper in the ground than the source's arm, by more than `tolerated`.
     pub fn sunken(&self, bodies: &Bodies, at: usize, target: &Frames, tolerated: f64) -> Vec<Sunken> {
         let body = &bodies.target;
         let mut sunken = Vec::new();
-        for (index, &ArmPart { part, .. }) in bodies.arm_parts.iter().enumerate() {
+        let arms = bodies.ground_parts.iter().enumerate().filter(|(_, part)| !part.is_knee);
+        for (index, &GroundPart { part, .. }) in arms {
             let source = self.heights[index][at];
             let floor = self.height + source.min(0.0) - tolerated;
             let (position, turn) = target[part];
@@ -91,6 +115,9 @@ impl Ground {
     }
 }
 
-fn lowest(body: &Body, part: usize, frames: &Frames) -> f64 {
+fn lowest(body: &Body, &GroundPart { part, is_knee, .. }: &GroundPart, frames: &Frames) -> f64 {
+    if is_knee {
+        return body.knee(part, frames);
+    }
     (0..POINTS).map(|point| body.point(part, point, frames).y).fold(f64::INFINITY, f64::min)
 }

@@ -4,18 +4,18 @@
 use glam::{DQuat, DVec3};
 
 use super::arm::Arm;
-use super::body::{Bodies, BodyMotion, Frames, place_of};
+use super::body::{Bodies, Frames, place_of};
 use super::ground::{Ground, Sunken};
+use super::scene::Scene;
 use super::smooth::eased;
 use super::touch::Touches;
-use crate::anim::{Clip, JointIndex, Keys, Property};
+use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::ranges;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
 use crate::retarget::math::HORIZONTAL;
-use crate::retarget::pose::{Scratch, WorldPose};
-use crate::retarget::times::dense_times;
-use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+use crate::retarget::pose::WorldPose;
+use crate::retarget::transfer::{removed_travel, rotation_laws};
 use crate::retarget::two_bones::limb_rotations;
 
 /// Touching and pushing out in turns, since each disturbs the other, and then both at once.
@@ -26,8 +26,8 @@ const COMPROMISES: usize = 2;
 const PUSH_WEIGHT: f64 = 10.0;
 
 /// Shares of the body's height: a wrist is never moved further than the first, and moves below the second are none.
-const MAX_MOVE: f64 = 0.11;
-const MIN_MOVE: f64 = 1e-4;
+pub const MAX_MOVE: f64 = 0.11;
+pub const MIN_MOVE: f64 = 1e-4;
 
 /// A point that is less deep than this share of the body's height stays.
 const TOLERATED: f64 = 0.002;
@@ -36,8 +36,8 @@ const TOLERATED: f64 = 0.002;
 const CLEARLY_INSIDE: f64 = 0.003;
 
 /// How far an upper arm or forearm may be turned, and how fast.
-const MAX_TURN_DEGREES: f64 = 50.0;
-const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
+pub const MAX_TURN_DEGREES: f64 = 50.0;
+pub const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
 
 /// One moment of the clip.
 struct Moment {
@@ -83,13 +83,9 @@ struct Solver<'a> {
 
 /// Returns all channels of the clip with its contacts kept, or `None` if there is nothing to do. `resampled` lists the joints whose
 /// keys in `clip` are not the source's own.
-pub fn kept_contacts(
-    transfer: &Transfer,
-    bodies: &Bodies,
-    clip: &Clip,
-    resampled: &[JointIndex],
-) -> Option<Vec<NewChannel>> {
-    let mut solver = Solver::new(transfer, bodies, clip);
+pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
+    let skeleton = scene.transfer.target_skeleton;
+    let mut solver = Solver::new(scene);
     for _ in 0..ROUNDS {
         solver.add(Solver::touch);
         solver.add(Solver::push_out);
@@ -102,41 +98,24 @@ pub fn kept_contacts(
         let turns = solver.turns(index);
         let Some(arm) = arm.filter(|_| turns.iter().flatten().any(|&turn| turn != DQuat::IDENTITY)) else { continue };
         let turns = turns.each_ref().map(Vec::as_slice);
-        rotations.extend(limb_rotations(transfer.target_skeleton, arm.joints, &solver.poses, turns));
+        rotations.extend(limb_rotations(skeleton, arm.joints, &solver.poses, turns));
     }
-    if rotations.is_empty() {
-        return None;
-    }
-    let is_replaced = |joint: JointIndex, property: Property| {
-        property == Property::Rotation && rotations.iter().any(|(other, _)| *other == joint)
-    };
-    let mut channels = NewChannel::of_clip(clip, resampled, is_replaced);
-    for (joint, keys) in &rotations {
-        let keys = keys.iter().map(|key| key.as_quat()).collect();
-        channels.push(NewChannel::resampled(*joint, solver.times.clone(), Keys::Rotation(keys)));
-    }
-    Some(channels)
+    (!rotations.is_empty()).then(|| NewChannel::corrected(clip, resampled, &solver.times, None, rotations))
 }
 
 impl<'a> Solver<'a> {
-    fn new(transfer: &Transfer, bodies: &'a Bodies, clip: &Clip) -> Self {
-        let times = dense_times(transfer.tracks.clip);
+    fn new(scene: Scene<'a>) -> Self {
+        let scale = scene.scale();
+        let Scene { transfer, bodies, times, source, poses, target, ground } = scene;
         let (laws, _) = rotation_laws(transfer);
         let removed = removed_travel(transfer, &laws, &times);
-        let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
-        let source = bodies.source_motion(transfer, &times);
-        let mut scratch = Scratch::default();
-        let poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
-        let mut target = BodyMotion::default();
-        poses.iter().for_each(|pose| target.push(&bodies.target, pose));
-        let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
         let mut moments = Vec::with_capacity(times.len());
         for ((&time, frames), touches) in times.iter().zip(target.frames).zip(bodies.touches(&times, &source.frames)) {
             moments.push(Moment { frames, touches, target_from_source: (removed.turn(time), scale) });
         }
         let arms = bodies.arms.map(|joints| Some(Arm::new(joints?, &transfer.alignment.target)));
         let [moves, mut holds] = [(); 2].map(|()| std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]));
-        for (part, touching) in bodies.arm_parts.iter().zip(ground.iter().flat_map(|ground| &ground.touching)) {
+        for (part, touching) in bodies.ground_parts.iter().zip(ground.iter().flat_map(|ground| &ground.touching)) {
             let Some(arm) = bodies.regions[part.part].arm().filter(|&arm| arms[arm].is_some()) else { continue };
             // How far the wrist is from where the source's is: constant if it goes over the ground like that.
             let offset = |at: usize| {

@@ -108,6 +108,10 @@ impl<'a> Part<'a> {
         matches!(self.kind.slot, Slot::LeftHand | Slot::RightHand)
     }
 
+    pub fn is_shin(&self) -> bool {
+        matches!(self.kind.slot, Slot::LeftLowerLeg | Slot::RightLowerLeg)
+    }
+
     pub fn is_trunk(&self) -> bool {
         self.kind.region == Region::Trunk && self.kind.slot != Slot::Head
     }

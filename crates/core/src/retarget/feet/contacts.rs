@@ -49,9 +49,9 @@ pub struct SourceContacts {
 }
 
 impl SourceContacts {
-    /// Whether a hand is in contact with the same ground at each time. `positions` are relative to the ground's height.
-    pub fn of_hand(&self, times: &[f32], positions: &[DVec3], body_height: f64) -> Vec<bool> {
-        // Below the ground, as far as above it: hands that are further down are beside what the feet stand on.
+    /// Whether a hand or knee is in contact with the same ground at each time. `positions` are relative to the ground's height.
+    pub fn of_part(&self, times: &[f32], positions: &[DVec3], body_height: f64) -> Vec<bool> {
+        // Below the ground, as far as above it: what is further down is beside what the feet stand on.
         let relative = positions.iter().zip(&self.ground.travel).map(|(at, travel)| *at - *travel);
         let relative: Vec<DVec3> = relative.map(|at| DVec3 { y: at.y.abs(), ..at }).collect();
         contacts(times, &relative, 0.0, body_height, TREADMILL_SPREAD * self.ground.speed)
@@ -86,7 +86,7 @@ fn foot_contacts(times: &[f32], positions: &[DVec3], body_height: f64, slack: f6
     contacts(times, positions, ground, body_height, slack)
 }
 
-/// Whether a foot or hand is in contact at each time. `slack` is added to the speed that it may have in contact.
+/// Whether a foot, hand or knee is in contact at each time. `slack` is added to the speed that it may have in contact.
 fn contacts(times: &[f32], positions: &[DVec3], ground: f64, body_height: f64, slack: f64) -> Vec<bool> {
     let speed = |at: usize| velocity(times, positions, at).length();
     let max_speed = SPEED.map(|share| share * body_height + slack);

@@ -3,8 +3,10 @@
 use glam::{DQuat, DVec3};
 
 use crate::anim::JointIndex;
+use crate::asset::Slot;
 use crate::retarget::math::{smooth, unit};
 use crate::retarget::pose::WorldPose;
+use crate::retarget::transfer::Transfer;
 use crate::retarget::two_bones::{max_reach, reach_goal};
 
 /// Sine of the bend below which the hinge at rest is blended in.
@@ -12,6 +14,12 @@ const MIN_BEND: f64 = 0.17;
 
 /// A knee bent the wrong way stays so unless planting moves the foot by more than this share of the leg's length.
 const SMALL_MOVE: f64 = 0.02;
+
+/// Hip, knee, ankle and toes of each leg.
+const LEGS: [[Slot; 4]; 2] = [
+    [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
+    [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
+];
 
 /// The target joints of one leg.
 #[derive(Debug, Clone, Copy)]
@@ -33,9 +41,19 @@ pub struct LegTurns {
 }
 
 impl Leg {
+    /// The left and the right leg, and the source's joint for `toes`; `None` unless hip, knee and ankle are mapped.
+    pub fn mapped(transfer: &Transfer) -> [Option<(Self, JointIndex)>; 2] {
+        LEGS.map(|slots| {
+            let [hip, knee, ankle, toes] = slots.map(|slot| transfer.pair(slot));
+            let (hip, knee, ankle) = (hip?, knee?, ankle?);
+            let toes = toes.unwrap_or(ankle);
+            let joints = [hip, knee, ankle, toes].map(|pair| pair.target);
+            Some((Self::new(joints, &transfer.alignment.target), toes.source))
+        })
+    }
+
     /// `joints` are hip, knee, ankle and toes; `rest` faces +Z.
-    pub fn new(joints: [JointIndex; 4], rest: &WorldPose) -> Self {
-        let [hip, knee, ankle, toes] = joints;
+    fn new([hip, knee, ankle, toes]: [JointIndex; 4], rest: &WorldPose) -> Self {
         let thigh = (rest.position(knee) - rest.position(hip)).normalize_or_zero();
         let shin = (rest.position(ankle) - rest.position(knee)).normalize_or_zero();
         let bend = thigh.cross(shin);
@@ -45,7 +63,7 @@ impl Leg {
     }
 
     /// Axis about which the knee bends: across the plane of the leg, unless it is nearly straight or bent the wrong way.
-    fn hinge(&self, pose: &WorldPose, thigh: DVec3, shin: DVec3) -> DVec3 {
+    pub fn hinge(&self, pose: &WorldPose, [thigh, shin]: [DVec3; 2]) -> DVec3 {
         let at_rest = pose.rotation(self.hip) * self.hinge;
         let bend = thigh.normalize_or_zero().cross(shin.normalize_or_zero());
         let across = bend - bend.dot(at_rest).min(0.0) * at_rest;
@@ -78,7 +96,7 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     if by.length() <= 1e-6 * length {
         return unmoved;
     }
-    let hinge = leg.hinge(pose, thigh, shin);
+    let hinge = leg.hinge(pose, [thigh, shin]);
     let certainty = smooth(by.length() / (SMALL_MOVE * length));
     let distance = goal.length().min(max_reach([thigh, shin]));
     let Some([swing, knee_turn]) = reach_goal([thigh, shin], hinge, goal, distance, certainty) else { return unmoved };

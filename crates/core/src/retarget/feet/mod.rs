@@ -12,5 +12,6 @@ mod width;
 
 pub use contacts::{SourceContacts, contacts_of, ranges, source_contacts, source_height};
 pub use height::standing_height;
+pub use leg::{Leg, solve_leg};
 pub use plant::{Planting, planted_channels};
 pub use sole::{Sole, Soles, foot_pairs};

@@ -17,11 +17,10 @@ use super::level::level_feet;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
 use super::sole::Soles;
 use super::width::spreads;
-use crate::anim::{Clip, JointIndex, Keys, Property};
-use crate::asset::Slot;
+use crate::anim::{Clip, JointIndex};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
-use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::pose::{Scratch, WorldPose, moved};
 use crate::retarget::times::{dense_times, near};
 use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
 use crate::retarget::two_bones::limb_rotations;
@@ -108,31 +107,11 @@ pub fn planted_channels(
     let hips = hips.filter(|_| {
         lowered_metres != 0.0 || floats.iter().any(|&by| by != 0.0) || moves.iter().any(|&by| by != DVec3::ZERO)
     });
-    let translation = hips.map(|hips| moved_hips(transfer, stage, hips, &moves, own.clone()));
-    let is_replaced = |joint: JointIndex, property: Property| match property {
-        Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
-        Property::Translation => hips == Some(joint),
-        Property::Scale | Property::MorphWeights => false,
-    };
-    let mut channels = NewChannel::of_clip(clip, resampled, is_replaced);
-    channels.extend(translation);
-    for (joint, keys) in rotations {
-        let keys = keys.into_iter().map(DQuat::as_quat).collect();
-        channels.push(NewChannel::resampled(joint, times[own.clone()].to_vec(), Keys::Rotation(keys)));
-    }
+    let translation =
+        hips.map(|hips| (hips, moved(transfer.target_skeleton, hips, &poses[own.clone()], &moves[own.clone()])));
+    let channels = NewChannel::corrected(clip, resampled, &times[own], translation, rotations);
     let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * source_ground.speed;
     Some((channels, Planting { contacts, ground_metres_per_sec: is_moving.then_some(speed), lowered_metres }))
-}
-
-/// The hips' translation, lowered with the poses and then moved for the feet.
-fn moved_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, moves: &[DVec3], own: Range<usize>) -> NewChannel {
-    let translation = |at: usize| {
-        let pose = &stage.poses[at];
-        let position = pose.position(hips) + moves[at];
-        pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
-    };
-    let translations = own.clone().map(translation).collect();
-    NewChannel::resampled(hips, stage.times[own].to_vec(), Keys::Translation(translations))
 }
 
 /// The clip at the sampled times.
@@ -193,21 +172,9 @@ fn leg_length(transfer: &Transfer, legs: &[LegContacts]) -> f64 {
 
 /// Legs of which hip, knee and ankle are mapped, and how the ground moves below the source.
 fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<LegContacts>, Ground) {
-    let sides = [
-        [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
-        [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
-    ];
-    let mut legs = Vec::new();
-    let mut feet: Vec<JointIndex> = Vec::new();
-    for (slots, sole) in sides.into_iter().zip(&soles.feet) {
-        let [hip, knee, ankle, toes] = slots.map(|slot| transfer.pair(slot));
-        if let (Some(hip), Some(knee), Some(ankle), Some(sole)) = (hip, knee, ankle, sole) {
-            let toes = toes.unwrap_or(ankle);
-            let joints = [hip.target, knee.target, ankle.target, toes.target];
-            legs.push((Leg::new(joints, &transfer.alignment.target), sole.clone()));
-            feet.push(toes.source);
-        }
-    }
+    let legs = Leg::mapped(transfer).into_iter().zip(&soles.feet);
+    let legs = legs.filter_map(|(leg, sole)| Some((leg?, sole.clone()?)));
+    let (legs, feet): (Vec<_>, Vec<_>) = legs.map(|((leg, toes), sole)| ((leg, sole), toes)).unzip();
     let SourceContacts { touching, ground } = contacts_of(transfer, &feet, times);
     let legs = legs.into_iter().zip(touching);
     let legs =

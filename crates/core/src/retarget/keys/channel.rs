@@ -1,6 +1,6 @@
 //! A channel of the retargeted clip before it is built.
 
-use glam::{DVec3, Quat, Vec3};
+use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::resample::Resampled;
 use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
@@ -32,21 +32,35 @@ impl NewChannel {
         Self::resampled(joint, positions.times, Keys::Translation(values))
     }
 
-    /// Copies the channels of a clip that aren't replaced. `resampled` lists the joints whose keys are not the source's own.
-    pub fn of_clip(
+    /// Copies the channels of a clip, with one joint's translation and the rotations of others replaced by keys at the given times.
+    /// `resampled` lists the joints whose keys in `clip` are not the source's own.
+    pub fn corrected(
         clip: &Clip,
         resampled: &[JointIndex],
-        is_replaced: impl Fn(JointIndex, Property) -> bool,
+        times: &[f32],
+        translation: Option<(JointIndex, Vec<Vec3>)>,
+        rotations: Vec<(JointIndex, Vec<DQuat>)>,
     ) -> Vec<Self> {
+        let is_replaced = |joint: JointIndex, property: Property| match property {
+            Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
+            Property::Translation => translation.as_ref().is_some_and(|(other, _)| *other == joint),
+            Property::Scale | Property::MorphWeights => false,
+        };
         let kept = clip.channels().iter().filter(|channel| !is_replaced(channel.joint, channel.keys.property()));
-        let kept = kept.map(|channel| Self {
+        let mut channels: Vec<Self> = Vec::with_capacity(clip.channels().len());
+        channels.extend(kept.map(|channel| Self {
             joint: channel.joint,
             interpolation: channel.interpolation,
             times: clip.timelines()[channel.timeline as usize].clone(),
             keys: channel.keys.clone(),
             resampled: resampled.contains(&channel.joint),
-        });
-        kept.collect()
+        }));
+        let new = |joint, keys| Self::resampled(joint, times.to_vec(), keys);
+        channels.extend(translation.map(|(joint, keys)| new(joint, Keys::Translation(keys))));
+        for (joint, keys) in rotations {
+            channels.push(new(joint, Keys::Rotation(keys.into_iter().map(DQuat::as_quat).collect())));
+        }
+        channels
     }
 
     /// Repeats the last value at a later time.
