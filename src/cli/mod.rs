@@ -207,7 +207,7 @@ struct RetargetOptions {
     /// Foot planting.
     #[arg(long, value_enum)]
     feet: Option<FeetArgument>,
-    /// Contacts of hands with the body and the ground.
+    /// Contacts of hands with the body and the ground, and of knees with the ground.
     #[arg(long, value_enum)]
     contacts: Option<ContactsArgument>,
     /// Translations of joints other than the hips.

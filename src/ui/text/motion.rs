@@ -196,8 +196,8 @@ pub const PLANT_FEET: &str = "Hold feet on the ground";
 /// Shown below it while the editor, not the user, has switched it on.
 pub const PLANTED_AUTOMATICALLY: &str =
     "Switched on automatically: without it, the feet of the borrowed clip would slide, hover or sink in.";
-/// Switch that keeps contacts of hands with the body and the ground.
-pub const KEEP_CONTACTS: &str = "Keep contacts of the hands";
+/// Switch that keeps contacts of hands with the body and the ground, and of knees with the ground.
+pub const KEEP_CONTACTS: &str = "Keep contacts of hands and knees";
 /// Option of several choices: decides by the file.
 pub const AUTOMATIC: &str = "Automatic";
 /// Option: keeps translations, scales or a part of the root motion.

@@ -2,7 +2,7 @@
 //! format.
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
-//! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands, `bake`
+//! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
 //! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts
 //! others over it, and `pins` holds hands and feet. `pose`, `keys`, `math`, `times`, `limit` and `two_bones` are shared.
 //!

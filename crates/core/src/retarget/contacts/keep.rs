@@ -1,5 +1,5 @@
 //! Moves hands to where the source's touch, and arms out of other parts of the body and the ground: how far each wrist moves, smooth
-//! over time, and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as they are.
+//! over time, and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as `knees` leaves them.
 
 use glam::{DQuat, DVec3};
 

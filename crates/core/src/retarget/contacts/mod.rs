@@ -1,5 +1,6 @@
-//! Contacts of the body with itself and of hands and knees with the ground: where the source touches, and whether the target does. Bodies are
-//! approximated by one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the skeleton.
+//! Contacts of the body with itself and of hands and knees with the ground: where the source touches, and whether the target does.
+//! Bodies are approximated by one solid per body part, fitted to the vertices that follow it or, without a mesh, guessed from the
+//! skeleton.
 
 mod arm;
 mod body;

@@ -150,7 +150,7 @@ pub struct TouchFigures {
 }
 
 impl TouchFigures {
-    /// Adds one time. `on_ground` are the distances of hands that rest on the ground from where they should be.
+    /// Adds one time. `on_ground` are the distances of hands and knees that rest on the ground from where they should be.
     pub fn add(
         &mut self,
         bodies: &Bodies,

@@ -74,14 +74,14 @@ pub enum Keep {
     Drop,
 }
 
-/// What happens to contacts of hands with the body and the ground after retargeting.
+/// What happens to contacts of hands with the body and of hands and knees with the ground after retargeting.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Contacts {
     /// Leaves them where the retargeted rotations put them.
     #[default]
     Off,
-    /// Keeps hands where the source's touch its body or rest on the ground, and arms out of both.
+    /// Keeps hands where the source's touch its body or rest on the ground, knees where they rest there, and arms out of both.
     Keep,
 }
 

@@ -51,7 +51,8 @@ pub struct Figures {
     /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
     /// parts are solids fitted to the mesh; `None` without one.
     pub self_penetration_share: Option<f64>,
-    /// Mean distance of the contacts that the source's hands have with its body and the ground from where the target has them.
+    /// Mean distance of the contacts that the source's hands have with its body, and hands and knees with the ground, from where
+    /// the target has them.
     pub contact_error_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
