@@ -118,7 +118,7 @@ fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
         "node_modules/binaryen/bin/wasm-opt",
         "--reorder-functions-by-name",
         "--low-memory-unused",
-        "--one-caller-inline-max-function-size=100",
+        "--one-caller-inline-max-function-size=50",
         "--gufa",
         "-Oz",
         "--gufa",
