@@ -10,7 +10,7 @@ use crate::files::{Item, Role, open_items};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::next_turn;
-use crate::state::{Hidden, ViewerState};
+use crate::state::from_link;
 
 /// A skinned triangle with the two commonest materials: a base colour map alone, and with a normal map.
 const CHARACTER: &[u8] = include_bytes!("rehearsal.gltf");
@@ -29,16 +29,16 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
     next_turn().await;
     let library = open_character().await;
     let Some(character) = library.active() else { return Ok(()) };
-    let mut state = ViewerState::default();
-    state.edits.hidden.materials.insert(Some(1));
+    // The second picture shows the second material, too, which has shaders of its own.
+    let [one_material, both_materials] = ["hidden=m1", ""].map(|link| from_link(link).0);
+    let mut view = &one_material;
     let mut frame = Frame::default();
     for part in RehearsalPart::ALL {
-        evaluate(&library, &state, 1.0, &mut frame);
+        evaluate(&library, view, 1.0, &mut frame);
         next_turn().await;
         with_app(page, |app| app.rehearse(character, &frame, part))?;
         if matches!(part, RehearsalPart::Picture) {
-            // The second picture compiles the second material's shaders.
-            state.edits.hidden = Hidden::default();
+            view = &both_materials;
         }
     }
     Ok(())
