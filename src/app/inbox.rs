@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::editor::{Contents, ExportedFile};
 use crate::library::ModelId;
-use crate::state::{Command, ViewerState};
+use crate::state::ViewerState;
 use crate::ui::Progress;
 
 /// A message to the frame loop.
@@ -30,8 +30,6 @@ pub enum Message {
     OpenFailed(String),
     /// Nothing was opened; the caller reports why.
     OpenFailedSilently,
-    /// Commands to apply, in order.
-    Commands(Vec<Command>),
     /// A request failed; shows the message.
     Failed(String),
     /// Shows a notice.

@@ -196,10 +196,6 @@ impl App {
             Message::Saved(Err(error)) => self.add_error(&error),
             Message::Recorded(saved_name) => self.end_recording(saved_name),
             Message::Validated(model, report) => self.end_validation(model, report),
-            Message::Commands(commands) => {
-                self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
-                commands.into_iter().for_each(|command| self.apply(command));
-            }
             Message::Script(call) => self.script(call),
         }
     }
@@ -267,7 +263,8 @@ impl App {
         })
     }
 
-    pub(super) fn apply(&mut self, command: Command) {
+    /// Applies a command, such as one of the user's.
+    pub fn apply(&mut self, command: Command) {
         self.editor.apply(command);
         self.show_events();
     }

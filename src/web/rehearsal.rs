@@ -29,16 +29,19 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
     next_turn().await;
     let library = open_character().await;
     let Some(character) = library.active() else { return Ok(()) };
+    let frame_of = |link| {
+        let mut frame = Frame::default();
+        evaluate(&library, &from_link(link).0, 1.0, &mut frame);
+        frame
+    };
     // The second picture shows the second material, too, which has shaders of its own.
-    let [one_material, both_materials] = ["hidden=m1", ""].map(|link| from_link(link).0);
-    let mut view = &one_material;
-    let mut frame = Frame::default();
+    let [one_material, both_materials] = ["hidden=m1", ""].map(frame_of);
+    let mut frame = &one_material;
     for part in RehearsalPart::ALL {
-        evaluate(&library, view, 1.0, &mut frame);
         next_turn().await;
-        with_app(page, |app| app.rehearse(character, &frame, part))?;
+        with_app(page, |app| app.rehearse(character, frame, part))?;
         if matches!(part, RehearsalPart::Picture) {
-            view = &both_materials;
+            frame = &both_materials;
         }
     }
     Ok(())

@@ -86,7 +86,8 @@ impl Desk {
     }
 
     pub fn command(&mut self, command: Command) {
-        self.send(Message::Commands(vec![command]));
+        self.harness.state_mut().as_mut().expect("has begun").apply(command);
+        self.run_frames();
     }
 
     pub fn send(&mut self, message: Message) {

@@ -50,13 +50,13 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
 }
 
-/// How many of Node's test files run at once at most: each starts browsers.
-const MAX_FILES: usize = 4;
-
 /// Returns the path of the command line.
 fn cli() -> PathBuf {
     target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX))
 }
+
+/// How many of Node's test files run at once at most: each starts browsers.
+const MAX_FILES: usize = 4;
 
 /// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
 fn node_tests(cli: &str) -> anyhow::Result<()> {
@@ -65,8 +65,8 @@ fn node_tests(cli: &str) -> anyhow::Result<()> {
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
     // Each file drives a browser that renders on the CPU and waits for it half of the time, so two cores have two files to do.
     // A file takes minutes; one that hangs is killed.
-    let concurrency =
-        format!("--test-concurrency={}", thread::available_parallelism().map_or(1, NonZero::get).min(MAX_FILES));
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let concurrency = format!("--test-concurrency={}", cores.min(MAX_FILES));
     let mut arguments = vec!["--test", &concurrency, "--test-timeout=1200000"];
     let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", text(&chromium)?)];
     // Node sees a pipe and would choose the form for programs.

@@ -126,7 +126,7 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
         figure("Max. joint penetration", length(figures.ground_penetration_metres_max), verdicts.ground_penetration),
         group(
             "CONTACTS",
-            "Where the source's hands touch its body, hands and knees rest on the ground, and limbs inside other parts of the body.",
+            "Where the source's hands touch its body, or hands and knees the ground, and limbs inside other parts of the body.",
         ),
         figure("Contact error", length(figures.contact_error_metres_mean), verdicts.contact_error),
         figure("Limbs inside the body", share(figures.self_penetration_share), verdicts.self_penetration),

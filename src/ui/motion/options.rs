@@ -41,7 +41,10 @@ pub(super) fn show(
     if controls::switch(ui, text::KEEP_CONTACTS, kept) {
         out.commands.push(Command::SetContacts(Some(if kept { Contacts::Off } else { Contacts::Keep })));
     }
-    controls::hint(ui, "Hands touch the body and the ground where the motion's do, and arms stay out of both.");
+    controls::hint(
+        ui,
+        "Hands touch the body, and hands and knees the ground, where the motion's do. Arms stay out of both.",
+    );
 
     root_motion(ui, map.root, out);
 

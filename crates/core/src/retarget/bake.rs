@@ -1,6 +1,6 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use super::contacts::{Bodies, Scene, kept_hands, rested_knees};
+use super::contacts::{Bodies, Scene, grounded_knees, kept_hands};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
@@ -76,7 +76,7 @@ fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Resu
         channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
     };
     let scene = Scene::new(transfer, bodies, &planted.clip);
-    let knelt = rebuilt(rested_knees(&scene, &planted.clip, &planted.resampled))?;
+    let knelt = rebuilt(grounded_knees(&scene, &planted.clip, &planted.resampled))?;
     let scene = match &knelt {
         Some(knelt) => scene.playing(&knelt.clip),
         None => scene,

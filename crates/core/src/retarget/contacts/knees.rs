@@ -3,9 +3,9 @@
 
 use glam::{DQuat, DVec3};
 
-use super::keep::{MAX_MOVE, MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC, MIN_MOVE};
 use super::scene::Scene;
 use super::smooth::eased;
+use super::{MAX_MOVE, MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC, MIN_MOVE};
 use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::{Leg, solve_leg};
 use crate::retarget::keys::channel::NewChannel;
@@ -27,7 +27,7 @@ struct Wish {
 
 /// Returns all channels of the clip with its knees on the ground, or `None` if none rest there. `resampled` lists the joints whose
 /// keys in `clip` are not the source's own.
-pub fn rested_knees(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
+pub fn grounded_knees(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
     let Scene { transfer, times, poses, .. } = scene;
     let legs: Vec<(Leg, Vec<Option<Wish>>)> = (0..2).filter_map(|side| wishes(scene, side)).collect();
     if legs.iter().all(|(_, wishes)| wishes.iter().all(Option::is_none)) {

@@ -5,7 +5,7 @@
 mod arm;
 mod body;
 mod ground;
-mod keep;
+mod hands;
 mod knees;
 mod parts;
 mod scene;
@@ -16,7 +16,16 @@ mod touch;
 
 pub use body::{Bodies, BodyMotion};
 pub use ground::Ground;
-pub use keep::kept_hands;
-pub use knees::rested_knees;
+pub use hands::kept_hands;
+pub use knees::grounded_knees;
 pub use scene::Scene;
 pub use touch::TouchFigures;
+
+/// Shares of the body's height: a wrist, a knee or the hips are never moved further than the first, and moves below the second are
+/// none.
+const MAX_MOVE: f64 = 0.11;
+const MIN_MOVE: f64 = 1e-4;
+
+/// How far a bone of an arm or a leg may be turned, and how fast.
+const MAX_TURN_DEGREES: f64 = 50.0;
+const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;

@@ -35,12 +35,7 @@ impl<'a> Scene<'a> {
         self.target = BodyMotion::default();
         self.poses.iter().for_each(|pose| self.target.push(&self.bodies.target, pose));
         let motions = [&self.source, &self.target];
-        self.ground = Ground::new(self.transfer, self.bodies, &self.times, motions, self.scale());
+        self.ground = Ground::new(self.transfer, self.bodies, &self.times, motions, self.transfer.scale());
         self
-    }
-
-    /// Target units per source unit.
-    pub fn scale(&self) -> f64 {
-        self.transfer.hips.map_or(1.0, |hips| hips.scale)
     }
 }

@@ -110,7 +110,7 @@ pub fn planted_channels(
     let translation =
         hips.map(|hips| (hips, moved(transfer.target_skeleton, hips, &poses[own.clone()], &moves[own.clone()])));
     let channels = NewChannel::corrected(clip, resampled, &times[own], translation, rotations);
-    let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * source_ground.speed;
+    let speed = transfer.scale() * source_ground.speed;
     Some((channels, Planting { contacts, ground_metres_per_sec: is_moving.then_some(speed), lowered_metres }))
 }
 
@@ -186,7 +186,7 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
 fn ground_travel(transfer: &Transfer, times: &[f32], source: &Ground) -> Vec<DVec3> {
     let (laws, _) = rotation_laws(transfer);
     let removed = removed_travel(transfer, &laws, times);
-    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let scale = transfer.scale();
     source.travel.iter().enumerate().map(|(at, &travel)| scale * travel - removed.horizontal(at)).collect()
 }
 

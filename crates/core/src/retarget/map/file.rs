@@ -43,7 +43,7 @@ pub struct JointMapFile {
     /// Whether feet are planted.
     #[serde(default)]
     pub feet: Feet,
-    /// Whether contacts of the body with itself are kept.
+    /// Whether contacts of hands and knees are kept.
     #[serde(default, skip_serializing_if = "Contacts::is_off")]
     pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.

@@ -29,7 +29,7 @@ pub struct JointMap {
     pub muted_channels: Vec<MutedChannel>,
     /// Whether feet are planted.
     pub feet: Feet,
-    /// Whether contacts of the body with itself are kept.
+    /// Whether contacts of hands and knees are kept.
     pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,

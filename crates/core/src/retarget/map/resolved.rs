@@ -24,7 +24,7 @@ pub struct ResolvedMap {
     pub muted: Vec<(JointIndex, Property)>,
     /// Whether feet are planted.
     pub feet: Feet,
-    /// Whether contacts of the body with itself are kept.
+    /// Whether contacts of hands and knees are kept.
     pub contacts: Contacts,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,

@@ -268,7 +268,7 @@ fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFi
     let source = bodies.source_motion(transfer, &times);
     let (laws, _) = rotation_laws(transfer);
     let removed = removed_travel(transfer, &laws, &times);
-    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let scale = transfer.scale();
     let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());
     let mut target = BodyMotion::default();
     times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));

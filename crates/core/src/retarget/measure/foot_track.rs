@@ -63,7 +63,7 @@ pub struct FootContacts {
 
 /// `feet` have been sampled at all times, with the travel of the target's hips as the source has it.
 pub fn foot_tracks(transfer: &Transfer, times: &[f32], mut feet: Vec<FootPositions>) -> (FootContacts, Vec<FootTrack>) {
-    let scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+    let scale = transfer.scale();
     let source: Vec<Vec<DVec3>> = feet.iter().map(|foot| foot.source.clone()).collect();
     let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
     let height = source_height(transfer.map, transfer.alignment);

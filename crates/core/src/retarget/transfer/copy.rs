@@ -104,7 +104,7 @@ impl<'a> Conversion<'a> {
         let (source, target) = (transfer.tracks.skeleton, transfer.target_skeleton);
         let source_parent = transfer.alignment.source.parent_rotation(source, pair.source);
         let target_parent = transfer.alignment.target.parent_rotation(target, pair.target);
-        let hips_scale = transfer.hips.map_or(1.0, |hips| hips.scale);
+        let hips_scale = transfer.scale();
         let factor = hips_scale * scale_above(source, &rests.source, pair.source)
             / scale_above(target, &rests.target, pair.target);
         Self {

@@ -51,6 +51,11 @@ impl<'a> Transfer<'a> {
         self.hips.map(|hips| &self.map.pairs[hips.pair])
     }
 
+    /// Target units per source unit; 1 without hips.
+    pub fn scale(&self) -> f64 {
+        self.hips.map_or(1.0, |hips| hips.scale)
+    }
+
     /// The target joint whose translation carries the hips: the hips themselves or, if they hang from a trunk whose root is in
     /// the chest, that root.
     pub fn hips_carrier(&self) -> Option<JointIndex> {

@@ -9,6 +9,7 @@ use super::ground::{Ground, Sunken};
 use super::scene::Scene;
 use super::smooth::eased;
 use super::touch::Touches;
+use super::{MAX_MOVE, MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC, MIN_MOVE};
 use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::ranges;
 use crate::retarget::keys::channel::NewChannel;
@@ -25,19 +26,11 @@ const COMPROMISES: usize = 2;
 /// Weight of a point that is as deep inside as the body is high, against that of a contact.
 const PUSH_WEIGHT: f64 = 10.0;
 
-/// Shares of the body's height: a wrist is never moved further than the first, and moves below the second are none.
-pub const MAX_MOVE: f64 = 0.11;
-pub const MIN_MOVE: f64 = 1e-4;
-
 /// A point that is less deep than this share of the body's height stays.
 const TOLERATED: f64 = 0.002;
 
 /// A point that is deeper than that by this share is pushed out fully.
 const CLEARLY_INSIDE: f64 = 0.003;
-
-/// How far an upper arm or forearm may be turned, and how fast.
-pub const MAX_TURN_DEGREES: f64 = 50.0;
-pub const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
 
 /// One moment of the clip.
 struct Moment {
@@ -81,7 +74,7 @@ struct Solver<'a> {
     moves: [Vec<DVec3>; 2],
 }
 
-/// Returns all channels of the clip with its contacts kept, or `None` if there is nothing to do. `resampled` lists the joints whose
+/// Returns all channels of the clip with its hands where they touch, or `None` if there is nothing to do. `resampled` lists the joints whose
 /// keys in `clip` are not the source's own.
 pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
     let skeleton = scene.transfer.target_skeleton;
@@ -105,7 +98,7 @@ pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option
 
 impl<'a> Solver<'a> {
     fn new(scene: Scene<'a>) -> Self {
-        let scale = scene.scale();
+        let scale = scene.transfer.scale();
         let Scene { transfer, bodies, times, source, poses, target, ground } = scene;
         let (laws, _) = rotation_laws(transfer);
         let removed = removed_travel(transfer, &laws, &times);
