@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu;
 
-use crate::render::COMPRESSED_FORMATS;
+use crate::render::device_descriptor;
+#[cfg(target_arch = "wasm32")]
+use crate::render::next_turn;
 
 /// Called with the message of a fatal graphics error; see [`set_fatal_hook`].
 pub type FatalHook = fn(&str);
@@ -56,24 +58,11 @@ pub(super) fn backend_name(info: &wgpu::AdapterInfo) -> &'static str {
     }
 }
 
-/// Requests WebGL2's limits on every device, so that what works on one works on all; only texture sizes use the adapter's.
-fn configuration(backends: Option<wgpu::Backends>) -> egui_wgpu::WgpuConfiguration {
-    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    if let Some(backends) = backends {
-        setup.instance_descriptor.backends = backends;
-    }
-    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
-        label: Some("gaitway"),
-        required_features: adapter.features() & COMPRESSED_FORMATS,
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
-        ..Default::default()
-    });
-    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
-}
-
 /// Returns the options of the native window.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn native_options() -> eframe::NativeOptions {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(device_descriptor);
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Gaitway")
@@ -81,14 +70,50 @@ pub fn native_options() -> eframe::NativeOptions {
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([340.0, 420.0])
             .with_drag_and_drop(true),
-        wgpu_options: configuration(None),
+        wgpu_options: configuration(setup.into()),
         ..Default::default()
     }
 }
 
-/// Returns the options for the page's canvas. They name both back ends; the program has one of them.
+fn configuration(wgpu_setup: egui_wgpu::WgpuSetup) -> egui_wgpu::WgpuConfiguration {
+    egui_wgpu::WgpuConfiguration { wgpu_setup, ..Default::default() }
+}
+
+/// A browser's display needs no handle, but wgpu asks for it.
 #[cfg(target_arch = "wasm32")]
-pub fn web_options() -> eframe::WebOptions {
-    let backends = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
-    eframe::WebOptions { wgpu_options: configuration(Some(backends)), ..Default::default() }
+#[derive(Clone, Debug)]
+struct WebDisplay;
+
+#[cfg(target_arch = "wasm32")]
+impl wgpu::rwh::HasDisplayHandle for WebDisplay {
+    fn display_handle(&self) -> Result<wgpu::rwh::DisplayHandle<'_>, wgpu::rwh::HandleError> {
+        Ok(wgpu::rwh::DisplayHandle::web())
+    }
+}
+
+/// Returns the options for the page's canvas, with a device for it. WebGL2 has no asynchronous calls: eframe would block the page
+/// while it requests the context, the adapter and the device, and compiles all that this calls. So we do it, in steps.
+///
+/// # Errors
+/// If there is no adapter or device for the canvas.
+#[cfg(target_arch = "wasm32")]
+pub async fn web_options(canvas: &web_sys::HtmlCanvasElement) -> Result<eframe::WebOptions, String> {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::from_display_handle(WebDisplay);
+    // Both back ends; the program has one of them.
+    setup.instance_descriptor.backends = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
+    let power_preference = setup.power_preference;
+    let instance = egui_wgpu::WgpuSetup::from(setup).new_instance().await;
+    // WebGL2's adapter is that of a canvas. A canvas has one context: eframe will get the same one.
+    let surface =
+        instance.create_surface(wgpu::SurfaceTarget::Canvas(canvas.clone())).map_err(|error| error.to_string())?;
+    next_turn().await;
+    let request =
+        wgpu::RequestAdapterOptions { power_preference, compatible_surface: Some(&surface), ..Default::default() };
+    let adapter = instance.request_adapter(&request).await.map_err(|error| error.to_string())?;
+    next_turn().await;
+    let (device, queue) =
+        adapter.request_device(&device_descriptor(&adapter)).await.map_err(|error| error.to_string())?;
+    next_turn().await;
+    let existing = egui_wgpu::WgpuSetupExisting { instance, adapter, device, queue };
+    Ok(eframe::WebOptions { wgpu_options: configuration(existing.into()), ..Default::default() })
 }

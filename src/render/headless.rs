@@ -16,7 +16,7 @@ pub enum HeadlessError {
     NoDevice(#[from] wgpu::RequestDeviceError),
 }
 
-/// Creates a device without a window. It has WebGL2's limits, so that what works here works everywhere.
+/// Creates a device without a window.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo), HeadlessError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -26,13 +26,18 @@ pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo
         power_preference: wgpu::PowerPreference::HighPerformance,
         ..Default::default()
     }))?;
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+    let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))?;
+    Ok((device, queue, adapter.get_info()))
+}
+
+/// Requests WebGL2's limits of every device, so that what works on one works on all; only texture sizes use the adapter's.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
         label: Some("gaitway"),
-        required_features: adapter.features() & super::COMPRESSED_FORMATS,
+        required_features: adapter.features() & super::texture::COMPRESSED_FORMATS,
         required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
         ..Default::default()
-    }))?;
-    Ok((device, queue, adapter.get_info()))
+    }
 }
 
 /// Reads an Rgba8Unorm texture with `COPY_SRC` usage, such as [`super::Renderer::output`], into RGBA rows from the top.

@@ -35,9 +35,9 @@ pub use headless::finished;
 pub use headless::headless_device;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use headless::next_turn;
-pub use headless::{HeadlessError, read_pixels};
+pub use headless::{HeadlessError, device_descriptor, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
-pub use texture::{COMPRESSED_FORMATS, texture_formats};
+pub use texture::texture_formats;
 
 /// Submits the work recorded so far. A browser's graphics process serves other clients only between submissions, so each
 /// expensive step gets a submission of its own.

@@ -12,7 +12,7 @@ use crate::library::ImageData;
 use crate::mesh::{Filter, MipFilter, Sampler, Wrap};
 
 /// The compressed formats that are used where a device has them.
-pub const COMPRESSED_FORMATS: wgpu::Features = wgpu::Features::TEXTURE_COMPRESSION_BC
+pub(super) const COMPRESSED_FORMATS: wgpu::Features = wgpu::Features::TEXTURE_COMPRESSION_BC
     .union(wgpu::Features::TEXTURE_COMPRESSION_ETC2)
     .union(wgpu::Features::TEXTURE_COMPRESSION_ASTC);
 

@@ -57,9 +57,8 @@ pub fn start() {
     std::panic::set_hook(Box::new(move |info| {
         before(info);
         let message = info.payload_as_str().unwrap_or("unknown error");
-        // The page is compiled without lines and columns; see `xtask/src/page.rs`.
-        let place = info.location().map(|place| format!(" ({})", place.file())).unwrap_or_default();
-        shell::stopped(&format!("An error inside Gaitway: {message}{place}"));
+        // The page is compiled without the places of panics (`xtask/src/page.rs`). The trap that follows is logged with its stack.
+        shell::stopped(&format!("An error inside Gaitway: {message}"));
     }));
     set_fatal_hook(shell::stopped);
 }
@@ -134,7 +133,8 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         context.add_plugin(Mirror::new(shell::mirror));
         Ok(Box::new(App::new(cc, host, |inbox| *start.borrow_mut() = Some((inbox, context)))?))
     });
-    runner.start(canvas, web_options(), create).await.map_err(|error| text_of(&error))?;
+    let options = web_options(&canvas).await?;
+    runner.start(canvas, options, create).await.map_err(|error| text_of(&error))?;
     if IS_DESTROYED.get() {
         runner.destroy();
         return Err("Gaitway was stopped".to_owned());

@@ -18,8 +18,8 @@ const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-/// Compiles the standard library with the program, for minimum size, and keeps only the file of each place that can panic:
-/// there are thousands. ARCHITECTURE.md says what that saves.
+/// Compiles the standard library with the program, for minimum size, and keeps nothing of the places that can panic: there are
+/// thousands. ARCHITECTURE.md says what that saves.
 const FOR_THE_PAGE: [&str; 9] = [
     "--locked",
     "--target",
@@ -29,7 +29,7 @@ const FOR_THE_PAGE: [&str; 9] = [
     "-Zbuild-std=std,panic_abort",
     "-Zbuild-std-features=optimize_for_size",
     "--config",
-    "target.wasm32-unknown-unknown.rustflags=['-Zlocation-detail=file']",
+    "target.wasm32-unknown-unknown.rustflags=['-Zlocation-detail=none']",
 ];
 
 /// Makes a released Rust accept unstable options. They can change with every version; `rust-toolchain.toml` pins ours.
