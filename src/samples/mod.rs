@@ -1,7 +1,10 @@
 //! The sample characters. Native builds embed the files of `assets/samples`; the page fetches them from its own folder.
 //! The walker is generated in code, so there is always something to show.
 
+mod rehearsal;
 mod walker;
+
+pub use rehearsal::rehearsal_files;
 
 use crate::library::Model;
 

@@ -1,14 +1,17 @@
 //! The character that the page rehearses with: a failure to open it would go unnoticed.
 
 use gaitway::formats::{FileSet, load};
+use gaitway::samples::rehearsal_files;
 
 #[test]
 fn the_rehearsals_character_has_what_most_characters_have() {
     let mut files = FileSet::default();
-    files.insert("rehearsal.gltf", include_bytes!("../../src/web/rehearsal.gltf").to_vec());
+    rehearsal_files().into_iter().for_each(|(name, bytes)| files.insert(name, bytes));
     let asset = load(&files).unwrap();
     assert!(asset.warnings.is_empty(), "{:?}", asset.warnings);
     assert_eq!(asset.clips.len(), 1);
+    let geometry = &asset.meshes[0].primitives[1];
+    assert_eq!((geometry.positions.len(), geometry.file_vertices, geometry.tangents.len()), (1024, 1024, 1024));
     assert_eq!(asset.instances.iter().filter(|instance| instance.skin.is_some()).count(), 1);
     let maps = |index: usize| {
         let material = &asset.materials[index];
