@@ -16,7 +16,6 @@ use crate::retarget::transfer::Transfer;
 /// Points on each part of a limb: heights along its axis and directions about it.
 const RINGS: usize = 4;
 const SECTORS: usize = 6;
-const SECTOR: f64 = TAU / SECTORS as f64;
 pub const POINTS: usize = RINGS * SECTORS;
 
 /// Joints of the arms, as in [`Region::arm`].
@@ -43,6 +42,8 @@ pub struct Body {
     pub has_mesh: bool,
     /// From the lowest to the highest mapped joint, in the body's own unit.
     pub height: f64,
+    /// How far kneecaps are in front of their joints: the mean of both, since a solid alone is off by more than knees differ.
+    pub knee_radius: f64,
     pub soles: Soles,
 }
 
@@ -69,10 +70,11 @@ impl Body {
         position + turn * self.solids[part].surface(place)
     }
 
-    /// How high the lowest point of a knee is, around the beginning of its shin.
+    /// How high the lowest point of a knee is: of a disc across the beginning of its shin.
     pub fn knee(&self, shin: usize, frames: &Frames) -> f64 {
-        let around = (0..SECTORS).map(|sector| Place { share: 0.0, angle: SECTOR * sector as f64 });
-        around.map(|place| self.surface(shin, place, frames).y).fold(f64::INFINITY, f64::min)
+        let (position, turn) = frames[shin];
+        let steepness = (turn * self.solids[shin].axis).y;
+        position.y - self.knee_radius * (1.0 - steepness * steepness).max(0.0).sqrt()
     }
 
     /// The direction away from a part's axis.
@@ -260,5 +262,5 @@ impl Bodies {
 /// Where a point of a limb is on the surface of its part.
 pub fn place_of(point: usize) -> Place {
     let share = ((point / SECTORS) as f64 + 0.5) / RINGS as f64;
-    Place { share, angle: SECTOR * (point % SECTORS) as f64 }
+    Place { share, angle: TAU * (point % SECTORS) as f64 / SECTORS as f64 }
 }

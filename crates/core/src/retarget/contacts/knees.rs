@@ -11,7 +11,7 @@ use crate::retarget::feet::{Leg, solve_leg};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
 use crate::retarget::map::Feet;
-use crate::retarget::math::slerp;
+use crate::retarget::math::{HORIZONTAL, slerp, smooth};
 use crate::retarget::pose::{WorldPose, moved};
 use crate::retarget::two_bones::limb_rotations;
 
@@ -92,9 +92,15 @@ fn wishes(scene: &Scene, side: usize) -> Option<(Leg, Vec<Option<Wish>>)> {
 fn hips_wish(legs: &[(Leg, Vec<Option<Wish>>)], pose: &WorldPose, at: usize) -> Option<f64> {
     let (mut sum, mut shares) = (0.0, 0.0);
     for (leg, wishes) in legs {
-        let Some(Wish { knee, .. }) = wishes[at] else { continue };
-        let share = (pose.position(leg.knee) - pose.position(leg.hip)).normalize_or_zero().y.powi(2);
-        sum += share * share * knee;
+        let Some(Wish { knee: up, ankle: ankle_up }) = wishes[at] else { continue };
+        let [hip, knee, ankle] = [leg.hip, leg.knee, leg.ankle].map(|joint| pose.position(joint));
+        let (thigh, shin) = (knee - hip, ankle - knee);
+        // The shin tilts about the ankle, which shifts the knee to the side: then the thigh is less or more upright.
+        let tilted = tilt(shin, leg.hinge(pose, [thigh, shin]), ankle_up - up) * shin;
+        let sideways = ((thigh + shin - tilted) * HORIZONTAL).length_squared();
+        let by = up + thigh.y + (thigh.length_squared() - sideways).max(0.0).sqrt();
+        let share = smooth(2.0 * thigh.normalize_or_zero().y.powi(2));
+        sum += share * share * by;
         shares += share;
     }
     (shares > 0.0).then(|| sum / shares)

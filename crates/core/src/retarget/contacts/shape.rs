@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::body::{Body, place_of};
 use super::parts::Part;
-use super::solid::Solid;
+use super::solid::{Place, Solid};
 use crate::anim::{JointIndex, Skeleton};
 use crate::asset::{Asset, Humanoid, MeshInstance};
 use crate::mesh::{Geometry, Skin};
@@ -21,6 +21,9 @@ const MAX_VERTICES: usize = 6000;
 
 /// What hangs on a hand and isn't a finger is held if it reaches beyond the hand by this factor.
 const HELD: f64 = 1.25;
+
+/// Angles about a shin at which a knee is measured, from straight ahead.
+const KNEE: [f64; 3] = [-0.5, 0.0, 0.5];
 
 /// What the body of one side is made from.
 pub struct Side<'a> {
@@ -64,6 +67,10 @@ impl Side<'_> {
             body.solids.push(solid);
             body.rest.push(turn);
         }
+        let shins = parts.iter().zip(&body.solids).filter(|(part, _)| part.is_shin());
+        let ahead = shins.map(|(_, solid)| KNEE.map(|angle| solid.radius(Place { share: 0.0, angle })));
+        let ahead: Vec<f64> = ahead.flatten().collect();
+        body.knee_radius = ahead.iter().sum::<f64>() / ahead.len().max(1) as f64;
         body
     }
 

@@ -20,7 +20,7 @@ const END: f64 = 0.15;
 /// A solid around an axis through the origin, which is its joint.
 #[derive(Debug)]
 pub struct Solid {
-    axis: DVec3,
+    pub axis: DVec3,
     front: DVec3,
     side: DVec3,
     /// Where it begins and ends along the axis.
@@ -93,7 +93,7 @@ impl Solid {
         ((point.dot(self.axis) - self.from) / (self.to - self.from), y.atan2(x), x.hypot(y))
     }
 
-    fn radius(&self, place: Place) -> f64 {
+    pub fn radius(&self, place: Place) -> f64 {
         let ring = (place.share * RINGS as f64 - 0.5).clamp(0.0, (RINGS - 1) as f64);
         let sector = ((place.angle / TAU).rem_euclid(1.0) * SECTORS as f64 - 0.5).rem_euclid(SECTORS as f64);
         let (lower, left) = (ring as usize, sector as usize % SECTORS);
