@@ -3,6 +3,7 @@
 mod error;
 mod humanoid;
 mod panorama;
+mod reference_pose;
 mod scene_joints;
 mod warning;
 

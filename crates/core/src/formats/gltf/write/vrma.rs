@@ -2,8 +2,8 @@
 //! the position of the hips, and the weights of expressions.
 //!
 //! Players transfer each bone's rotation relative to this T-pose, in the axes of the model. Models that declare a humanoid rest
-//! in it (VRM 0.x faces −Z). For others it is derived from their rest pose by straightening arms and legs. Bones in the file
-//! have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
+//! in it (VRM 0.x faces −Z). For others it is derived from their reference pose by straightening arms and legs; feet keep their
+//! pitch. Bones in the file have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
 
 use std::collections::BTreeMap;
 
@@ -99,11 +99,11 @@ fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<B
     let skeleton = &asset.skeleton;
     slots.joint(Slot::Hips)?;
     let file_from_model = DQuat::from_rotation_y(-f64::from(facing_radians(asset, forward)));
-    let mut rest = Vec::new();
-    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut rest);
-    let at_rest = |joint: JointIndex| file_from_model * rest[joint.get()].translation.as_dvec3();
+    let mut world = Vec::new();
+    model_from_joint(skeleton, &asset.reference_pose(), Affine3A::IDENTITY, &mut world);
+    let position = |joint: JointIndex| file_from_model * world[joint.get()].translation.as_dvec3();
     let mut bones: Vec<Bone> = Vec::new();
-    // Rotation of each bone from its rest to the T-pose.
+    // Rotation of each bone from the reference pose to the T-pose.
     let mut straightened: Vec<DQuat> = Vec::new();
     let written = slots.0.iter().filter(|(slot, _)| !matches!(slot, Slot::LeftEye | Slot::RightEye));
     let mut written: Vec<(Slot, JointIndex)> = written.map(|(&slot, &joint)| (slot, joint)).collect();
@@ -116,20 +116,23 @@ fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<B
             continue;
         }
         let turned = parent.map_or(DQuat::IDENTITY, |parent| straightened[parent]);
-        let position = match parent {
-            Some(parent) => bones[parent].position + turned * (at_rest(joint) - at_rest(bones[parent].joint)),
-            None => at_rest(joint),
+        let at = match parent {
+            Some(parent) => bones[parent].position + turned * (position(joint) - position(bones[parent].joint)),
+            None => position(joint),
         };
         let swing = straight(slot).filter(|_| asset.humanoid.is_none()).and_then(|(end, direction)| {
-            let bone = turned * (at_rest(slots.joint(end)?) - at_rest(joint));
+            let bone = turned * (position(slots.joint(end)?) - position(joint));
             Some(DQuat::from_rotation_arc(bone.try_normalize()?, direction))
         });
-        let swung = swing.unwrap_or(DQuat::IDENTITY) * turned;
-        let rotation = rest[joint.get()].to_scale_rotation_translation().1.as_dquat();
+        let swung = match slot {
+            Slot::LeftFoot | Slot::RightFoot => DQuat::IDENTITY,
+            _ => swing.unwrap_or(DQuat::IDENTITY) * turned,
+        };
+        let rotation = world[joint.get()].to_scale_rotation_translation().1.as_dquat();
         // A bone that is scaled to 0 has no rotation.
         let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
         let reference = (swung * file_from_model * rotation).normalize();
-        bones.push(Bone { slot, joint, parent, position, reference, file_from_model });
+        bones.push(Bone { slot, joint, parent, position: at, reference, file_from_model });
         straightened.push(swung);
     }
     Some(bones)
