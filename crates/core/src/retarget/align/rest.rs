@@ -90,7 +90,9 @@ pub fn source_rest(input: RestInput) -> SourceRest {
     let is_standing = stance.is_some_and(|stance| stance.confidence() >= MIN_CONFIDENCE);
     let target = Resting { skeleton: input.target, locals: input.target_rest };
     let own = OwnRest { resting: Resting { skeleton, locals: &locals }, is_standing };
-    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared_rest(target, own, clip, map) {
+    // Rotations of a declared humanoid are relative to its own rest, whatever the names of its bones.
+    let shared = if source.humanoid.is_none() { shared_rest(target, own, clip, map) } else { None };
+    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared {
         return SourceRest {
             unmoved,
             target_from_source: Some(target_from_source),

@@ -97,7 +97,7 @@ impl Bone {
 /// Returns the bones from the hips outwards; `None` without hips. Eyes are left out: the gaze animates them.
 fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<Bone>> {
     let skeleton = &asset.skeleton;
-    slots.joint(Slot::Hips)?;
+    let hips = slots.joint(Slot::Hips)?;
     let file_from_model = DQuat::from_rotation_y(-f64::from(facing_radians(asset, forward)));
     let mut world = Vec::new();
     model_from_joint(skeleton, &asset.reference_pose(), Affine3A::IDENTITY, &mut world);
@@ -107,11 +107,13 @@ fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<B
     let mut straightened: Vec<DQuat> = Vec::new();
     let written = slots.0.iter().filter(|(slot, _)| !matches!(slot, Slot::LeftEye | Slot::RightEye));
     let mut written: Vec<(Slot, JointIndex)> = written.map(|(&slot, &joint)| (slot, joint)).collect();
-    written.sort_by_key(|&(_, joint)| joint);
+    let is_below_hips = |joint| chain(skeleton, joint).any(|above| above == hips);
+    written.sort_by_key(|&(_, joint)| (!is_below_hips(joint), joint));
     written.dedup_by_key(|&mut (_, joint)| joint);
     for (slot, joint) in written {
-        let mut above = std::iter::successors(skeleton.parent(joint), |&parent| skeleton.parent(parent));
-        let parent = above.find_map(|joint| bones.iter().position(|bone| bone.joint == joint));
+        let bone_of = |joint: JointIndex| bones.iter().position(|bone| bone.joint == joint);
+        let above = chain(skeleton, joint).skip(1).find_map(bone_of);
+        let parent = above.or_else(|| bone_of(slots.joint(limb_of(slot)?)?));
         if parent.is_none() && slot != Slot::Hips {
             continue;
         }
@@ -148,6 +150,19 @@ fn facing_radians(asset: &Asset, forward: Option<Vec3>) -> f32 {
     if (angle - axis).abs() <= FACING_TOLERANCE_RADIANS { axis } else { angle }
 }
 
+/// The joint and its ancestors.
+fn chain(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> {
+    std::iter::successors(Some(joint), |&joint| skeleton.parent(joint))
+}
+
+/// Returns the bone that a foot or hand hangs on, also where the model's is beside its limb, left over from inverse kinematics.
+fn limb_of(slot: Slot) -> Option<Slot> {
+    use Slot::*;
+    [(LeftFoot, LeftLowerLeg), (RightFoot, RightLowerLeg), (LeftHand, LeftLowerArm), (RightHand, RightLowerArm)]
+        .into_iter()
+        .find_map(|(end, limb)| (end == slot).then_some(limb))
+}
+
 /// Returns the end of a limb's bone, and the bone's direction in a T-pose that faces +Z.
 fn straight(slot: Slot) -> Option<(Slot, DVec3)> {
     use Slot::*;
@@ -171,11 +186,17 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Returns the joints from the bone up to its parent bone, which is left out.
+    /// Returns the joints from the bone up to its parent bone, which is left out, or to the root if the parent bone is beside it.
     fn path(&self, bone: &Bone, bones: &[Bone]) -> Vec<JointIndex> {
         let end = bone.parent.map(|parent| bones[parent].joint);
-        let up = std::iter::successors(Some(bone.joint), |&joint| self.skeleton.parent(joint));
-        up.take_while(|&joint| Some(joint) != end).collect()
+        chain(self.skeleton, bone.joint).take_while(|&joint| Some(joint) != end).collect()
+    }
+
+    /// Returns the joints from the parent bone up to the root if the bone is beside it, otherwise none.
+    fn path_beside(&self, bone: &Bone, bones: &[Bone]) -> Vec<JointIndex> {
+        let parent = bone.parent.map(|parent| bones[parent].joint);
+        let beside = parent.filter(|&parent| chain(self.skeleton, bone.joint).all(|joint| joint != parent));
+        beside.map_or(Vec::new(), |parent| chain(self.skeleton, parent).collect())
     }
 
     /// Returns the channel in effect: the last one.
@@ -189,20 +210,19 @@ impl Source<'_> {
     }
 
     fn rotations(&self, bone: &Bone, bones: &[Bone]) -> Option<NewKeys> {
-        let path = self.path(bone, bones);
+        let (path, beside) = (self.path(bone, bones), self.path_beside(bone, bones));
         let before = bone.parent.map_or(bone.file_from_model, |parent| bones[parent].reference);
         let after = bone.reference.inverse();
-        let moved: Vec<&Channel> = path.iter().filter_map(|&joint| self.channel(joint, Property::Rotation)).collect();
-        let at_rest = |joints: &[JointIndex]| {
-            joints.iter().fold(DQuat::IDENTITY, |below, &joint| rest_rotation(self.skeleton, joint) * below)
-        };
+        let joints = path.iter().chain(&beside);
+        let moved: Vec<&Channel> = joints.filter_map(|&joint| self.channel(joint, Property::Rotation)).collect();
+        let at_rest = |joints: &[JointIndex]| turn_of(self.skeleton.rest(), joints);
         match moved[..] {
             [] => {
-                let turn = (before * at_rest(&path) * after).as_quat();
+                let turn = (before * at_rest(&beside).inverse() * at_rest(&path) * after).as_quat();
                 let is_rest = turn.angle_between(Quat::IDENTITY) < 1e-5;
                 (!is_rest).then(|| (Interpolation::Step, vec![0.0], Keys::Rotation(vec![turn.normalize()])))
             }
-            [channel] => {
+            [channel] if beside.is_empty() => {
                 let at = path.iter().position(|&joint| joint == channel.joint)?;
                 let (before, after) = (before * at_rest(&path[at + 1..]), at_rest(&path[..at]) * after);
                 let Keys::Rotation(keys) = &channel.keys else { return None };
@@ -214,9 +234,7 @@ impl Source<'_> {
                 let times = self.resampled_times(moved.into_iter());
                 let mut last: Option<Quat> = None;
                 let turned = self.sample(&times, |pose| {
-                    let local = path
-                        .iter()
-                        .fold(DQuat::IDENTITY, |below, &joint| pose.local(joint).rotation.as_dquat() * below);
+                    let local = turn_of(pose, &beside).inverse() * turn_of(pose, &path);
                     let turn = (before * local * after).normalize().as_quat();
                     let turn = if last.is_some_and(|last| last.dot(turn) < 0.0) { -turn } else { turn };
                     last = Some(turn);
@@ -290,8 +308,10 @@ impl Source<'_> {
     }
 }
 
-fn rest_rotation(skeleton: &Skeleton, joint: JointIndex) -> DQuat {
-    skeleton.rest().local(joint).rotation.as_dquat().normalize()
+/// Product of the joints' rotations, the topmost of which is the last.
+fn turn_of(pose: &Pose, joints: &[JointIndex]) -> DQuat {
+    let rotation = |&joint: &JointIndex| pose.local(joint).rotation.as_dquat().normalize();
+    joints.iter().map(rotation).fold(DQuat::IDENTITY, |below, above| above * below)
 }
 
 /// Returns the name of the node that animates a property; `None` if VRM animations can't animate it.
