@@ -53,7 +53,7 @@ pub fn write_clip(
         ClipFormat::Glb => write_motion(&model.asset, skeleton, &[clip]),
         ClipFormat::Bvh => {
             let joints: Vec<_> = skeleton.joints().filter(|&joint| model.rig().is_real(joint)).collect();
-            write_bvh(skeleton, &joints, clip, frames_per_sec)
+            write_bvh(&model.asset, skeleton, &joints, clip, frames_per_sec)
         }
         ClipFormat::Vrma => write_vrma(&model.asset, model.body().slots, model.forward(), clip),
     }

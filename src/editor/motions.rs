@@ -212,9 +212,22 @@ impl Editor {
         }
     }
 
-    /// Returns a sentence about the retargeted clip that goes on playing on a newly opened model, whose own clips the user may
-    /// expect. `subject` is the model.
-    pub(super) fn about_continued_clip(&self, subject: &str) -> Option<String> {
+    /// Plays the clip that the newly opened model's file was written for, which may have been retargeted from a loaded motion.
+    /// Returns a sentence about it; `None` without such a clip. `subject` is the model.
+    pub(super) fn choose_added(&mut self, subject: &str) -> Option<String> {
+        let model = self.library.active()?;
+        let clip = model.asset.added_clip?;
+        let sentence =
+            format!("{subject} plays the clip “{}”, which Gaitway added to its file.", model.clip_titles()[clip]);
+        let choice = choice_of_clip(model, clip);
+        self.apply(Command::SetClip(choice));
+        Some(sentence)
+    }
+
+    /// Goes on playing this retargeted clip on a newly opened model, whose own clips the user may expect. Returns a sentence about
+    /// that. `subject` is the model.
+    pub(super) fn continue_retargeted(&mut self, playing: Option<ClipIdentity>, subject: &str) -> Option<String> {
+        self.choose_retargeted(playing);
         let (model, clip) = (self.library.active()?, self.retargeted_clip()?);
         let motion = self.library.motions().iter().find(|motion| clip.is_of(motion))?;
         let own = if model.asset.clips.is_empty() { "" } else { "; its own clips are in the clip list" };

@@ -170,7 +170,7 @@ impl Editor {
         self.events.push(Event::ModelOpened);
         let about_motions = if keeps_motions {
             self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
-            self.carry_motions_over(playing, motions, map)
+            self.carry_motions_over(playing, motions, map, is_by_hand && !keeps_view)
         } else {
             self.library.set_motions(motions);
             match view.clone() {
@@ -218,13 +218,15 @@ impl Editor {
         old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
     }
 
-    /// Keeps the loaded motions that fit the new model and adds the new ones. Plays the first new clip, otherwise the one that
-    /// was playing. Returns the notice about added and dropped motions.
+    /// Keeps the loaded motions that fit the new model and adds the new ones. Plays the first new clip, otherwise the one that the
+    /// model was written for, if `plays_added`, otherwise the one that was playing. Returns the notice about added and dropped
+    /// motions.
     fn carry_motions_over(
         &mut self,
         playing: Option<ClipIdentity>,
         new: Vec<Motion>,
         mut map: Option<MotionMap>,
+        plays_added: bool,
     ) -> Option<String> {
         let has_map_for_loaded = new.is_empty() && map.is_some();
         if has_map_for_loaded {
@@ -236,8 +238,8 @@ impl Editor {
         }
         let dropped = self.drop_incompatible_motions();
         let about_clip = if new.is_empty() {
-            self.choose_retargeted(playing);
-            self.about_continued_clip("It")
+            let added = plays_added.then(|| self.choose_added("It")).flatten();
+            added.or_else(|| self.continue_retargeted(playing, "It"))
         } else {
             let problems = self.add_motions(new.clone(), map);
             self.report(problems);
@@ -391,7 +393,7 @@ impl Editor {
     }
 
     /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted
-    /// to it. A model that was never active plays the retargeted clip that is active.
+    /// to it. A model that was never active plays the clip that it was written for, otherwise the retargeted clip that is active.
     ///
     /// # Errors
     /// The message for the user if it cannot be shown; nothing changes then.
@@ -423,9 +425,8 @@ impl Editor {
         let mut about_clip = None;
         match playing {
             playing if is_first_time => {
-                self.choose_retargeted(playing);
                 let name = self.library.active().map(|model| short_name(&model.source)).unwrap_or_default();
-                about_clip = self.about_continued_clip(&name);
+                about_clip = self.choose_added(&name).or_else(|| self.continue_retargeted(playing, &name));
             }
             Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
             _ => {}

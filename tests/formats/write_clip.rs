@@ -70,7 +70,7 @@ fn a_bvh_has_every_written_joint_where_the_clip_has_it() {
     let (asset, joints) = crooked();
     let seconds: Vec<f32> = (0..41).map(|frame| frame as f32 / 40.0).collect();
     let clip = moving(&asset, &seconds);
-    let written = read_bvh(write_bvh(&asset.skeleton, &joints, &clip, 30.0).expect("is written"));
+    let written = read_bvh(write_bvh(&asset, &asset.skeleton, &joints, &clip, 30.0).expect("is written"));
     let names: Vec<&str> = written.skeleton.joints().map(|joint| written.skeleton.name(joint)).collect();
     assert_eq!(names, ["hips", "a_bone", "a_bone_2", "joint_5"]);
     let again = &written.clips[0];
@@ -82,7 +82,8 @@ fn a_bvh_has_every_written_joint_where_the_clip_has_it() {
             assert!(off < 2e-5, "{} at {secs}: {} instead of {}", names[place], found[place], expected[joint.get()]);
         }
     }
-    let text = String::from_utf8(write_bvh(&asset.skeleton, &joints, &clip, 30.0).expect("is written")).expect("UTF-8");
+    let text = String::from_utf8(write_bvh(&asset, &asset.skeleton, &joints, &clip, 30.0).expect("is written"))
+        .expect("UTF-8");
     assert_eq!(text.matches("CHANNELS 6").count(), 3, "the root, what is moved, and what hangs on a joint in between");
 }
 
@@ -96,7 +97,7 @@ fn angles_of_a_bvh_are_continuous() {
     builder
         .channel(JointIndex(0), Interpolation::Linear, &seconds, Keys::Rotation(turns.collect()))
         .expect("a channel");
-    let bytes = write_bvh(&asset.skeleton, &[JointIndex(0)], &builder.build(), 30.0).expect("is written");
+    let bytes = write_bvh(&asset, &asset.skeleton, &[JointIndex(0)], &builder.build(), 30.0).expect("is written");
     let text = String::from_utf8(bytes).expect("UTF-8");
     let frames = text.lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1);
     let angles: Vec<Vec<f32>> =
@@ -114,13 +115,13 @@ fn angles_of_a_bvh_are_continuous() {
 fn uneven_keys_are_sampled_at_the_rate_given() {
     let (asset, joints) = crooked();
     let clip = moving(&asset, &[0.0, 0.03, 0.5, 0.52]);
-    let written = read_bvh(write_bvh(&asset.skeleton, &joints, &clip, 50.0).expect("is written"));
+    let written = read_bvh(write_bvh(&asset, &asset.skeleton, &joints, &clip, 50.0).expect("is written"));
     assert_eq!(written.clips[0].timelines()[0].len(), 27);
     assert!((written.clips[0].duration_secs() - 0.52).abs() < 1e-6);
     let still = ClipBuilder::new("still", &asset.skeleton).build();
-    let written = read_bvh(write_bvh(&asset.skeleton, &joints, &still, 50.0).expect("is written"));
+    let written = read_bvh(write_bvh(&asset, &asset.skeleton, &joints, &still, 50.0).expect("is written"));
     assert_eq!(written.clips[0].timelines()[0].len(), 1, "one frame");
-    let error = write_bvh(&asset.skeleton, &[], &clip, 30.0).expect_err("no joints");
+    let error = write_bvh(&asset, &asset.skeleton, &[], &clip, 30.0).expect_err("no joints");
     assert!(matches!(error, WriteError::EmptyClip { .. }), "{error}");
 }
 
@@ -130,7 +131,7 @@ fn a_joint_scaled_to_nothing_is_written_without_rotation() {
     let mut builder = ClipBuilder::new("hidden", &asset.skeleton);
     let sizes = Keys::Scale(vec![Vec3::ONE, Vec3::ZERO]);
     builder.channel(JointIndex(4), Interpolation::Linear, &[0.0, 0.5], sizes).expect("a channel");
-    let written = read_bvh(write_bvh(&asset.skeleton, &joints, &builder.build(), 30.0).expect("is written"));
+    let written = read_bvh(write_bvh(&asset, &asset.skeleton, &joints, &builder.build(), 30.0).expect("is written"));
     assert!(world(&written, &written.clips[0], 0.5).iter().all(|at| at.is_finite()));
 }
 
@@ -138,7 +139,7 @@ fn a_joint_scaled_to_nothing_is_written_without_rotation() {
 fn an_endless_clip_is_refused() {
     let (asset, joints) = crooked();
     let clip = moving(&asset, &[0.0, 1e9]);
-    let error = write_bvh(&asset.skeleton, &joints, &clip, 30.0).expect_err("too many frames");
+    let error = write_bvh(&asset, &asset.skeleton, &joints, &clip, 30.0).expect_err("too many frames");
     assert!(matches!(error, WriteError::TooLong { .. }) && error.to_string().contains("1000000 frames"), "{error}");
 }
 
@@ -262,7 +263,8 @@ fn samples_survive_both_formats() {
         let joints: Vec<JointIndex> = asset.skeleton.joints().filter(|&joint| model.rig().is_real(joint)).collect();
         let slots = model.body().slots;
         for clip in &asset.clips {
-            let bvh = read_bvh(write_bvh(&asset.skeleton, &joints, clip, clip.frames_per_sec()).expect("is written"));
+            let bvh =
+                read_bvh(write_bvh(asset, &asset.skeleton, &joints, clip, clip.frames_per_sec()).expect("is written"));
             let vrma = read_vrma(write_vrma(asset, slots, model.forward(), clip).expect("is written"));
             let bones = vrma.humanoid.as_ref().expect("declares its bones");
             for &secs in bvh.clips[0].timelines()[0].iter().step_by(7) {

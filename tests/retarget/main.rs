@@ -26,3 +26,4 @@ mod rests;
 mod soles;
 mod stack;
 mod verdicts;
+mod written;

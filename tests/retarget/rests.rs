@@ -16,7 +16,7 @@ use crate::random::Random;
 const MAX_DEGREES: f64 = 0.1;
 
 /// The same joints with other rest transforms.
-fn with_rest(skeleton: &Skeleton, mut rest: impl FnMut(JointIndex, &mut gaitway::anim::Transform)) -> Skeleton {
+pub fn with_rest(skeleton: &Skeleton, mut rest: impl FnMut(JointIndex, &mut gaitway::anim::Transform)) -> Skeleton {
     let in_file = (0..skeleton.len()).filter_map(|number| skeleton.joint_of_source(number));
     let joints = in_file.map(|joint| {
         let mut transform = skeleton.rest().local(joint);

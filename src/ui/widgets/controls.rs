@@ -441,12 +441,25 @@ pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
 
 fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextStyle) -> bool {
     let font = style.resolve(ui.style());
-    let mut job = egui::text::LayoutJob { break_on_newline: false, ..egui::text::LayoutJob::default() };
-    job.append(text, 0.0, egui::TextFormat::simple(font, color));
-    job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
-    let galley = ui.painter().layout_job(job);
-    let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
+    let line = |text: &str, width: f32| {
+        let mut job = egui::text::LayoutJob { break_on_newline: false, ..egui::text::LayoutJob::default() };
+        job.append(text, 0.0, egui::TextFormat::simple(font.clone(), color));
+        job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(0.0));
+        ui.painter().layout_job(job)
+    };
+    let mut galley = line(text, rect.width());
     let cut = galley.elided;
+    let mut at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
+    // Equal names differ in the number at the end.
+    let number = text.rfind(" (").filter(|_| cut && text.ends_with(')'));
+    if let Some((name, number)) = number.map(|number| (&text[..number], line(&text[number..], rect.width())))
+        && number.size().x < 0.5 * rect.width()
+    {
+        let name = line(name, rect.width() - number.size().x);
+        let after = at + vec2(name.size().x, 0.0);
+        ui.painter().galley(at, name, color);
+        (at, galley) = (after, number);
+    }
     ui.painter().galley(at, galley, color);
     cut
 }

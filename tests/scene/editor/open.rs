@@ -11,7 +11,8 @@ use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Model, Motion};
 use gaitway::samples;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, from_link,
+    CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, active_clip,
+    from_link, to_link,
 };
 use glam::Vec3;
 use serde_json::json;
@@ -299,4 +300,40 @@ fn an_empty_stage_awaits_a_model() {
     let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
     assert_eq!(listed, ["sample:walker"]);
     assert_eq!(editor.state().display.exposure, 1.0);
+}
+
+/// Opens the file as a user does, or as a script does.
+fn open_file(editor: &mut Editor, path: &str, is_by_hand: bool) -> Vec<Event> {
+    editor.open(Contents { is_by_hand, ..contents(&[path]) }, None, &mut any).expect("fits");
+    editor.take_events()
+}
+
+#[test]
+fn a_model_exported_with_a_clip_plays_that_clip() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "walk");
+    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays");
+    let exported = editor.export(Export::Model { clip }).expect("is written");
+    let path = std::env::temp_dir().join(format!("gaitway-exported-{}.glb", std::process::id()));
+    std::fs::write(&path, &exported.bytes).expect("is written");
+    let file = path.to_str().expect("Unicode");
+
+    // Its motion is still loaded, and would be retargeted to the file as well.
+    let events = open_file(&mut editor, file, true);
+    let model = editor.library().active().expect("a model");
+    let own = model.asset.clips.len() - 1;
+    assert_eq!((active_clip(model, editor.state()), model.borrowed_clips().count() > 0), (Some(own), true));
+    assert!(notices(&events)[0].contains(&model.clip_titles()[own]), "{events:?}");
+    // A link names it, and gives the same.
+    let link = to_link(editor.state());
+    assert!(link.contains("clip="), "{link}");
+
+    let mut fresh = Editor::default();
+    open_file(&mut fresh, file, true);
+    assert_eq!(active_clip(fresh.library().active().expect("a model"), fresh.state()), Some(own));
+    // Scripts get the first clip, as links do that name none.
+    let mut script = Editor::default();
+    open_file(&mut script, file, false);
+    assert_eq!(script.state().playhead.clip, ClipChoice::First);
+    std::fs::remove_file(&path).expect("is there");
 }

@@ -3,6 +3,7 @@
 mod error;
 mod humanoid;
 mod panorama;
+mod reference_pose;
 mod scene_joints;
 mod warning;
 
@@ -47,6 +48,8 @@ pub struct AssetParts {
     pub default_scene: Option<usize>,
     /// The file's animations.
     pub clips: Vec<Clip>,
+    /// The last clip that [`write_model`](crate::formats::write_model) added: what the file was written for.
+    pub added_clip: Option<usize>,
     /// Indexed by [`MeshInstance::skin`].
     pub skins: Vec<Skin>,
     /// Indexed by [`MeshInstance::mesh`].
@@ -325,6 +328,7 @@ impl AssetParts {
                 PropertyTarget::Light(..) | PropertyTarget::Camera(..) | PropertyTarget::LookAt => {}
             }
         }
+        self.added_clip.map_or(Ok(()), |clip| check("added_clip", clip, self.clips.len()))?;
         check_all("hidden", &mut self.hidden.iter().copied())?;
         check_all("cameras", &mut self.cameras.iter().map(|camera| camera.joint))?;
         check_all("lights", &mut self.lights.iter().map(|light| light.joint))?;

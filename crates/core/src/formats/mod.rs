@@ -162,15 +162,17 @@ pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Resu
     gltf::write_motion(asset, skeleton, clips)
 }
 
-/// Writes `joints` of a skeleton, in ascending order, and how a clip of it moves them as BVH: in metres, Y up, one frame per key if
-/// all keys are frames, else `frames_per_sec`. Joints in between that are left out still move those below.
+/// Writes `joints` of an asset, in ascending order, and how a clip of it moves them as BVH: in metres, Y up, one frame per key if
+/// all keys are frames, else `frames_per_sec`. Joints in between that are left out still move those below. The bones rest in
+/// [`Asset::reference_pose`]. `skeleton` has the asset's joints; names may differ.
 pub fn write_bvh(
+    asset: &Asset,
     skeleton: &Skeleton,
     joints: &[JointIndex],
     clip: &Clip,
     frames_per_sec: f64,
 ) -> Result<Vec<u8>, WriteError> {
-    bvh::write(skeleton, joints, clip, frames_per_sec)
+    bvh::write(skeleton, &asset.reference_pose(), joints, clip, frames_per_sec)
 }
 
 /// Writes a clip of an asset as a VRM animation: the bones of its `slots`, the position of the hips, expressions and gaze.

@@ -1,8 +1,8 @@
 //! Writes a skeleton and a clip as BVH, in metres and Y up.
 //!
-//! BVH has no rest rotations, so a joint's OFFSET is its position at rest relative to its parent in the axes of the model, and its
-//! rotation is relative to its rest in the same axes. That works for any skeleton, whatever its rest rotations and scales. Joints
-//! that move relative to their parents have position channels as well.
+//! BVH has no rest rotations, so a joint's OFFSET is its position in the reference pose relative to its parent in the axes of the
+//! model, and its rotation is relative to that pose in the same axes. That works for any skeleton, whatever its rest rotations and
+//! scales. Joints that move relative to their parents have position channels as well.
 
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 use glam::{Affine3A, DQuat, DVec3, EulerRot};
 
-use crate::anim::{Clip, JointIndex, SampleCursor, Skeleton, model_from_joint};
+use crate::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_joint};
 use crate::formats::WriteError;
 use crate::formats::gltf::check_frames;
 
@@ -29,21 +29,23 @@ struct Bone {
     joint: Option<JointIndex>,
     parent: Option<usize>,
     offset: DVec3,
-    rest: DQuat,
+    /// Rotation in the reference pose.
+    reference: DQuat,
     /// Position relative to the parent and angles about Z, X and Y, one per frame.
     frames: Vec<(DVec3, [f64; 3])>,
     has_positions: bool,
 }
 
-/// Writes `joints` of `skeleton`, in ascending order, as `clip` moves them. Joints in between that are left out still move those
-/// below. `frames_per_sec` applies if the keys of the clip aren't frames themselves.
+/// Writes `joints` of `skeleton`, in ascending order, as `clip` moves them away from `reference`. Joints in between that are left
+/// out still move those below. `frames_per_sec` applies if the keys of the clip aren't frames themselves.
 pub fn write(
     skeleton: &Skeleton,
+    reference: &Pose,
     joints: &[JointIndex],
     clip: &Clip,
     frames_per_sec: f64,
 ) -> Result<Vec<u8>, WriteError> {
-    let mut bones = bones(skeleton, joints);
+    let mut bones = bones(skeleton, reference, joints);
     if bones.is_empty() {
         return Err(WriteError::EmptyClip { clip: clip.name().to_owned() });
     }
@@ -88,9 +90,9 @@ fn frames_of(clip: &Clip, frames_per_sec: f64) -> (usize, f64) {
     (if duration_secs > 0.0 { intervals as usize + 1 } else { 1 }, frame_secs)
 }
 
-fn bones(skeleton: &Skeleton, joints: &[JointIndex]) -> Vec<Bone> {
-    let mut rest = Vec::new();
-    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut rest);
+fn bones(skeleton: &Skeleton, reference: &Pose, joints: &[JointIndex]) -> Vec<Bone> {
+    let mut world = Vec::new();
+    model_from_joint(skeleton, reference, Affine3A::IDENTITY, &mut world);
     let mut place = vec![None; skeleton.len()];
     let is_written = |joint: JointIndex| joints.binary_search(&joint).is_ok();
     let parent_of = |joint: JointIndex| {
@@ -106,10 +108,10 @@ fn bones(skeleton: &Skeleton, joints: &[JointIndex]) -> Vec<Bone> {
     let root = bones.first().map(|_| 0);
     for &joint in joints {
         let parent = parent_of(joint).map_or(root, |parent| place[parent.get()]);
-        let (at, turn) = position_and_turn(&rest[joint.get()]);
+        let (at, turn) = position_and_turn(&world[joint.get()]);
         let origin = parent
             .and_then(|parent| bones[parent].joint)
-            .map_or(DVec3::ZERO, |parent| position_and_turn(&rest[parent.get()]).0);
+            .map_or(DVec3::ZERO, |parent| position_and_turn(&world[parent.get()]).0);
         place[joint.get()] = Some(bones.len());
         let name = match skeleton.name(joint) {
             "" => format!("joint_{}", skeleton.source_index(joint)),
@@ -140,8 +142,8 @@ fn position_and_turn(world: &Affine3A) -> (DVec3, DQuat) {
 }
 
 impl Bone {
-    fn new(name: String, joint: Option<JointIndex>, parent: Option<usize>, offset: DVec3, rest: DQuat) -> Self {
-        Self { name, joint, parent, offset, rest, frames: Vec::new(), has_positions: false }
+    fn new(name: String, joint: Option<JointIndex>, parent: Option<usize>, offset: DVec3, reference: DQuat) -> Self {
+        Self { name, joint, parent, offset, reference, frames: Vec::new(), has_positions: false }
     }
 }
 
@@ -151,7 +153,7 @@ fn add_frame(bones: &mut [Bone], world: &[Affine3A]) {
         let (at, turn) = match bone.joint {
             Some(joint) => {
                 let (at, turn) = position_and_turn(&world[joint.get()]);
-                (at, turn * bone.rest.inverse())
+                (at, turn * bone.reference.inverse())
             }
             None => (DVec3::ZERO, DQuat::IDENTITY),
         };

@@ -7,6 +7,7 @@ use glam::{Quat, Vec3};
 use gltf::json;
 use gltf::json::animation::{Interpolation as JsonInterpolation, Property};
 use gltf::json::validation::Checked;
+use serde::{Deserialize, Serialize};
 
 use super::accessor::{Accessors, get};
 use super::document::{Document, present};
@@ -37,6 +38,22 @@ pub fn clips(
         clips.push(read_clip(accessors, &pointers, index, animation, &mut times, warnings)?);
     }
     Ok(clips)
+}
+
+/// The extras of an animation.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Extras {
+    /// Gaitway has added it to a file that was there before.
+    #[serde(default)]
+    pub gaitway_added: bool,
+}
+
+/// Returns the last animation that Gaitway has added.
+pub fn added(root: &json::Root) -> Option<usize> {
+    root.animations.iter().rposition(|animation| {
+        let extras = animation.extras.as_ref().and_then(|extras| serde_json::from_str::<Extras>(extras.get()).ok());
+        extras.is_some_and(|extras| extras.gaitway_added)
+    })
 }
 
 /// Key times, decoded once per accessor: many channels share them.

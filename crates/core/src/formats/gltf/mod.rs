@@ -138,6 +138,7 @@ fn build(
         scenes,
         default_scene,
         clips,
+        added_clip: animations::added(root),
         skins,
         meshes,
         instances,

@@ -1,15 +1,14 @@
 //! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, a pose of a clip, or the model's
 //! own. Rotations come from orthonormalized matrices, so scaled or rotated ancestors are harmless.
 
-use glam::{Affine3A, DAffine3, DQuat};
+use glam::DQuat;
 
 use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
 use super::stance::{Stance, Standing, best_standing};
-use crate::anim::{Clip, JointIndex, Skeleton, nearest_rotation};
+use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Humanoid};
-use crate::mesh::Skin;
 use crate::retarget::map::{ResolvedMap, RestChoice};
-use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, node_locals};
+use crate::retarget::pose::{Local, Scratch, WorldPose, clip_locals, node_locals};
 
 /// Origin of the motion's rest pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +90,9 @@ pub fn source_rest(input: RestInput) -> SourceRest {
     let is_standing = stance.is_some_and(|stance| stance.confidence() >= MIN_CONFIDENCE);
     let target = Resting { skeleton: input.target, locals: input.target_rest };
     let own = OwnRest { resting: Resting { skeleton, locals: &locals }, is_standing };
-    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared_rest(target, own, clip, map) {
+    // Rotations of a declared humanoid are relative to its own rest, whatever the names of its bones.
+    let shared = if source.humanoid.is_none() { shared_rest(target, own, clip, map) } else { None };
+    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared {
         return SourceRest {
             unmoved,
             target_from_source: Some(target_from_source),
@@ -119,11 +120,12 @@ pub fn target_rest(target: &Asset, nodes: &[Local], choice: RestChoice) -> Vec<L
     locals
 }
 
-/// `Auto` is the bind pose where a skin covers a joint. Without a clip, the first frame is the nodes' rest.
+/// `Auto` is [`Asset::reference_pose`]. Without a clip, the first frame is the nodes' rest.
 fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
     let skeleton = &asset.skeleton;
     match (choice, clip) {
-        (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(skeleton, &asset.skins),
+        (RestChoice::Auto, _) if asset.humanoid.is_some() => node_locals(skeleton),
+        (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(asset),
         (RestChoice::FirstFrame, Some(clip)) => {
             clip_locals(skeleton, clip, first_key_secs(clip), &mut Scratch::default())
         }
@@ -137,53 +139,11 @@ pub(super) fn first_key_secs(clip: &Clip) -> f32 {
     if first.is_finite() { first } else { 0.0 }
 }
 
-/// The nodes' rest with the rotations of the bind pose. A bind rotation is taken relative to the nearest ancestor in the
-/// same skin, because bind space may have other units and another up axis. Joints without such an ancestor, and those whose
-/// matrix is singular, keep their node's rotation.
-fn bind_locals(skeleton: &Skeleton, skins: &[Skin]) -> Vec<Local> {
-    let nodes = node_locals(skeleton);
-    let mut locals = nodes.clone();
-    let mut is_bound = vec![false; locals.len()];
-    let mut bind_from_joint: Vec<Option<DAffine3>> = vec![None; locals.len()];
-    for skin in skins {
-        bind_from_joint.fill(None);
-        for (joint, joint_from_bind) in skin.joints().iter().zip(skin.joint_from_bind()) {
-            bind_from_joint[joint.get()] = inverse(joint_from_bind);
-        }
-        for &joint in skin.joints() {
-            if is_bound[joint.get()] {
-                continue;
-            }
-            if let Some(rotation) = bind_rotation(skeleton, &nodes, &bind_from_joint, joint) {
-                locals[joint.get()].rotation = rotation;
-                is_bound[joint.get()] = true;
-            }
-        }
+/// The nodes' rest with the rotations of the bind pose where a skin covers a joint.
+fn bind_locals(asset: &Asset) -> Vec<Local> {
+    let mut locals = node_locals(&asset.skeleton);
+    for (local, rotation) in locals.iter_mut().zip(asset.bind_rotations()) {
+        local.rotation = rotation.unwrap_or(local.rotation);
     }
     locals
-}
-
-/// Local rotation of a joint in the bind pose; the nodes between it and its nearest bound ancestor are at rest.
-fn bind_rotation(
-    skeleton: &Skeleton,
-    nodes: &[Local],
-    bind_from_joint: &[Option<DAffine3>],
-    joint: JointIndex,
-) -> Option<DQuat> {
-    let bind = bind_from_joint[joint.get()]?;
-    let mut bound_from_parent = DAffine3::IDENTITY;
-    for ancestor in ancestry(skeleton, joint).skip(1) {
-        if let Some(ancestor_bind) = bind_from_joint[ancestor.get()] {
-            return nearest_rotation(&((ancestor_bind * bound_from_parent).inverse() * bind).matrix3);
-        }
-        bound_from_parent = nodes[ancestor.get()].to_affine() * bound_from_parent;
-    }
-    None
-}
-
-fn inverse(joint_from_bind: &Affine3A) -> Option<DAffine3> {
-    let columns = joint_from_bind.to_cols_array().map(f64::from);
-    let matrix = DAffine3::from_cols_array(&columns);
-    let inverse = matrix.inverse();
-    (matrix.matrix3.determinant().abs() > 1e-30 && inverse.is_finite()).then_some(inverse)
 }

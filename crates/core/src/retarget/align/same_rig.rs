@@ -1,12 +1,9 @@
 //! Detects two files of one rig: same joint names, hierarchy and local frames. The rest of the motion's nodes is then
 //! irrelevant: its clip means the same on the model as on its own skeleton, so the model's rest is the motion's.
 //!
-//! If both already share a rest pose, they are left to the usual alignment, which also compensates for differences in
-//! build.
-//!
 //! No file states its local frames, but each joint's offset is expressed in its parent's. A rest rotation leaves that
-//! offset unchanged, whereas different axes rotate it. A roll about the offset itself shows only between rests that
-//! hold the same pose.
+//! offset unchanged, whereas different axes rotate it; so do differences in build, by little. Between rests that hold the
+//! same pose, any rotation of an offset and any roll about it means different axes.
 
 use std::collections::BTreeMap;
 
@@ -31,6 +28,9 @@ const MIN_ROLL_DEGREES: f64 = 45.0;
 
 /// The pose around a joint is the same if the angles to all other offsets differ by less than this on average.
 const MAX_POSE_DEGREES: f64 = 10.0;
+
+/// Rests whose offsets differ by less than this in their angles to each other are the same pose.
+const SAME_POSE_DEGREES: f64 = 1.0;
 
 /// Maximum number of offsets that each one is compared with.
 const MAX_COMPARED: usize = 100;
@@ -130,13 +130,14 @@ impl Rigs<'_> {
             same_place += usize::from(self.hangs_alike(target, source));
             offsets.extend(self.offset(target, source));
         }
-        let agreeing = offsets.iter().filter(|offset| self.offsets_agree(offset)).count();
+        let agreeing = offsets.iter().filter(|offset| self.offset_degrees(offset) < MAX_OFFSET_DEGREES).count();
         let most = |count: usize, of: usize| count as f64 >= MIN_SHARE * of as f64;
         agreeing >= MIN_OFFSETS
             && most(named, sources.len())
             && most(same_place, named)
             && most(agreeing, offsets.len())
             && !self.is_rolled(&offsets)
+            && !self.is_same_pose_in_other_axes(&offsets)
     }
 
     /// Whether the nearest shared ancestors correspond. Either side may have joints in between.
@@ -154,10 +155,11 @@ impl Rigs<'_> {
             .then_some(Offset { target, source, source_parent })
     }
 
-    fn offsets_agree(&self, offset: &Offset) -> bool {
+    /// Angle between the two directions of an offset in its parent's frame.
+    fn offset_degrees(&self, offset: &Offset) -> f64 {
         let target = self.target.locals[offset.target.get()].translation;
         let source = self.source.locals[offset.source.get()].translation;
-        degrees_between(target, source) < MAX_OFFSET_DEGREES
+        degrees_between(target, source)
     }
 
     /// Whether joints are rolled about their children's offsets between rests that hold the same pose around them.
@@ -182,14 +184,35 @@ impl Rigs<'_> {
         turned.iter().filter(has_same_pose).count() >= MIN_ROLLED
     }
 
+    /// Whether the rests hold the same pose although the offsets in the joints' own axes differ, or although the source's joints
+    /// have no rotations at all, as in BVH. The usual limit on offsets, which allows for differences in build, is too wide where the
+    /// pose tells.
+    fn is_same_pose_in_other_axes(&self, offsets: &[Offset]) -> bool {
+        let degrees = |offset: &Offset| {
+            angle_between(self.source.locals[offset.source.get()].rotation, DQuat::IDENTITY).to_degrees()
+        };
+        let has_other_axes = offsets.iter().any(|offset| self.offset_degrees(offset) > SAME_POSE_DEGREES);
+        (has_other_axes || offsets.iter().all(|offset| degrees(offset) < 1e-3))
+            && self.directions(offsets).windows(2).all(|pair| difference(&pair[0], &pair[1]) < SAME_POSE_DEGREES)
+    }
+
     /// For each offset, the mean difference in degrees between its angles to the others in the two rests. Angles
     /// between offsets are independent of the frame.
     fn pose_differences(&self, offsets: &[Offset]) -> Vec<f64> {
+        let directions = self.directions(offsets);
+        let others = directions.iter().step_by(directions.len().div_ceil(MAX_COMPARED).max(1));
+        let mean =
+            |at: &[DVec3; 2]| others.clone().map(|other| difference(at, other)).sum::<f64>() / others.len() as f64;
+        directions.iter().map(mean).collect()
+    }
+
+    /// The direction of each offset in both rests, target first, in their own model spaces.
+    fn directions(&self, offsets: &[Offset]) -> Vec<[DVec3; 2]> {
         let direction = |pose: &WorldPose, skeleton: &Skeleton, joint: JointIndex| {
             let parent = skeleton.parent(joint).map_or(DVec3::ZERO, |parent| pose.position(parent));
             (pose.position(joint) - parent).normalize_or_zero()
         };
-        let directions: Vec<[DVec3; 2]> = offsets
+        offsets
             .iter()
             .map(|offset| {
                 [
@@ -197,13 +220,7 @@ impl Rigs<'_> {
                     direction(&self.source_pose, self.source.skeleton, offset.source),
                 ]
             })
-            .collect();
-        let difference =
-            |a: &[DVec3; 2], b: &[DVec3; 2]| (degrees_between(a[0], b[0]) - degrees_between(a[1], b[1])).abs();
-        let others = directions.iter().step_by(directions.len().div_ceil(MAX_COMPARED).max(1));
-        let mean =
-            |at: &[DVec3; 2]| others.clone().map(|other| difference(at, other)).sum::<f64>() / others.len() as f64;
-        directions.iter().map(mean).collect()
+            .collect()
     }
 
     /// Puts the source's shared joints into the model's rest pose, including the root position unless `is_in_place`.
@@ -276,6 +293,11 @@ impl Rigs<'_> {
         }
         if source > 0.0 && target > 0.0 { source / target } else { 1.0 }
     }
+}
+
+/// By how much the angle between two offsets differs in the two rests, in degrees.
+fn difference(a: &[DVec3; 2], b: &[DVec3; 2]) -> f64 {
+    (degrees_between(a[0], b[0]) - degrees_between(a[1], b[1])).abs()
 }
 
 /// The topmost shared joints, with the number of joints in each one's subtree.

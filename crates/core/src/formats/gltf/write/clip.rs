@@ -10,7 +10,8 @@ use serde_json::value::RawValue;
 use super::WriteError;
 use super::glb::pad;
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
-use crate::formats::gltf::object::{Array, raw};
+use crate::formats::gltf::animations::Extras;
+use crate::formats::gltf::object::{Array, Object, raw};
 
 /// A rotation whose squared length is farther from 1 is normalized. Rounding errors are far smaller, so a clip that was
 /// loaded is written back bit for bit.
@@ -55,6 +56,15 @@ pub fn add(
         added.buffer_views.push(raw(&json!({ "buffer": 0, "byteOffset": start, "byteLength": end - start })));
     }
     Ok(added)
+}
+
+/// Marks animations as added to what was there before.
+pub fn mark_added(animations: &mut [Box<RawValue>]) {
+    for animation in animations {
+        let mut object: Object = serde_json::from_str(animation.get()).unwrap_or_default();
+        object.set("extras", &Extras { gaitway_added: true });
+        *animation = raw(&object);
+    }
 }
 
 /// The buffer view of one clip.

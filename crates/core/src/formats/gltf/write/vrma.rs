@@ -2,8 +2,8 @@
 //! the position of the hips, and the weights of expressions.
 //!
 //! Players transfer each bone's rotation relative to this T-pose, in the axes of the model. Models that declare a humanoid rest
-//! in it (VRM 0.x faces −Z). For others it is derived from their rest pose by straightening arms and legs. Bones in the file
-//! have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
+//! in it (VRM 0.x faces −Z). For others it is derived from their reference pose by straightening arms and legs; feet keep their
+//! pitch. Bones in the file have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
 
 use std::collections::BTreeMap;
 
@@ -97,39 +97,44 @@ impl Bone {
 /// Returns the bones from the hips outwards; `None` without hips. Eyes are left out: the gaze animates them.
 fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<Bone>> {
     let skeleton = &asset.skeleton;
-    slots.joint(Slot::Hips)?;
+    let hips = slots.joint(Slot::Hips)?;
     let file_from_model = DQuat::from_rotation_y(-f64::from(facing_radians(asset, forward)));
-    let mut rest = Vec::new();
-    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut rest);
-    let at_rest = |joint: JointIndex| file_from_model * rest[joint.get()].translation.as_dvec3();
+    let mut world = Vec::new();
+    model_from_joint(skeleton, &asset.reference_pose(), Affine3A::IDENTITY, &mut world);
+    let position = |joint: JointIndex| file_from_model * world[joint.get()].translation.as_dvec3();
     let mut bones: Vec<Bone> = Vec::new();
-    // Rotation of each bone from its rest to the T-pose.
+    // Rotation of each bone from the reference pose to the T-pose.
     let mut straightened: Vec<DQuat> = Vec::new();
     let written = slots.0.iter().filter(|(slot, _)| !matches!(slot, Slot::LeftEye | Slot::RightEye));
     let mut written: Vec<(Slot, JointIndex)> = written.map(|(&slot, &joint)| (slot, joint)).collect();
-    written.sort_by_key(|&(_, joint)| joint);
+    let is_below_hips = |joint| chain(skeleton, joint).any(|above| above == hips);
+    written.sort_by_key(|&(_, joint)| (!is_below_hips(joint), joint));
     written.dedup_by_key(|&mut (_, joint)| joint);
     for (slot, joint) in written {
-        let mut above = std::iter::successors(skeleton.parent(joint), |&parent| skeleton.parent(parent));
-        let parent = above.find_map(|joint| bones.iter().position(|bone| bone.joint == joint));
+        let bone_of = |joint: JointIndex| bones.iter().position(|bone| bone.joint == joint);
+        let above = chain(skeleton, joint).skip(1).find_map(bone_of);
+        let parent = above.or_else(|| bone_of(slots.joint(limb_of(slot)?)?));
         if parent.is_none() && slot != Slot::Hips {
             continue;
         }
         let turned = parent.map_or(DQuat::IDENTITY, |parent| straightened[parent]);
-        let position = match parent {
-            Some(parent) => bones[parent].position + turned * (at_rest(joint) - at_rest(bones[parent].joint)),
-            None => at_rest(joint),
+        let at = match parent {
+            Some(parent) => bones[parent].position + turned * (position(joint) - position(bones[parent].joint)),
+            None => position(joint),
         };
         let swing = straight(slot).filter(|_| asset.humanoid.is_none()).and_then(|(end, direction)| {
-            let bone = turned * (at_rest(slots.joint(end)?) - at_rest(joint));
+            let bone = turned * (position(slots.joint(end)?) - position(joint));
             Some(DQuat::from_rotation_arc(bone.try_normalize()?, direction))
         });
-        let swung = swing.unwrap_or(DQuat::IDENTITY) * turned;
-        let rotation = rest[joint.get()].to_scale_rotation_translation().1.as_dquat();
+        let swung = match slot {
+            Slot::LeftFoot | Slot::RightFoot => DQuat::IDENTITY,
+            _ => swing.unwrap_or(DQuat::IDENTITY) * turned,
+        };
+        let rotation = world[joint.get()].to_scale_rotation_translation().1.as_dquat();
         // A bone that is scaled to 0 has no rotation.
         let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
         let reference = (swung * file_from_model * rotation).normalize();
-        bones.push(Bone { slot, joint, parent, position, reference, file_from_model });
+        bones.push(Bone { slot, joint, parent, position: at, reference, file_from_model });
         straightened.push(swung);
     }
     Some(bones)
@@ -143,6 +148,19 @@ fn facing_radians(asset: &Asset, forward: Option<Vec3>) -> f32 {
     let angle = forward.map_or(0.0, |forward| forward.x.atan2(forward.z));
     let axis = (angle / std::f32::consts::FRAC_PI_2).round() * std::f32::consts::FRAC_PI_2;
     if (angle - axis).abs() <= FACING_TOLERANCE_RADIANS { axis } else { angle }
+}
+
+/// The joint and its ancestors.
+fn chain(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> {
+    std::iter::successors(Some(joint), |&joint| skeleton.parent(joint))
+}
+
+/// Returns the bone that a foot or hand hangs on, also where the model's is beside its limb, left over from inverse kinematics.
+fn limb_of(slot: Slot) -> Option<Slot> {
+    use Slot::*;
+    [(LeftFoot, LeftLowerLeg), (RightFoot, RightLowerLeg), (LeftHand, LeftLowerArm), (RightHand, RightLowerArm)]
+        .into_iter()
+        .find_map(|(end, limb)| (end == slot).then_some(limb))
 }
 
 /// Returns the end of a limb's bone, and the bone's direction in a T-pose that faces +Z.
@@ -168,11 +186,17 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Returns the joints from the bone up to its parent bone, which is left out.
+    /// Returns the joints from the bone up to its parent bone, which is left out, or to the root if the parent bone is beside it.
     fn path(&self, bone: &Bone, bones: &[Bone]) -> Vec<JointIndex> {
         let end = bone.parent.map(|parent| bones[parent].joint);
-        let up = std::iter::successors(Some(bone.joint), |&joint| self.skeleton.parent(joint));
-        up.take_while(|&joint| Some(joint) != end).collect()
+        chain(self.skeleton, bone.joint).take_while(|&joint| Some(joint) != end).collect()
+    }
+
+    /// Returns the joints from the parent bone up to the root if the bone is beside it, otherwise none.
+    fn path_beside(&self, bone: &Bone, bones: &[Bone]) -> Vec<JointIndex> {
+        let parent = bone.parent.map(|parent| bones[parent].joint);
+        let beside = parent.filter(|&parent| chain(self.skeleton, bone.joint).all(|joint| joint != parent));
+        beside.map_or(Vec::new(), |parent| chain(self.skeleton, parent).collect())
     }
 
     /// Returns the channel in effect: the last one.
@@ -186,20 +210,19 @@ impl Source<'_> {
     }
 
     fn rotations(&self, bone: &Bone, bones: &[Bone]) -> Option<NewKeys> {
-        let path = self.path(bone, bones);
+        let (path, beside) = (self.path(bone, bones), self.path_beside(bone, bones));
         let before = bone.parent.map_or(bone.file_from_model, |parent| bones[parent].reference);
         let after = bone.reference.inverse();
-        let moved: Vec<&Channel> = path.iter().filter_map(|&joint| self.channel(joint, Property::Rotation)).collect();
-        let at_rest = |joints: &[JointIndex]| {
-            joints.iter().fold(DQuat::IDENTITY, |below, &joint| rest_rotation(self.skeleton, joint) * below)
-        };
+        let joints = path.iter().chain(&beside);
+        let moved: Vec<&Channel> = joints.filter_map(|&joint| self.channel(joint, Property::Rotation)).collect();
+        let at_rest = |joints: &[JointIndex]| turn_of(self.skeleton.rest(), joints);
         match moved[..] {
             [] => {
-                let turn = (before * at_rest(&path) * after).as_quat();
+                let turn = (before * at_rest(&beside).inverse() * at_rest(&path) * after).as_quat();
                 let is_rest = turn.angle_between(Quat::IDENTITY) < 1e-5;
                 (!is_rest).then(|| (Interpolation::Step, vec![0.0], Keys::Rotation(vec![turn.normalize()])))
             }
-            [channel] => {
+            [channel] if beside.is_empty() => {
                 let at = path.iter().position(|&joint| joint == channel.joint)?;
                 let (before, after) = (before * at_rest(&path[at + 1..]), at_rest(&path[..at]) * after);
                 let Keys::Rotation(keys) = &channel.keys else { return None };
@@ -211,9 +234,7 @@ impl Source<'_> {
                 let times = self.resampled_times(moved.into_iter());
                 let mut last: Option<Quat> = None;
                 let turned = self.sample(&times, |pose| {
-                    let local = path
-                        .iter()
-                        .fold(DQuat::IDENTITY, |below, &joint| pose.local(joint).rotation.as_dquat() * below);
+                    let local = turn_of(pose, &beside).inverse() * turn_of(pose, &path);
                     let turn = (before * local * after).normalize().as_quat();
                     let turn = if last.is_some_and(|last| last.dot(turn) < 0.0) { -turn } else { turn };
                     last = Some(turn);
@@ -287,8 +308,10 @@ impl Source<'_> {
     }
 }
 
-fn rest_rotation(skeleton: &Skeleton, joint: JointIndex) -> DQuat {
-    skeleton.rest().local(joint).rotation.as_dquat().normalize()
+/// Product of the joints' rotations, the topmost of which is the last.
+fn turn_of(pose: &Pose, joints: &[JointIndex]) -> DQuat {
+    let rotation = |&joint: &JointIndex| pose.local(joint).rotation.as_dquat().normalize();
+    joints.iter().map(rotation).fold(DQuat::IDENTITY, |below, above| above * below)
 }
 
 /// Returns the name of the node that animates a property; `None` if VRM animations can't animate it.
