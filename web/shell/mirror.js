@@ -193,8 +193,8 @@ export class Mirror {
     }
     if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
     this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
-    // The browser's own commands stay.
-    if (!(isCommand || altKey) || /^[ozsy]$/i.test(key)) event.preventDefault();
+    // The browser's own commands stay, also those of function keys.
+    if (!(isCommand || altKey || /^F([2-9]|1.)$/.test(key)) || /^[ozsy]$/i.test(key)) event.preventDefault();
   }
 }
 
