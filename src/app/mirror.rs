@@ -198,7 +198,11 @@ impl<'a> List<'a> {
         set("value", node.value().filter(|_| !is_text).map(Value::from));
         let finite = |number: Option<f64>| number.filter(|number| number.is_finite()).map(Value::from);
         set("description", node.description().map(Value::from));
-        let decimals = node.value().filter(|_| role == "spinbutton").map(decimals_in);
+        let decimals = match node.role() {
+            // A share of the room.
+            Role::Splitter => Some(3),
+            _ => node.value().filter(|_| role == "spinbutton").map(decimals_in),
+        };
         let now = node.numeric_value().map(|now| decimals.map_or(now, |decimals| round_to_decimals(now, decimals)));
         set("now", finite(now));
         set("min", finite(node.min_numeric_value()));

@@ -1,5 +1,6 @@
 //! Frame times, for `window.gaitway.stats()` and the Info tab.
 
+use crate::library::ModelId;
 use crate::ui::FrameTimes;
 
 /// Zero until measured.
@@ -11,11 +12,20 @@ pub(super) struct Timing {
     pub cpu_secs: f32,
     /// Times between the last frames.
     pub recent: FrameTimes,
+    /// The model that `recent` is of.
+    model: Option<ModelId>,
     /// Frames laid out so far; does not grow while nothing changes.
     pub frames: u64,
 }
 
 impl Timing {
+    /// Forgets the last frames if they were of another model.
+    pub fn begin_frame(&mut self, model: Option<ModelId>) {
+        if std::mem::replace(&mut self.model, model) != model {
+            self.recent = FrameTimes::default();
+        }
+    }
+
     /// Adds the time between two frames, unless it was a pause, such as that of a hidden page.
     pub fn record(&mut self, secs: f32) {
         const MAX_SECS: f32 = 1.0;

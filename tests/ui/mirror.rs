@@ -104,6 +104,18 @@ fn the_edges_that_resize_panels_have_names_of_their_own() {
 }
 
 #[test]
+fn the_width_of_a_panel_is_read_in_percent() {
+    let mut harness = motion_bench([1366.0, 768.0], &[]);
+    let entries = entries(&tree_of(&mut harness));
+    for name in [text::RESIZE_CLIPS, text::RESIZE_INSPECTOR] {
+        let edge = entries.iter().find(|entry| entry["name"] == name).expect("an edge");
+        let share = edge["now"].as_f64().expect("a share");
+        assert!((0.1..0.4).contains(&share) && edge["now"].to_string().len() <= 5, "{name}: {share}");
+        assert_eq!(edge["value"], format!("{:.0} %", 100.0 * share));
+    }
+}
+
+#[test]
 fn radio_buttons_are_in_a_group_named_by_its_topic() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
     let tree = Arc::new(Mutex::new(None));
