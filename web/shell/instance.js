@@ -289,7 +289,9 @@ function stopOnTrap(error) {
  */
 function passToCanvas(event) {
   const { key, target, defaultPrevented } = event;
-  if (target !== document.body || defaultPrevented || key === "Tab" || session.app === null || panel() !== null || isDialogOpen()) return;
+  // The key may have closed what had the focus.
+  const isNobodys = target === document.body && document.activeElement === document.body && !defaultPrevented;
+  if (!isNobodys || key === "Tab" || session.app === null || panel() !== null || isDialogOpen()) return;
   focusCanvas();
   // Nothing inert takes the focus.
   const { activeElement } = document;
