@@ -133,7 +133,7 @@ for (const renderer of BACK_ENDS)
     onPage("a menu is walked through and left by keys while nothing moves", () => "play=0", async (page) => {
       await tabTo(page, /^Export/);
       await page.keyboard.press("Enter");
-      await until(page, () => document.activeElement?.closest("#mirror [role=group] [role=group]") !== null);
+      await until(page, () => document.activeElement?.closest("#mirror > [role=group]") !== null);
       const first = await focused(page);
       for (const [key, step] of /** @type {const} */ ([["ArrowDown", 1], ["ArrowDown", 2], ["ArrowDown", 3], ["ArrowUp", 2], ["ArrowUp", 1]])) {
         await untilStill(page);

@@ -275,6 +275,9 @@ fn the_tree_uses_the_room_of_its_tab() {
     let mut low = sample_bench([1280.0, 600.0]);
     let mut high = sample_bench([1280.0, 700.0]);
     assert!(rows(&high) >= rows(&low) + 3, "{} and {}", rows(&high), rows(&low));
+    let timeline = low.get_by_label(text::TIME).rect().top();
+    let gap = timeline - low.get_by_label(text::VERTEX_PROBE).rect().bottom();
+    assert!((38.0..50.0).contains(&gap), "it ends where the tab does: {gap}");
     for harness in [&mut low, &mut high] {
         let before = rows(harness);
         let low_row = harness.get_all_by_role(Role::TreeItem).nth(before - 3).expect("a row");
@@ -394,6 +397,13 @@ fn keys_lead_through_the_whole_tree() {
     assert_eq!(at_after(egui::Key::PageDown), last);
     assert_eq!(at_after(egui::Key::Home), 0);
     assert_eq!(at_after(egui::Key::PageDown), page);
+    // Before the focus has arrived.
+    harness.key_press(egui::Key::End);
+    harness.key_press(egui::Key::Home);
+    harness.key_press(egui::Key::End);
+    harness.run();
+    let row = harness.get_by_role_and_label(Role::TreeItem, names[last]);
+    assert!(row.accesskit_node().is_focused(), "none of them is lost");
 }
 
 #[test]

@@ -37,6 +37,8 @@ export class Mirror {
    * @type {string | null}
    */
   #wanted = null;
+  /** The focus follows the program's: to report that back would undo what the program has done since. */
+  #isFollowing = false;
   /**
    * What opened the innermost menu.
    * @type {HTMLElement | null}
@@ -134,6 +136,7 @@ export class Mirror {
     if (role === "img" && focusable) element.tabIndex = 0;
     [element.dataset.id, element.dataset.role] = [id, role];
     element.addEventListener("focus", () => {
+      if (this.#isFollowing) return;
       this.#wanted = id;
       this.#program.mirror_act(id, "focus");
     });
@@ -166,9 +169,10 @@ export class Mirror {
     const selected = this.root.querySelector("[role=treeitem][aria-selected=true]");
     const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? stopsIn(this.root)[0]);
     const target = first ?? (next.isConnected ? next : fallback);
+    this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();
-    // Its own move, which it won't report again.
-    if (target?.dataset.id === focus) this.#wanted = null;
+    if (this.#isFollowing) this.#wanted = null;
+    this.#isFollowing = false;
   }
 
   /** @param {KeyboardEvent} event */

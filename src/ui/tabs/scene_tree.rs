@@ -75,7 +75,8 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         hiding::show_all(ui, shown, out);
         ui.add_space(6.0);
         cards(ui, shown, model, selected, local, out);
-        let rest = Some((selected.is_some(), (ui.min_rect().height() - tree.response.rect.height()).round()));
+        let content_height = ui.cursor().top() - ui.min_rect().top();
+        let rest = Some((selected.is_some(), (content_height - tree.response.rect.height()).ceil()));
         if std::mem::replace(&mut local.scene_tree.rest, rest) != rest {
             ui.ctx().request_repaint();
         }
@@ -427,7 +428,8 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
 fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
     if takes_focus {
         row.request_focus();
-    } else if row.has_focus() {
+    }
+    if takes_focus || row.has_focus() {
         let is_pressed = |key: &Key| row.ctx.input(|input| input.key_pressed(*key));
         return [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed).map(Pressed::Leap);
     }
