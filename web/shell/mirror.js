@@ -37,6 +37,8 @@ export class Mirror {
    * @type {string | null}
    */
   #wanted = null;
+  /** A list is being shown: an element that leaves with the focus hands it on. */
+  #isShowing = false;
   /** The focus follows the program's: to report that back would undo what the program has done since. */
   #isFollowing = false;
   /**
@@ -55,7 +57,7 @@ export class Mirror {
     for (const type of ["keydown", "keyup"]) root.addEventListener(type, (event) => event instanceof KeyboardEvent && this.#passKey(event));
     root.addEventListener("focusin", () => program.mirror_focus(true));
     root.addEventListener("focusout", ({ relatedTarget }) => {
-      if (!(relatedTarget instanceof Node && root.contains(relatedTarget))) program.mirror_focus(false);
+      if (!this.#isShowing && !(relatedTarget instanceof Node && root.contains(relatedTarget))) program.mirror_focus(false);
     });
   }
 
@@ -67,6 +69,7 @@ export class Mirror {
     /** @type {{ focus: string, entries: MirrorEntry[] }} */
     const { focus, entries } = JSON.parse(text);
     const before = this.root.contains(document.activeElement) ? document.activeElement : null;
+    this.#isShowing = true;
     const roles = new Map(entries.map(({ id, role }) => [id, role]));
     for (const [id, element] of this.#elements) {
       // Another widget may have taken the id of one that is gone.
@@ -79,6 +82,8 @@ export class Mirror {
     const menu = this.#place(entries);
     if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus);
     this.#focused = focus;
+    this.#isShowing = false;
+    if (before !== null && !this.root.contains(document.activeElement)) this.#program.mirror_focus(false);
   }
 
   /**

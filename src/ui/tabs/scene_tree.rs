@@ -182,7 +182,6 @@ impl SceneTree {
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let leap = self.leap.take();
-        self.height = ui.available_height();
         let scrolled = area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
             let page = visible.len().saturating_sub(2).max(1);
@@ -218,13 +217,7 @@ impl SceneTree {
                         self.fold(number);
                     }
                     Some(Pressed::Leap(key)) => {
-                        let last = rows.len() - 1;
-                        self.leap = Some(match key {
-                            Key::Home => 0,
-                            Key::End => last,
-                            Key::PageUp => at.saturating_sub(page),
-                            _ => (at + page).min(last),
-                        });
+                        self.leap = Some(row_after(key, at, page, rows.len() - 1));
                         ui.ctx().request_repaint();
                     }
                     None => {}
@@ -281,12 +274,13 @@ impl SceneTree {
         let selected = shown.state.selection.joint;
         let find = || rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected);
         let height = ui.available_height();
+        let last_height = std::mem::replace(&mut self.height, height);
         let max = (rows.len() as f32 * row_height(ui) - height).max(0.0);
-        if height > self.height && self.offset > max {
+        if height > last_height && self.offset > max {
             // Otherwise it would spring back.
             return Some(max);
         }
-        if self.leap.is_none() && self.scrolled_to == selected && height < self.height {
+        if self.leap.is_none() && self.scrolled_to == selected && height < last_height {
             // The card of a joint that was pressed took the room.
             let needed = (find()? + 1) as f32 * row_height(ui) - height;
             return (needed > self.offset).then_some(needed);
@@ -424,7 +418,17 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     pressed
 }
 
-/// Gives the focus to a row, or returns the key that leads from it to a distant one.
+/// Returns the row that a key leads to.
+fn row_after(key: Key, at: usize, page: usize, last: usize) -> usize {
+    match key {
+        Key::Home => 0,
+        Key::End => last,
+        Key::PageUp => at.saturating_sub(page),
+        _ => (at + page).min(last),
+    }
+}
+
+/// Gives the focus to a row, and returns the key that leads from it to a distant one.
 fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
     if takes_focus {
         row.request_focus();
