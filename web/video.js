@@ -33,7 +33,21 @@ const CODECS = ["avc", "vp9", "av1", "vp8"];
  */
 const ALPHA_CODECS = ["vp9", "vp8"];
 const RECORDER_TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
-const RECORDER_BITS_PER_SEC = 12_000_000;
+
+/**
+ * The library's “high” quality as quantizers, with which an encoder takes the bits that it needs. Not every one has them.
+ * @type {Partial<Record<Codec, number>>}
+ */
+const QUANTIZERS = { avc: 22, vp9: 28, av1: 112 };
+const BITS_PER_PIXEL = 0.1;
+/** Smaller videos need more bits per pixel: each shows more of the character. */
+const ENOUGH_PIXELS = 1920 * 1080;
+
+/**
+ * Returns the bit rate for encoders without quantizers.
+ * @param {Video} video
+ */
+const bitsPerSec = ({ width, height, framesPerSec }) => Math.ceil(BITS_PER_PIXEL * Math.max(1, Math.cbrt(ENOUGH_PIXELS / (width * height))) * width * height * framesPerSec);
 
 /**
  * Rejects if the browser can't encode the whole video, and when it is cancelled.
@@ -42,11 +56,11 @@ const RECORDER_BITS_PER_SEC = 12_000_000;
  */
 export async function encode(video) {
   if (video.asImages) return encodeImages(video);
-  const quality = new Quality("high");
   const { width, height, isTransparent } = video;
   const canEncode = typeof VideoEncoder !== "undefined";
+  const quality = new Quality({ bitrate: bitsPerSec(video) });
   const codec = canEncode ? await getFirstEncodableVideoCodec(isTransparent ? ALPHA_CODECS : CODECS, { width, height, quality }) : null;
-  if (codec !== null) return encodeFrames(video, codec, quality);
+  if (codec !== null) return encodeFrames(video, codec);
   if (isTransparent) throw new Error("this browser can't encode transparent ones. Use Chrome or Edge, or choose a background.");
   return recordFrames(video);
 }
@@ -54,11 +68,11 @@ export async function encode(video) {
 /**
  * @param {Video} video
  * @param {Codec} codec
- * @param {Quality} quality
  * @returns {Promise<EncodedVideo>}
  */
-async function encodeFrames(video, codec, quality) {
+async function encodeFrames(video, codec) {
   const { width, height, framesPerSec, frameCount, isTransparent } = video;
+  const quality = new Quality({ bitrate: bitsPerSec(video), quantizer: QUANTIZERS[codec] });
   const isMp4 = codec === "avc";
   const target = new BufferTarget();
   const output = new Output({ format: isMp4 ? new Mp4OutputFormat() : new WebMOutputFormat(), target });
@@ -137,7 +151,7 @@ async function recordFrames(video) {
   const stream = mimeType === undefined ? undefined : canvas.captureStream?.(0);
   if (context === null || mimeType === undefined || stream === undefined) throw new Error("this browser can't encode any. Use a current version of Chrome, Edge, Firefox or Safari, or save images instead.");
   const track = /** @type {CanvasCaptureMediaStreamTrack} */ (stream.getVideoTracks()[0]);
-  const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: RECORDER_BITS_PER_SEC });
+  const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: bitsPerSec(video) });
   /** @type {Blob[]} */
   const chunks = [];
   recorder.ondataavailable = ({ data }) => chunks.push(data);

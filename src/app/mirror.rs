@@ -50,14 +50,34 @@ impl Mirror {
         self.events.push(Event::AccessKitActionRequest(ActionRequest { action, target_tree, target_node, data }));
     }
 
-    /// Queues a key that the mirror doesn't handle itself; `name` is the `key` of the DOM's event.
+    /// Queues a key that the mirror doesn't handle itself; `name` is the `key` of the DOM's event. Drops one that moves the focus while
+    /// several wait, as when it is held on a slow machine.
     pub fn key(&mut self, name: &str, pressed: bool, modifiers: egui::Modifiers) {
+        const MAX_WAITING: usize = 4;
         let name = if name == " " { "Space" } else { name };
         let upper = name.to_uppercase();
         if let Some(key) = egui::Key::from_name(name).or_else(|| egui::Key::from_name(&upper)) {
-            self.events.push(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+            let event = Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+            let waiting = self.events.iter().filter(|event| moves_focus(event)).count();
+            if !moves_focus(&event) || waiting < MAX_WAITING {
+                self.events.push(event);
+            }
         }
     }
+
+    /// Takes the events of the next frame. In each, egui moves the focus only once, however many keys ask for it.
+    fn take_events(&mut self) -> Vec<Event> {
+        let moves = self.events.iter().enumerate().filter(|(_, event)| moves_focus(event));
+        let end = moves.map(|(at, _)| at).nth(1).unwrap_or(self.events.len());
+        let rest = self.events.split_off(end);
+        std::mem::replace(&mut self.events, rest)
+    }
+}
+
+fn moves_focus(event: &Event) -> bool {
+    use egui::Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, End, Home, PageDown, PageUp};
+    let keys = [ArrowDown, ArrowLeft, ArrowRight, ArrowUp, End, Home, PageDown, PageUp];
+    matches!(event, Event::Key { key, pressed: true, .. } if keys.contains(key))
 }
 
 impl Plugin for Mirror {
@@ -68,7 +88,10 @@ impl Plugin for Mirror {
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
         let is_input = |event: &Event| !matches!(event, Event::PointerMoved(_) | Event::MouseMoved(_));
         let has_input = !self.events.is_empty() || input.events.iter().any(is_input);
-        input.events.append(&mut self.events);
+        input.events.append(&mut self.take_events());
+        if !self.events.is_empty() {
+            context.request_repaint();
+        }
         if self.has_focus {
             // The canvas has lost the focus only to its mirror.
             input.focused = true;
@@ -198,7 +221,11 @@ impl<'a> List<'a> {
         set("value", node.value().filter(|_| !is_text).map(Value::from));
         let finite = |number: Option<f64>| number.filter(|number| number.is_finite()).map(Value::from);
         set("description", node.description().map(Value::from));
-        let decimals = node.value().filter(|_| role == "spinbutton").map(decimals_in);
+        let decimals = match node.role() {
+            // A share of the room.
+            Role::Splitter => Some(3),
+            _ => node.value().filter(|_| role == "spinbutton").map(decimals_in),
+        };
         let now = node.numeric_value().map(|now| decimals.map_or(now, |decimals| round_to_decimals(now, decimals)));
         set("now", finite(now));
         set("min", finite(node.min_numeric_value()));

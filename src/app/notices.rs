@@ -1,4 +1,4 @@
-//! Messages for the user: errors stay until dismissed, notices for a few seconds.
+//! Messages for the user: errors and what can't be used of a view stay until dismissed, notices for a few seconds.
 
 use super::App;
 use crate::editor::Event;
@@ -47,6 +47,12 @@ impl App {
             match event {
                 Event::Notice { text, undoable } => self.show_toast(text, undoable),
                 Event::Problem(problem) => self.add_error(&problem),
+                // An embedded view is to be looked at: nothing stays over it.
+                Event::AboutView(text) if self.state().page.embed => self.toast(text),
+                Event::AboutView(text) => {
+                    self.panels.messages.about_view = Some(text);
+                    self.has_new_message = true;
+                }
                 Event::ViewOpened => {
                     self.panels.on_view_opened(self.editor.state());
                     // Space plays and pauses the new view, instead of pressing the button that had focus.
@@ -60,7 +66,10 @@ impl App {
                     let messages = &mut self.panels.messages;
                     (messages.motion_refused, messages.model_lacks_skeleton) = (true, lacks_skeleton);
                 }
-                Event::MapStarted => self.panels.on_map_started(),
+                Event::MapStarted => {
+                    let has_focus = self.context.memory(|memory| memory.focused().is_some());
+                    self.panels.on_map_started(has_focus);
+                }
                 Event::Stepped => self.panels.messages.toast = None,
             }
         }

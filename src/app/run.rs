@@ -114,9 +114,10 @@ impl App {
         self.panels.messages.error.as_deref()
     }
 
-    /// The notice that the user sees.
+    /// The notice that the user sees, the one that goes away if there are two.
     pub fn notice(&self) -> Option<&str> {
-        self.panels.messages.toast.as_ref().map(|toast| toast.text.as_str())
+        let messages = &self.panels.messages;
+        messages.toast.as_ref().map(|toast| &*toast.text).or(messages.about_view.as_deref())
     }
 
     /// Opens `contents`, in `view` if given.
@@ -137,7 +138,7 @@ impl App {
         if !problems.is_empty() {
             let messages = &mut self.panels.messages;
             let toast = messages.toast.take().map(|toast| toast.text);
-            for text in [messages.error.take(), toast].into_iter().flatten() {
+            for text in [messages.error.take(), messages.about_view.take(), toast].into_iter().flatten() {
                 problems.extend(text.lines().map(str::to_owned));
             }
         }
@@ -156,6 +157,7 @@ impl App {
 
     fn opening(&mut self, open: impl FnOnce(&mut Editor, Admit<'_>) -> Result<(), String>) -> Result<(), String> {
         self.panels.messages.clear_error();
+        self.panels.messages.about_view = None;
         self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
         let opened = open(&mut self.editor, &mut |model| self.viewport.admit(model));
         self.show_events();
@@ -214,7 +216,10 @@ impl App {
     fn script(&mut self, call: ScriptCall) {
         match call {
             ScriptCall::Apply(partial, reply) => match self.editor.apply_partial(&partial) {
-                Ok(()) => self.after_draw.push(Box::new(move || reply(Ok(())))),
+                Ok(()) => {
+                    self.panels.messages.about_view = None;
+                    self.after_draw.push(Box::new(move || reply(Ok(()))));
+                }
                 Err(error) => reply(Err(error)),
             },
             ScriptCall::Screenshot(reply) => self.screenshots.push(reply),
@@ -339,6 +344,7 @@ impl App {
     /// Reports what was drawn, and makes the thumbnails of a model once the Info tab shows it.
     fn update_drawn(&mut self) {
         let drawn = self.viewport.scene.stats();
+        self.timing.begin_frame(self.editor.library().active().map(|model| model.id));
         let host = &mut self.panels.host;
         host.drawn = ui::Drawn { draw_calls: drawn.draw_calls, triangles: drawn.triangles, frames: self.timing.recent };
         let Some(model) = self.panels.info_model.take() else { return };

@@ -10,6 +10,8 @@ pub enum Event {
         /// Whether the shell may offer to undo it.
         undoable: bool,
     },
+    /// What can't be used of a view that was applied, in full sentences. The rest of it is shown.
+    AboutView(String),
     /// Part of an operation failed, although the rest worked.
     Problem(String),
     /// A whole view, such as a link's, is active.

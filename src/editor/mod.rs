@@ -260,8 +260,7 @@ impl Editor {
             self.report(problems);
             self.report(lines);
         } else if !lines.is_empty() {
-            // One notice: a second one would replace the first.
-            self.notify(lines.join(".\n") + ".");
+            self.events.push(Event::AboutView(lines.join(".\n") + "."));
         }
     }
 

@@ -44,21 +44,37 @@ pub(super) async fn read_items<S: Source>(
     if items.is_empty() {
         return Err(OpenError::Nothing);
     }
-    let mut reader = Reader {
-        source,
-        reading: Reading::new(progress),
-        files: FilesRead::default(),
-        bases: Vec::new(),
-        labels: Vec::new(),
-        folder_files: 0,
-    };
+    let mut reader = Reader::new(source, progress);
     for item in items {
         reader.add(item).await?;
         reader.note_members();
     }
-    reader.add_missing().await?;
-    reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
-    Ok(reader.files)
+    reader.finish().await
+}
+
+/// Like [`read_items`], but leaves out what can't be read, unless that is all. Also returns why.
+pub(super) async fn read_available<S: Source>(
+    source: &S,
+    items: Vec<Item>,
+    progress: Progress<'_>,
+) -> Result<(FilesRead, Vec<OpenError>), OpenError> {
+    let mut reader = Reader::new(source, progress);
+    let mut failed = Vec::new();
+    for item in items {
+        let (bases, labels) = (reader.bases.len(), reader.labels.len());
+        match reader.add(item).await {
+            Ok(()) => reader.note_members(),
+            Err(error) => {
+                reader.bases.truncate(bases);
+                reader.labels.truncate(labels);
+                failed.push(error);
+            }
+        }
+    }
+    if reader.labels.is_empty() {
+        return Err(failed.into_iter().next().unwrap_or(OpenError::Nothing));
+    }
+    Ok((reader.finish().await?, failed))
 }
 
 struct Reader<'a, S: Source> {
@@ -73,7 +89,12 @@ struct Reader<'a, S: Source> {
     folder_files: usize,
 }
 
-impl<S: Source> Reader<'_, S> {
+impl<'a, S: Source> Reader<'a, S> {
+    fn new(source: &'a S, progress: Progress<'a>) -> Self {
+        let (reading, files) = (Reading::new(progress), FilesRead::default());
+        Self { source, reading, files, bases: Vec::new(), labels: Vec::new(), folder_files: 0 }
+    }
+
     async fn add(&mut self, item: Item) -> Result<(), OpenError> {
         match item {
             Item::File(name, bytes) => {
@@ -146,6 +167,12 @@ impl<S: Source> Reader<'_, S> {
             }
         }
         Ok(())
+    }
+
+    async fn finish(mut self) -> Result<FilesRead, OpenError> {
+        self.add_missing().await?;
+        self.files.origins.container = container_of(model_label(&self.labels)).to_owned();
+        Ok(self.files)
     }
 
     /// Converts files to plain glTF where necessary, and reads the files that the set refers to and that lie next to

@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::ffi::OsStr;
 use std::io::ErrorKind;
 
-use super::open::open_items;
-use super::read::Item;
+use super::open::{open_items, open_read};
+use super::read::{Item, read_available};
 use super::source::{Content, Progress, Reading, Source};
 use super::{OpenError, Role, read_map};
 use crate::editor::{Contents, container_of};
@@ -33,8 +33,8 @@ impl<'a> Held<'a> {
 }
 
 /// Opens the files of a view that aren't `held`; its model only if `with_model` is set. If the user has yet to supply
-/// the model, returns an empty stage and opens nothing else. A motion or map that cannot be opened becomes a problem of
-/// the contents. In the view, maps replace the addresses they were read from. Progress is reported as "2 of 3:
+/// the model, returns an empty stage and opens nothing else. What cannot be opened beside a model becomes a problem of the
+/// contents. In the view, maps replace the addresses they were read from. Progress is reported as "2 of 3:
 /// walk.bvh".
 pub(super) async fn open_view<S: Source>(
     source: &S,
@@ -144,14 +144,21 @@ async fn read_map_of<S: Source>(
     read.ok().map(|map| MotionMap::of_file(&map))
 }
 
-/// Opens the models that a view lists. If the one it names is not in its archive, the archive's first one is named instead.
+/// Opens the models that a view lists; one of several that cannot be read becomes a problem of the contents. If the one it names is not in its archive, the archive's first one is named instead.
 async fn open_models<S: Source>(
     source: &S,
     models: &mut [String],
     progress: Progress<'_>,
 ) -> Result<Contents, OpenError> {
     let items = models.iter().map(|model| Item::Address(model.into())).collect();
-    let contents = open_items(source, items, Role::Model, progress).await?;
+    let (read, failed) = read_available(source, items, progress).await?;
+    let problems: Vec<String> = failed.iter().map(|error| source.describe_omission("model", error)).collect();
+    let mut contents = match open_read(source, read, Role::Model).await {
+        Ok(contents) => contents,
+        // The rest is nothing without what is missing, such as the .skel of an .obj.
+        Err(error) => return Err(failed.into_iter().next().unwrap_or(error)),
+    };
+    contents.problems.extend(problems);
     if let [model] = models
         && !contents.models.iter().any(|opened| opened.model.origin == *model)
     {

@@ -52,7 +52,7 @@ impl UnknownName {
     }
 }
 
-/// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
+/// “expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle””.
 impl fmt::Display for UnknownName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = match self.kind {
@@ -62,7 +62,7 @@ impl fmt::Display for UnknownName {
             NameKind::Expression => "expressions",
         };
         write!(f, "expected {}, found “{}”; ", self.expected(), self.name)?;
-        let names = self.suggestions().join(", ");
+        let names = self.suggestions().iter().map(|name| format!("“{name}”")).collect::<Vec<_>>().join(", ");
         match self.names.len().saturating_sub(Self::MAX_NAMES) {
             _ if names.is_empty() => write!(f, "there are no {plural}"),
             0 => write!(f, "its {plural} are {names}"),

@@ -6,6 +6,7 @@ use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
 use crate::editor::{ClipFormat, Export, derived_clip};
+use crate::library::Model;
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -19,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         ui.horizontal(|ui| {
             ui.set_height(icon_size(ui, ICON_SIZE).y);
             ui.spacing_mut().item_spacing.x = gap;
-            left(ui, local, out);
+            left(ui, shown, local, out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));
         });
     });
@@ -30,7 +31,7 @@ fn has_samples(ui: &Ui, local: &UiState) -> bool {
     !local.layout.is_small && ui.ctx().content_rect().width() >= 800.0
 }
 
-fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
+fn left(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     panel_button(ui, Sheet::Clips, local);
     if ui.ctx().content_rect().width() >= NAME_WIDTH {
         let name = RichText::new(text::NAME).strong();
@@ -49,7 +50,7 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     if ui.button(text::OPEN).on_hover_text("Open a model. You can also drop files anywhere.").clicked() {
         out.actions.push(UiAction::OpenFiles);
     }
-    borrow(ui, out);
+    borrow(ui, shown, out);
     if has_samples(ui, local) && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
         out.actions.push(UiAction::ShowGallery);
     }
@@ -107,9 +108,12 @@ fn panel_button(ui: &mut Ui, panel: Sheet, local: &mut UiState) {
     }
 }
 
-fn borrow(ui: &mut Ui, out: &mut Output) {
-    let button = ui.button(text::BORROW_MOTION);
-    if button.on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
+fn borrow(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let active = shown.library.active().filter(|model| !model.is_placeholder());
+    let can_borrow = active.is_some_and(Model::has_skeleton);
+    let button = ui.add_enabled(can_borrow, egui::Button::new(text::BORROW_MOTION));
+    let button = button.on_hover_text("Borrow motion from another file, or load a joint map");
+    if button.on_disabled_hover_text(text::NOTHING_TO_MOVE).clicked() {
         out.actions.push(UiAction::ChooseMotion);
     }
 }
@@ -117,7 +121,7 @@ fn borrow(ui: &mut Ui, out: &mut Output) {
 fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     ui.set_width(MENU_WIDTH);
     if local.layout.is_small {
-        borrow(ui, out);
+        borrow(ui, shown, out);
         // No menu of its own: it would cover this one, without a way back.
         controls::section(ui, capitals!(text::EXPORT));
         export(ui, shown, local, out);
@@ -128,14 +132,14 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
         (text::FULL_SCREEN, local.host.has_fullscreen, UiAction::ToggleFullscreen),
     ];
     for (label, is_there, action) in items {
-        if is_there && ui.button(label).clicked() {
+        if is_there && entry(ui, label) {
             out.actions.push(action);
         }
     }
-    if ui.button(if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP }).clicked() {
+    if entry(ui, if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP }) {
         local.help.is_open = true;
     }
-    if ui.button(text::ABOUT).clicked() {
+    if entry(ui, text::ABOUT) {
         local.about_open = true;
     }
     let themes =
@@ -145,6 +149,15 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     if let Some(theme) = controls::segmented_about(ui, text::THEME, Some(now), &themes) {
         out.actions.push(UiAction::SetTheme(theme));
     }
+}
+
+/// An entry that closes its menu, also when a key presses it: egui only sees clicks.
+fn entry(ui: &mut Ui, label: &str) -> bool {
+    let is_pressed = ui.button(label).clicked();
+    if is_pressed {
+        ui.close();
+    }
+    is_pressed
 }
 
 /// Everything that can be saved of this view.
@@ -170,11 +183,11 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     let recordings = recordings.map(|(label, _, action)| (label, action));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
     for (label, action) in [image].into_iter().chain(recordings).chain(files) {
-        if ui.button(label).clicked() {
+        if entry(ui, label) {
             out.actions.push(action);
         }
     }
-    if ui.button(text::PICTURE_SETTINGS).clicked() {
+    if entry(ui, text::PICTURE_SETTINGS) {
         local.layout.show_tab(Tab::Camera);
         local.seeks_picture_settings = true;
     }

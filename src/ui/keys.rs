@@ -143,7 +143,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "?",
         does: "Show this list",
         pressed: &[Key::Questionmark, Key::F1],
-        act: |_, local, _, _| local.help.is_open = !local.help.is_open,
+        act: |_, local, _, _| local.help.toggle_by_key(),
     },
     KeyHelp {
         keys: "Esc",
@@ -158,6 +158,8 @@ pub const KEY_TABLE: &[KeyHelp] = &[
                 local.layout.sheet = None;
             } else if local.messages.error.is_some() {
                 local.messages.clear_error();
+            } else if local.messages.about_view.take().is_some() {
+                // Esc only dismissed the notice.
             } else if shown.state.selection.joint.is_some() {
                 out.commands.push(Command::SelectJoint(None));
             }

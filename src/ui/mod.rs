@@ -321,8 +321,10 @@ impl UiState {
     }
 
     /// Shows the joint table of a motion that the user maps manually.
-    pub fn on_map_started(&mut self) {
+    /// `takes_focus`: the first joint gets the focus, which the control that began it had.
+    pub fn on_map_started(&mut self, takes_focus: bool) {
         self.layout.show_tab(Tab::Motion);
+        self.motion.focus_table(takes_focus);
     }
 
     /// Brings the Motion tab forward. On a small screen, the viewport stays in sight.
@@ -421,10 +423,15 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
     }
 }
 
-/// Names the edge that resizes a panel of this `Ui`: egui calls each of them the same. The salt of its id is egui's own.
+/// Names the edge that resizes a panel of this `Ui`, and tells its share of the room: egui calls each of them the same. The salt of its id is egui's own.
 fn name_edge(ui: &Ui, panel: &str, name: &str) {
     let edge = ui.scope_id().with(panel).with("__resize");
-    ui.ctx().accesskit_node_builder(edge, |node| node.set_label(name));
+    ui.ctx().accesskit_node_builder(edge, |node| {
+        node.set_label(name);
+        if let Some(share) = node.numeric_value() {
+            node.set_value(text::percent(share));
+        }
+    });
 }
 
 fn is_small(ui: &Ui) -> bool {

@@ -80,8 +80,8 @@ fn the_info_tab_measures_what_is_drawn_and_comes_to_rest() {
     for (row, nothing) in [
         (text::DRAW_CALLS, "0"),
         (text::DRAWN_TRIANGLES, "0"),
-        (text::GEOMETRY_MEMORY, "0.0 MB"),
-        (text::IMAGE_MEMORY, "0.0 MB"),
+        (text::GEOMETRY_MEMORY, "0 MB"),
+        (text::IMAGE_MEMORY, "0 MB"),
     ] {
         assert!(desk.shows(&text::labelled(row, "")), "{row}");
         assert!(!desk.shows(&text::labelled(row, nothing)), "{row} should have been measured");

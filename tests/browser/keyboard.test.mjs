@@ -117,6 +117,35 @@ for (const renderer of BACK_ENDS)
       assert.equal((await focused(page))?.isMirrored, true, "backwards, too");
     });
 
+    onPage("keys reach the program while nothing has the focus", () => "play=0", async (page) => {
+      assert.equal(await focused(page), null);
+      await page.keyboard.press("Space");
+      await until(page, async () => (await window.gaitway.state()).play);
+      await page.locator("canvas").evaluate((canvas) => canvas.blur());
+      await page.keyboard.press("?");
+      await page.locator("#mirror [role=dialog]").waitFor({ state: "attached" });
+      await page.keyboard.press("Escape");
+      await page.locator("#mirror [role=dialog]").waitFor({ state: "detached" });
+      await page.keyboard.press("Tab");
+      assert.equal((await focused(page))?.id, (await controlIds(page))[0][0], "Tab begins with the first control");
+    });
+
+    onPage("a menu is walked through and left by keys while nothing moves", () => "play=0", async (page) => {
+      await tabTo(page, /^Export/);
+      await page.keyboard.press("Enter");
+      await until(page, () => document.activeElement?.closest("#mirror > [role=group]") !== null);
+      const first = await focused(page);
+      for (const [key, step] of /** @type {const} */ ([["ArrowDown", 1], ["ArrowDown", 2], ["ArrowDown", 3], ["ArrowUp", 2], ["ArrowUp", 1]])) {
+        await untilStill(page);
+        await page.keyboard.press(key);
+        await until(page, ([id, step]) => [...(document.activeElement?.parentElement?.children ?? [])].findIndex((entry) => entry === document.activeElement) === [...(document.activeElement?.parentElement?.children ?? [])].findIndex((entry) => /** @type {HTMLElement} */ (entry).dataset.id === id) + step, /** @type {const} */ ([first?.id ?? "", step]));
+      }
+      const entry = control(page, "button", "Image and video settings…");
+      await entry.press("Enter");
+      await entry.waitFor({ state: "detached" });
+      await until(page, () => /^Export/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+    });
+
     onPage("a character is opened, walks, and is shared without a pointer", () => "play=0", async (page) => {
       await page.keyboard.press("Control+o");
       await typeUrl(page, site.data(SOLDIER));

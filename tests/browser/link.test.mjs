@@ -134,6 +134,16 @@ for (const renderer of BACK_ENDS)
       assert.equal(embed, true);
     });
 
+    const twoModels = () => fragment([["model", site.data(FOX)], ["model", `${servers.own.origin}/gone.glb`], ["play", 0]]);
+    onPage("shows one of two models and names the missing one", twoModels, async (page) => {
+      await whenMissing(page);
+      const [gone, ...others] = await missing(page);
+      assert.match(gone, /gone\.glb: .*404/);
+      assert.deepEqual(others, []);
+      await page.locator("#missing-continue").click();
+      await whenShown(page, FOX_VERTICES);
+    });
+
     onPage("tries again", () => fragment([["model", `${servers.own.origin}/late.glb`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
       await whenMissing(page);
       const again = page.locator("#missing-again");

@@ -108,7 +108,7 @@ fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
     assert!(edges.status.success(), "the wireframe has no lobes: {}", said(&edges));
     let refused = render_file(file, &["--out", "-", "--variant", "Green"]);
     assert_eq!(refused.status.code(), Some(1));
-    let says = "expected the name of a material variant, found “Green”; its variants are Red, Blue & more, Coat";
+    let says = "expected the name of a material variant, found “Green”; its variants are “Red”, “Blue & more”, “Coat”";
     assert!(said(&refused).contains(says) && said(&refused).contains("gaitway-variants"), "{}", said(&refused));
     std::fs::remove_file(&path).expect("it was written");
 }

@@ -193,8 +193,8 @@ fn errors_say_what_to_do() {
     check_fails(&retarget, 1, "--clip-only");
     assert!(!std::path::Path::new(out).exists(), "a failed command writes nothing");
     check_fails(&["retarget", "--model", "sample:walker", "--out", out], 2, "--motion");
-    check_fails(&["pose", "sample:walker", "--motion", &motion, "--clip", "-1"], 1, "“-1”; its clips are Walk");
-    check_fails(&[&retarget[..], &["--clip", "-1"]].concat(), 1, "“-1”; its clips are walk");
+    check_fails(&["pose", "sample:walker", "--motion", &motion, "--clip", "-1"], 1, "“-1”; its clips are “Walk”");
+    check_fails(&[&retarget[..], &["--clip", "-1"]].concat(), 1, "“-1”; its clips are “walk”");
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn layers_are_posed_and_written() {
     let convert = ["convert", &motion, "--layer", "walk:additive,start:0.25,weight:0.5", "--out", &turned];
     assert!(run(&convert).status.success());
     assert_ne!(places(&turned, "1", "0.1"), places(&motion, "0", "0.1"));
-    let clips = "--layer: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave";
+    let clips = "--layer: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”";
     check_fails(&["pose", "sample:walker", "--clip", "Walk", "--layer", "Fly"], 1, clips);
     check_fails(&["convert", &motion, "--layer", "Fly", "--out", &turned], 1, "found “Fly”");
     check_fails(&["pose", "sample:walker", "--layer", "Wave:mask:wing"], 2, "left-arm");

@@ -233,11 +233,11 @@ fn failures_are_documents_with_json() {
         &["pose", "sample:walker", "--clip", "Fly", "--json"],
         1,
         &json!({
-            "message": "sample:walker: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave",
+            "message": "sample:walker: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”",
             "file": "sample:walker",
             "expected": "the name or index of a clip",
             "found": "“Fly”",
-            "hint": "its clips are Walk, Idle, Wave",
+            "hint": "its clips are “Walk”, “Idle”, “Wave”",
         }),
     );
     let broken = desk.path("broken.gltf");
@@ -277,7 +277,7 @@ fn failures_are_documents_with_json() {
 
 #[test]
 fn an_unknown_clip_of_a_link_is_reported() {
-    let says = "“Fly”; its clips are Walk, Idle, Wave; the rest pose is used";
+    let says = "“Fly”; its clips are “Walk”, “Idle”, “Wave”; the rest pose is used";
     let stderr = |arguments: &[&str]| {
         let output = run(arguments);
         assert!(output.status.success());

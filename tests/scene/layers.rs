@@ -157,9 +157,9 @@ fn an_unknown_layer_of_a_view_is_told() {
     let mut view = editor.state().clone();
     view.edits.layers = vec![ClipLayer { clip: "Fly".to_owned(), ..ClipLayer::default() }];
     editor.apply(Command::Replace(Box::new(view)));
-    let told = "layers: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave; the layer is left out.";
+    let told = "layers: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the layer is left out.";
     let events = editor.take_events();
-    assert!(events.iter().any(|event| matches!(event, Event::Notice { text, .. } if text == told)), "{events:?}");
+    assert!(events.iter().any(|event| matches!(event, Event::AboutView(text) if text == told)), "{events:?}");
 }
 
 #[test]
@@ -169,7 +169,8 @@ fn unknown_names_of_a_view_are_told_together() {
     assert!(errors.is_empty(), "{errors:?}");
     editor.apply(Command::Replace(Box::new(view)));
     let events = editor.take_events();
-    let told = |event: &Event| matches!(event, Event::Notice { text, .. } if text.contains("“Swim”") && text.contains("“Fly”"));
+    let told =
+        |event: &Event| matches!(event, Event::AboutView(text) if text.contains("“Swim”") && text.contains("“Fly”"));
     assert!(events.iter().any(told), "{events:?}");
 }
 

@@ -277,6 +277,31 @@ fn a_view_opens_the_files_it_lists() {
     assert!(matches!(open_view(view, true, Held { motions: &held, ..Held::default() }), Err(OpenError::Read { .. })));
 }
 
+#[test]
+fn one_of_several_models_that_cannot_be_read_is_left_out() {
+    let folder = temporary_folder("models");
+    let model = write(&folder, "m.gltf", MESH.as_bytes()).to_str().expect("Unicode").to_owned();
+    let open = |link: &str| open_view(from_link(link).0, true, Held::default());
+    for link in [format!("model={model}&model=nowhere.glb"), format!("model=nowhere.glb&model={model}")] {
+        let (contents, view) = open(&link).expect("one is there");
+        assert_eq!(
+            contents.models.iter().map(|opened| &*opened.model.source).collect::<Vec<_>>(),
+            ["m.gltf"],
+            "{link}"
+        );
+        assert_eq!(view.sources.model.len(), 2, "it may be there when the link is opened again");
+        let [problem] = &contents.problems[..] else { panic!("{:?}", contents.problems) };
+        assert!(problem.starts_with("nowhere.glb: there is no such file"), "{problem}");
+    }
+    // Without the .obj, its .skel is nothing.
+    let skeleton = write(&folder, "a.skel", b"1").to_str().expect("Unicode").to_owned();
+    let error = open(&format!("model=nowhere.obj&model={skeleton}")).expect_err("no model").to_string();
+    assert!(error.starts_with("nowhere.obj: "), "{error}");
+    let error = open("model=nowhere.glb&model=nor.glb").expect_err("nothing is there").to_string();
+    assert!(error.starts_with("nowhere.glb: "), "{error}");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
 /// White from all directions: one pixel.
 const HDR: &[u8] = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
 

@@ -254,8 +254,8 @@ fn the_message_about_an_unknown_clip_lists_similar_names() {
         assert_eq!(message, format!("expected the name or index of a clip, found “{name}”; {expected}"));
     };
     check("Fly", &[], "there are no clips");
-    check("Walc", &names[..5], "its clips are Idle, Jump, Run_Backwards, Sit, Walk");
-    check("WALC", &names, "its clips are Walk, walk_b, Walking, Wave, Run_Backwards and 4 more");
-    check("9", &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
-    check(&"x".repeat(1 << 20), &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
+    check("Walc", &names[..5], "its clips are “Idle”, “Jump”, “Run_Backwards”, “Sit”, “Walk”");
+    check("WALC", &names, "its clips are “Walk”, “walk_b”, “Walking”, “Wave”, “Run_Backwards” and 4 more");
+    check("9", &names, "its clips are “Idle”, “Jump”, “Run_Backwards”, “Sit”, “Walk” and 4 more");
+    check(&"x".repeat(1 << 20), &names, "its clips are “Idle”, “Jump”, “Run_Backwards”, “Sit”, “Walk” and 4 more");
 }

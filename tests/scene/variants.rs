@@ -64,7 +64,7 @@ fn a_variant_is_undone_and_stays_with_its_model() {
 
 #[test]
 fn an_unknown_variant_of_a_view_is_reported() {
-    let notice = "variant: expected the name of a material variant, found “Dusk”; its variants are Day, Night; the \
+    let notice = "variant: expected the name of a material variant, found “Dusk”; its variants are “Day”, “Night”; the \
                   file's own materials are used.";
     let mut view = ViewerState::of_model("box.glb".to_owned());
     view.edits.variant = Some("Dusk".to_owned());
@@ -72,7 +72,7 @@ fn an_unknown_variant_of_a_view_is_reported() {
     let contents = Contents { models: vec![model("box.glb").into()], ..Contents::default() };
     editor.open(contents, Some(view), &mut |_| Ok(())).expect("fits");
     let events = editor.take_events();
-    assert!(events.iter().any(|event| matches!(event, Event::Notice { text, .. } if text == notice)), "{events:?}");
+    assert!(events.iter().any(|event| matches!(event, Event::AboutView(text) if text == notice)), "{events:?}");
 }
 
 #[test]

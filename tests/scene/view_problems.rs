@@ -73,7 +73,7 @@ fn what_the_model_lacks_is_told() {
 #[test]
 fn names_that_the_model_lacks_are_told_with_those_it_has() {
     let library = walker();
-    let clip = "expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave";
+    let clip = "expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”";
     check(&library, "clip=Fly", &[&format!("clip: {clip}; the rest pose is used")]);
     check(&library, "mirror=Fly", &[&format!("mirror: {clip}; it is left out")]);
     check(&library, "change=Fly:reverse", &[&format!("change: {clip}; it is left out")]);

@@ -9,7 +9,9 @@ use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, Show};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench};
+use crate::bench::{
+    Bench, NARROW, WIDE, bench, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench,
+};
 
 /// Presses an entry of a menu.
 pub fn choose(harness: &mut Harness<'_, Bench>, menu: &str, entry: &str) {
@@ -94,6 +96,29 @@ fn export_offers_what_the_view_has() {
     harness.run();
     let settings = harness.get_by_label(text::RECORD_IMAGES).rect();
     assert!(settings.bottom() < WIDE[1], "the settings are in sight, {settings:?}");
+}
+
+#[test]
+fn an_entry_pressed_by_key_closes_its_menu_and_gives_the_focus_back() {
+    let mut harness = sample_bench(WIDE);
+    for (menu, entry) in [(text::EXPORT, text::SAVE_IMAGE), (text::EXPORT, text::PICTURE_SETTINGS)] {
+        harness.get_by_label(menu).focus();
+        press_key(&mut harness, egui::Key::Enter);
+        harness.get_by_label(entry).focus();
+        harness.run();
+        press_key(&mut harness, egui::Key::Enter);
+        harness.run();
+        assert!(!egui::Popup::is_any_open(&harness.ctx), "{entry} closes the menu");
+        assert!(harness.get_by_label(menu).accesskit_node().is_focused(), "{menu} has the focus again");
+    }
+}
+
+#[test]
+fn there_is_nothing_to_borrow_for_without_a_skeleton() {
+    let is_disabled =
+        |harness: &Harness<'_, Bench>| harness.get_by_label(text::BORROW_MOTION).accesskit_node().is_disabled();
+    assert!(!is_disabled(&sample_bench(WIDE)));
+    assert!(is_disabled(&bench(WIDE, Model::placeholder("file:fox.glb"))), "an empty stage");
 }
 
 #[test]

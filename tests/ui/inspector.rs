@@ -268,6 +268,29 @@ fn selecting_a_joint_moves_no_row() {
     }
 }
 
+/// It takes what the cards leave, and gives it back to them without losing sight of the joint that was pressed.
+#[test]
+fn the_tree_uses_the_room_of_its_tab() {
+    let rows = |harness: &Harness<'_, Bench>| harness.get_all_by_role(Role::TreeItem).count();
+    let mut low = sample_bench([1280.0, 600.0]);
+    let mut high = sample_bench([1280.0, 700.0]);
+    assert!(rows(&high) >= rows(&low) + 3, "{} and {}", rows(&high), rows(&low));
+    let timeline = low.get_by_label(text::TIME).rect().top();
+    let gap = timeline - low.get_by_label(text::VERTEX_PROBE).rect().bottom();
+    assert!((38.0..50.0).contains(&gap), "it ends where the tab does: {gap}");
+    for harness in [&mut low, &mut high] {
+        let before = rows(harness);
+        let low_row = harness.get_all_by_role(Role::TreeItem).nth(before - 3).expect("a row");
+        let joint = low_row.accesskit_node().label().expect("a name");
+        harness.get_by_role_and_label(Role::TreeItem, &joint).click();
+        harness.run();
+        assert!(rows(harness) < before, "its card takes the room");
+        let row = harness.get_by_role_and_label(Role::TreeItem, &joint).rect();
+        let card = harness.get_by_label(text::POSE_MANUALLY).rect();
+        assert!(row.bottom() <= card.top(), "{joint} at {row:?} above its card at {card:?}");
+    }
+}
+
 #[test]
 fn eyes_hide_nodes_and_materials_and_alt_solos_them() {
     // Tall enough for the whole tree.
@@ -374,6 +397,13 @@ fn keys_lead_through_the_whole_tree() {
     assert_eq!(at_after(egui::Key::PageDown), last);
     assert_eq!(at_after(egui::Key::Home), 0);
     assert_eq!(at_after(egui::Key::PageDown), page);
+    // Before the focus has arrived.
+    harness.key_press(egui::Key::End);
+    harness.key_press(egui::Key::Home);
+    harness.key_press(egui::Key::End);
+    harness.run();
+    let row = harness.get_by_role_and_label(Role::TreeItem, names[last]);
+    assert!(row.accesskit_node().is_focused(), "none of them is lost");
 }
 
 #[test]
@@ -519,7 +549,7 @@ fn materials_and_images_are_listed_with_what_they_are() {
         "KHR_materials_clearcoat",
         "Default material",
         "weave",
-        "PNG, 8 × 4, base colour, emissive, 0.0 MB on the GPU",
+        "PNG, 8 × 4, base colour, emissive, 0.2 KB on the GPU",
     ] {
         assert!(harness.query_by_label(line).is_some(), "{line}");
     }

@@ -83,7 +83,7 @@ fn mapping_manually_shows_the_joint_table() {
         harness.state_mut().panels.layout.inspector_open = false;
         harness.run();
         assert!(harness.query_by_label(Tab::Motion.label()).is_none());
-        harness.state_mut().panels.on_map_started();
+        harness.state_mut().panels.on_map_started(false);
         harness.run();
         assert!(harness.query_by_label(Tab::Motion.label()).is_some(), "{size:?}");
     }
@@ -170,6 +170,13 @@ fn the_help_fits_small_screens() {
             let node = harness.get_by_role_and_label(role, label);
             assert!(screen.contains_rect(node.rect()), "{node:?} on {size:?}");
         }
+        press_key(&mut harness, egui::Key::Escape);
+        press_key(&mut harness, egui::Key::Questionmark);
+        assert!(harness.query_by_label(text::STEP_KEYS).is_some(), "its key shows the keys on {size:?}");
+        press_key(&mut harness, egui::Key::Escape);
+        harness.state_mut().panels.help.is_open = true;
+        harness.run();
+        assert_eq!(harness.query_by_label(text::STEP_KEYS).is_some(), size == WIDE, "not the menu, on {size:?}");
         for label in lines {
             let rect = harness.get_by_label(label).rect();
             assert!(
@@ -341,6 +348,21 @@ fn an_error_stays_until_dismissed() {
     assert!(harness.query_by_label("broken.glb: it is not a GLB file.").is_some());
     press(&mut harness, text::DISMISS_ERROR);
     assert_eq!(harness.state().panels.messages.error, None);
+}
+
+#[test]
+fn what_cannot_be_used_of_a_view_is_told_until_dismissed() {
+    let mut harness = sample_bench(WIDE);
+    for is_by_key in [false, true] {
+        harness.state_mut().panels.messages.about_view = Some("joint=999: expected a joint.".to_owned());
+        harness.run();
+        assert!(harness.query_by_label("joint=999: expected a joint.").is_some());
+        match is_by_key {
+            true => press_key(&mut harness, egui::Key::Escape),
+            false => press(&mut harness, text::DISMISS_NOTICE),
+        };
+        assert_eq!(harness.state().panels.messages.about_view, None);
+    }
 }
 
 #[test]

@@ -104,6 +104,46 @@ fn the_edges_that_resize_panels_have_names_of_their_own() {
 }
 
 #[test]
+fn the_width_of_a_panel_is_read_in_percent() {
+    let mut harness = motion_bench([1366.0, 768.0], &[]);
+    let entries = entries(&tree_of(&mut harness));
+    for name in [text::RESIZE_CLIPS, text::RESIZE_INSPECTOR] {
+        let edge = entries.iter().find(|entry| entry["name"] == name).expect("an edge");
+        let share = edge["now"].as_f64().expect("a share");
+        assert!((0.1..0.4).contains(&share) && edge["now"].to_string().len() <= 5, "{name}: {share}");
+        assert_eq!(edge["value"], format!("{:.0} %", 100.0 * share));
+    }
+}
+
+/// On a slow machine, one frame may have several.
+#[test]
+fn every_key_moves_the_focus() {
+    let context = Context::default();
+    context.add_plugin(Mirror::new(|_| ()));
+    let mut ids = Vec::new();
+    let mut frame = || {
+        let mut output = context.run_ui(RawInput::default(), |ui| {
+            ids = (0..6).map(|index| ui.button(index.to_string()).id).collect();
+        });
+        output.textures_delta.clear();
+        ids.clone()
+    };
+    let ids = frame();
+    context.memory_mut(|memory| memory.request_focus(ids[0]));
+    let mut check = |keys: &[&str], expected: usize| {
+        for pressed in keys.iter().flat_map(|key| [(key, true), (key, false)]) {
+            let press = |mirror: &mut Mirror| mirror.key(pressed.0, pressed.1, egui::Modifiers::NONE);
+            context.with_plugin(press).expect("a mirror");
+        }
+        (0..10).for_each(|_| drop(frame()));
+        assert_eq!(context.memory(egui::Memory::focused), Some(ids[expected]), "{keys:?}");
+    };
+    check(&["ArrowDown", "ArrowDown", "ArrowDown", "ArrowUp"], 2);
+    // Held for long: it stops soon after it is released.
+    check(&["ArrowUp"; 40], 0);
+}
+
+#[test]
 fn radio_buttons_are_in_a_group_named_by_its_topic() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
     let tree = Arc::new(Mutex::new(None));

@@ -93,6 +93,16 @@ fn time_stands_still_over_a_handle_and_the_camera_turns_beside_it() {
 }
 
 #[test]
+fn a_pin_does_not_widen_the_card() {
+    let mut harness = selected([1024.0, 768.0], LEFT_HAND);
+    let width =
+        |harness: &Harness<'_, Bench>| harness.get_by_label(&text::labelled(text::PIN, text::NOT_PINNED)).rect();
+    let before = width(&harness);
+    choice(&mut harness, text::PIN, text::PIN_TO_POINT);
+    assert_eq!(width(&harness).x_range(), before.x_range());
+}
+
+#[test]
 fn numbers_are_read_as_they_are_shown_and_by_what_they_belong_to() {
     let mut harness = selected(WIDE, LEFT_HAND);
     choice(&mut harness, text::PIN, text::PIN_TO_POINT);

@@ -98,8 +98,11 @@ export function showMissing(problems, link, isUnchanged = false) {
   // A problem may name the absolute URL of a relative one, or only the file.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const models = linkedFiles(link).filter(({ role, name }) => role === "model" && failed.includes(fileName(name)));
-  const isModel = models.length > 0;
-  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models.map(({ name }) => name));
+  const hasFailed = models.length > 0;
+  const isAwaited = hasFailed && lacksModel(models, isUnchanged);
+  if (isAwaited) awaitCopies(link, models.map(({ name }) => name));
+  // Not one of several, of which another is shown.
+  const isModel = isAwaited || (hasFailed && isUnchanged);
   showProblems(problems, {
     title: `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`,
     rest: isUnchanged ? "The current view stays as it was." : isModel ? "“Try again” reloads the whole link." : "Everything else is shown.",

@@ -74,8 +74,11 @@ showIfHigh(location.hash.length < 2 && parent === window && cards.length > 0);
 button("gallery-close").addEventListener("click", () => setShown(false));
 lowScreen.addEventListener("change", () => showIfHigh(isHiddenByHeight || !gallery.hidden));
 // In the viewport, Escape acts on the selection there.
-addEventListener("keydown", ({ key, target }) => {
-  if (key === "Escape" && !gallery.inert && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
+addEventListener("keydown", (event) => {
+  const isHere = event.target === document.body || gallery.contains(/** @type {Node} */ (event.target));
+  if (event.key !== "Escape" || gallery.hidden || gallery.inert || !isHere) return;
+  setShown(false);
+  event.preventDefault();
 });
 // After a click the keyboard controls the viewport; after a key press the focus stays here, unless a low screen closes the samples.
 for (const card of cards)

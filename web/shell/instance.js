@@ -4,7 +4,7 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
-import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
+import { button, byId, focusCanvas, frames, isDialogOpen, messageOf, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing, showMissingImages } from "./following.js";
@@ -283,6 +283,22 @@ function stopOnTrap(error) {
   if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`);
 }
 
+/**
+ * Passes keys on to the canvas while nothing has the focus, as after loading. Tab and what others have handled stay with them.
+ * @param {KeyboardEvent} event
+ */
+function passToCanvas(event) {
+  const { key, target, defaultPrevented } = event;
+  // The key may have closed what had the focus.
+  const isNobodys = target === document.body && document.activeElement === document.body && !defaultPrevented;
+  if (!isNobodys || key === "Tab" || session.app === null || panel() !== null || isDialogOpen()) return;
+  focusCanvas();
+  // Nothing inert takes the focus.
+  const { activeElement } = document;
+  if (activeElement instanceof HTMLCanvasElement && !activeElement.dispatchEvent(new KeyboardEvent(event.type, event))) event.preventDefault();
+}
+
+addEventListener("keydown", passToCanvas);
 byId("stage").addEventListener("keydown", (event) => mirror?.leaveCanvas(event), true);
 addEventListener("error", ({ error }) => stopOnTrap(error));
 addEventListener("unhandledrejection", ({ reason }) => stopOnTrap(reason));

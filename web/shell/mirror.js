@@ -37,6 +37,10 @@ export class Mirror {
    * @type {string | null}
    */
   #wanted = null;
+  /** A list is being shown: an element that leaves with the focus hands it on. */
+  #isShowing = false;
+  /** The focus follows the program's: to report that back would undo what the program has done since. */
+  #isFollowing = false;
   /**
    * What opened the innermost menu.
    * @type {HTMLElement | null}
@@ -53,7 +57,7 @@ export class Mirror {
     for (const type of ["keydown", "keyup"]) root.addEventListener(type, (event) => event instanceof KeyboardEvent && this.#passKey(event));
     root.addEventListener("focusin", () => program.mirror_focus(true));
     root.addEventListener("focusout", ({ relatedTarget }) => {
-      if (!(relatedTarget instanceof Node && root.contains(relatedTarget))) program.mirror_focus(false);
+      if (!this.#isShowing && !(relatedTarget instanceof Node && root.contains(relatedTarget))) program.mirror_focus(false);
     });
   }
 
@@ -65,6 +69,7 @@ export class Mirror {
     /** @type {{ focus: string, entries: MirrorEntry[] }} */
     const { focus, entries } = JSON.parse(text);
     const before = this.root.contains(document.activeElement) ? document.activeElement : null;
+    this.#isShowing = true;
     const roles = new Map(entries.map(({ id, role }) => [id, role]));
     for (const [id, element] of this.#elements) {
       // Another widget may have taken the id of one that is gone.
@@ -77,6 +82,8 @@ export class Mirror {
     const menu = this.#place(entries);
     if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus);
     this.#focused = focus;
+    this.#isShowing = false;
+    if (before !== null && !this.root.contains(document.activeElement)) this.#program.mirror_focus(false);
   }
 
   /**
@@ -134,6 +141,7 @@ export class Mirror {
     if (role === "img" && focusable) element.tabIndex = 0;
     [element.dataset.id, element.dataset.role] = [id, role];
     element.addEventListener("focus", () => {
+      if (this.#isFollowing) return;
       this.#wanted = id;
       this.#program.mirror_act(id, "focus");
     });
@@ -166,9 +174,10 @@ export class Mirror {
     const selected = this.root.querySelector("[role=treeitem][aria-selected=true]");
     const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? stopsIn(this.root)[0]);
     const target = first ?? (next.isConnected ? next : fallback);
+    this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();
-    // Its own move, which it won't report again.
-    if (target?.dataset.id === focus) this.#wanted = null;
+    if (this.#isFollowing) this.#wanted = null;
+    this.#isFollowing = false;
   }
 
   /** @param {KeyboardEvent} event */
@@ -193,8 +202,8 @@ export class Mirror {
     }
     if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
     this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
-    // The browser's own commands stay.
-    if (!(isCommand || altKey) || /^[ozsy]$/i.test(key)) event.preventDefault();
+    // The browser's own commands stay, also those of function keys.
+    if (!(isCommand || altKey || /^F([2-9]|1.)$/.test(key)) || /^[ozsy]$/i.test(key)) event.preventDefault();
   }
 }
 

@@ -31,6 +31,8 @@ pub(super) struct TableView {
     pub filter: Filter,
     /// Ordered by hierarchy, even if parts of the body are known.
     pub tree: bool,
+    /// The first row gets the focus.
+    pub takes_focus: bool,
     folded: HashSet<BodyPart>,
     lines: Option<Rc<Lines>>,
     /// The joint last scrolled to.
@@ -250,6 +252,9 @@ impl Table<'_, '_> {
             ui.ctx().request_repaint();
             tab.table.revealed = Some((row.number, 1));
         }
+        if std::mem::take(&mut tab.table.takes_focus) {
+            ui.memory_mut(|memory| memory.request_focus(target_id(ui, row)));
+        }
         match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
@@ -332,6 +337,10 @@ enum Pressed {
     Source,
 }
 
+fn target_id(ui: &Ui, row: &Row) -> egui::Id {
+    ui.scope_id().with(("map row", row.number))
+}
+
 /// State and target on the left, source on the right, the reason below. Either half is a button.
 fn show_row(
     ui: &mut Ui,
@@ -352,8 +361,8 @@ fn show_row(
     }
     // Indented names keep their width.
     let middle = rect.center().x + 0.5 * indent;
-    let id = ui.scope_id().with(("map row", row.number));
-    let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
+    let id = target_id(ui, row);
+    let target = ui.interact(rect.with_max_x(middle), id, Sense::click());
     let source = ui.interact(rect.with_min_x(middle), id.with("source"), Sense::click());
     let role = egui::accesskit::Role::Button;
     target.widget_info(|| WidgetInfo::selected(role, true, chosen, text::edit_joint(&row.target)));

@@ -97,6 +97,12 @@ impl MotionTab {
         self.picking.is_some()
     }
 
+    /// Shows the joint table; its first joint gets the focus if `takes_focus`.
+    pub fn focus_table(&mut self, takes_focus: bool) {
+        self.part = Section::Joints;
+        self.table.takes_focus = takes_focus;
+    }
+
     /// Cancels unfinished input, which is about a motion that may be gone.
     pub fn other_motions(&mut self) {
         (self.picking, self.clicking, self.typed, self.turn) = (None, None, None, None);

@@ -50,6 +50,7 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
     let mut is_changed = false;
     ui.horizontal(|ui| {
+        let width = ((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0).min(80.0);
         for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
             let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).prefix(name).suffix(" m");
             // Values that round to zero have no sign.
@@ -58,7 +59,7 @@ pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
                 egui::emath::format_with_decimals_in_range(value, decimals)
             });
             let field = field.update_while_editing(false);
-            let field = controls::sized(ui, [80.0, 26.0], field);
+            let field = controls::sized(ui, [width, 26.0], field);
             controls::named(&field, || text::labelled(topic, name.trim_end()));
             is_changed |= field.changed();
         }

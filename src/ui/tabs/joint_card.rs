@@ -19,6 +19,8 @@ use crate::ui::{Output, Shown, controls, style, text};
 pub struct JointCard {
     /// The pose sliders and the rotation gizmo are on.
     pub is_posing: bool,
+    /// The sliders have just appeared, which changes the room above them first.
+    reveals_sliders: bool,
     shows_matrices: bool,
     /// The number in the file of the joint that is being renamed, and what has been typed so far.
     renaming: Option<(usize, String)>,
@@ -47,13 +49,15 @@ pub fn show(
     let is_switched = controls::switch(ui, text::POSE_MANUALLY, card.is_posing);
     if is_switched {
         card.is_posing = !card.is_posing;
+        card.reveals_sliders = card.is_posing;
+        ui.ctx().request_repaint();
         if shown.state.camera_options.turntable != 0.0 {
             out.commands.push(Command::SetTurntable(0.0));
         }
     }
     if card.is_posing {
         let sliders = ui.scope(|ui| pose_sliders(ui, shown, asset, joint, local.rotation, out));
-        if is_switched {
+        if !is_switched && std::mem::take(&mut card.reveals_sliders) {
             // On a phone they begin below the sheet.
             sliders.response.scroll_to_me(None);
         }

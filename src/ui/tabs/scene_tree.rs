@@ -16,7 +16,7 @@ use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 const MIN_ROWS: f32 = 6.0;
 /// On a phone, those rows are no more than this share of the tab, so that a selected joint shows below them.
 const MAX_SHARE: f32 = 0.55;
-/// Share of the tab's height. Always the same, so that selecting a joint moves no row.
+/// Minimum share of the tab's height. The tree also takes what is left over below its cards.
 const TREE_SHARE: f32 = 0.4;
 
 /// What the tree remembers about one model. Joints are numbered as in the file.
@@ -32,6 +32,11 @@ pub struct SceneTree {
     scrolled_to: Option<usize>,
     /// Index of the row that a key leads to: scrolled to, then focused.
     leap: Option<usize>,
+    /// Height of the tree and how far it was scrolled, in the last frame.
+    height: f32,
+    offset: f32,
+    /// Height of all else in the tab in the last frame, and whether that was with a selected joint.
+    rest: Option<(bool, f32)>,
     /// By joint.
     nodes: Vec<Node>,
     /// `None` at first and after a row is expanded or collapsed.
@@ -60,16 +65,21 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    let room = ui.available_height();
-    let height = (TREE_SHARE * room).max((MIN_ROWS * row_height(ui)).min(MAX_SHARE * room));
+    let height = local.scene_tree.height(ui, selected.is_some());
     // Everything scrolls together when there is too little room for the cards.
     controls::scrolled(ui, "scene", |ui| {
         clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);
         ui.add_space(2.0);
-        ui.allocate_ui(vec2(ui.available_width(), height), |ui| local.scene_tree.show(ui, shown, model, out));
+        let tree =
+            ui.allocate_ui(vec2(ui.available_width(), height), |ui| local.scene_tree.show(ui, shown, model, out));
         hiding::show_all(ui, shown, out);
         ui.add_space(6.0);
         cards(ui, shown, model, selected, local, out);
+        let content_height = ui.cursor().top() - ui.min_rect().top();
+        let rest = Some((selected.is_some(), (content_height - tree.response.rect.height()).ceil()));
+        if std::mem::replace(&mut local.scene_tree.rest, rest) != rest {
+            ui.ctx().request_repaint();
+        }
     });
 }
 
@@ -130,6 +140,20 @@ struct Row {
 }
 
 impl SceneTree {
+    /// The tree's height: its share of the tab, and what its cards leave if there are as many rows. A card that has just
+    /// appeared is first laid out below.
+    fn height(&self, ui: &Ui, has_selected: bool) -> f32 {
+        let room = ui.available_height();
+        let usual = (TREE_SHARE * room).max((MIN_ROWS * row_height(ui)).min(MAX_SHARE * room));
+        let left = match (self.rest, &self.rows) {
+            (Some((of_selected, rest)), Some(kept)) if of_selected == has_selected => {
+                (room - rest - controls::SCROLLED_MARGIN).min(kept.rows.len() as f32 * row_height(ui))
+            }
+            _ => self.height,
+        };
+        usual.max(left.floor())
+    }
+
     fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
         let asset = &model.asset;
         let names = &shown.state.edits.names;
@@ -158,7 +182,7 @@ impl SceneTree {
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let leap = self.leap.take();
-        area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
+        let scrolled = area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
             let page = visible.len().saturating_sub(2).max(1);
             for (at, row) in rows.iter().enumerate().take(visible.end).skip(visible.start) {
@@ -193,19 +217,14 @@ impl SceneTree {
                         self.fold(number);
                     }
                     Some(Pressed::Leap(key)) => {
-                        let last = rows.len() - 1;
-                        self.leap = Some(match key {
-                            Key::Home => 0,
-                            Key::End => last,
-                            Key::PageUp => at.saturating_sub(page),
-                            _ => (at + page).min(last),
-                        });
+                        self.leap = Some(row_after(key, at, page, rows.len() - 1));
                         ui.ctx().request_repaint();
                     }
                     None => {}
                 }
             }
         });
+        self.offset = scrolled.state.clamped_offset().y;
         ui.spacing_mut().item_spacing.y = spacing;
         is_folded
     }
@@ -253,16 +272,28 @@ impl SceneTree {
         /// Fewer in a tree that shows few rows, as on a phone.
         const MAX_ROWS_ABOVE: f32 = 4.0;
         let selected = shown.state.selection.joint;
+        let find = || rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected);
+        let height = ui.available_height();
+        let last_height = std::mem::replace(&mut self.height, height);
+        let max = (rows.len() as f32 * row_height(ui) - height).max(0.0);
+        if height > last_height && self.offset > max {
+            // Otherwise it would spring back.
+            return Some(max);
+        }
+        if self.leap.is_none() && self.scrolled_to == selected && height < last_height {
+            // The card of a joint that was pressed took the room.
+            let needed = (find()? + 1) as f32 * row_height(ui) - height;
+            return (needed > self.offset).then_some(needed);
+        }
         let at = if self.leap.is_some() {
             self.leap
         } else if self.scrolled_to == selected {
             None
         } else {
             self.scrolled_to = selected;
-            rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)
+            find()
         }?;
-        let max = rows.len() as f32 * row_height(ui) - ui.available_height();
-        let rows_above = (0.5 * ui.available_height() / row_height(ui)).floor().min(MAX_ROWS_ABOVE);
+        let rows_above = (0.5 * height / row_height(ui)).floor().min(MAX_ROWS_ABOVE);
         let wanted = (at as f32 - rows_above) * row_height(ui);
         Some(wanted.min(max).max(0.0))
     }
@@ -387,11 +418,22 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     pressed
 }
 
-/// Gives the focus to a row, or returns the key that leads from it to a distant one.
+/// Returns the row that a key leads to.
+fn row_after(key: Key, at: usize, page: usize, last: usize) -> usize {
+    match key {
+        Key::Home => 0,
+        Key::End => last,
+        Key::PageUp => at.saturating_sub(page),
+        _ => (at + page).min(last),
+    }
+}
+
+/// Gives the focus to a row, and returns the key that leads from it to a distant one.
 fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
     if takes_focus {
         row.request_focus();
-    } else if row.has_focus() {
+    }
+    if takes_focus || row.has_focus() {
         let is_pressed = |key: &Key| row.ctx.input(|input| input.key_pressed(*key));
         return [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed).map(Pressed::Leap);
     }

@@ -8,6 +8,8 @@ pub const TAGLINE: &str = "Watch a 3D character move, and give it the motion of 
 pub const OPEN: &str = "Open…";
 /// Button that borrows motion from another file, or loads a joint map.
 pub const BORROW_MOTION: &str = "Borrow motion…";
+/// Why [`BORROW_MOTION`] is disabled.
+pub const NOTHING_TO_MOVE: &str = "This model has no skeleton to move";
 /// Button that opens the gallery of samples.
 pub const SAMPLES: &str = "Samples";
 /// Menu of what can be saved.

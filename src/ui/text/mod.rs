@@ -47,6 +47,11 @@ pub fn sentence(message: &str) -> String {
     message
 }
 
+/// Formats a share as a whole percentage.
+pub fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
 /// Formats a number with thin spaces between thousands.
 pub fn grouped(number: usize) -> String {
     let digits = number.to_string();

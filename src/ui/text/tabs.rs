@@ -452,9 +452,13 @@ pub const BLENDED: &str = "blended";
 /// A material whose back faces are drawn.
 pub const DOUBLE_SIDED: &str = "double-sided";
 
-/// Returns an amount of memory.
+/// Returns an amount of memory, in kilobytes if a tenth of a megabyte would be too coarse.
 pub fn megabytes(bytes: u64) -> String {
-    format!("{:.1} MB", bytes as f64 / 1e6)
+    match bytes {
+        0 => "0 MB".to_owned(),
+        1..100_000 => format!("{:.1} KB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
 }
 
 /// Returns a mean time between frames with its rate.

@@ -53,6 +53,8 @@ pub const ERROR_TITLE: &str = "Something went wrong";
 pub const REFUSED_TITLE: &str = "Couldn't borrow the motion";
 /// Close button of an error.
 pub const DISMISS_ERROR: &str = "Dismiss error";
+/// Close button of a notice that stays.
+pub const DISMISS_NOTICE: &str = "Dismiss notice";
 /// Button on a refused motion: shows its skeleton instead of the model.
 pub const SHOW_REFUSED_ALONE: &str = "Show its skeleton";
 /// Button on a refused motion: borrows from it with an empty joint map.

@@ -11,6 +11,8 @@ use crate::ui::{KEY_TABLE, style, text};
 pub struct Help {
     /// Set by the help button and its key. The help appears in the pass after that.
     pub is_open: bool,
+    /// It was opened by its key, so there is a keyboard, even if the screen is small.
+    by_key: bool,
     /// Number of passes that it has been open for; 2 means more.
     passes: u8,
 }
@@ -29,11 +31,17 @@ const GESTURES: [(&str, &str, &str); 9] = [
 ];
 
 impl Help {
+    /// Opens or closes it by its key.
+    pub(crate) fn toggle_by_key(&mut self) {
+        self.is_open = !self.is_open;
+        self.by_key = self.is_open;
+    }
+
     /// Shows the help if it has been open since the last pass; clears `is_open` when the user closes it.
     pub(super) fn show(&mut self, context: &Context) {
         // Not in the pass that opens it: that click would count as one outside the modal and close it again.
         match (self.is_open, self.passes) {
-            (false, _) => self.passes = 0,
+            (false, _) => (self.passes, self.by_key) = (0, false),
             (true, 0) => {
                 self.passes = 1;
                 context.request_repaint();
@@ -46,8 +54,9 @@ impl Help {
         let modal = overlays::modal("help", context).show(context, |ui| {
             let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
             ui.set_width(width);
-            let is_closed = title_bar(ui, std::mem::replace(&mut self.passes, 2) == 1);
-            list(ui, width);
+            let has_keys = self.by_key || !style::is_for_fingers(ui);
+            let is_closed = title_bar(ui, has_keys, std::mem::replace(&mut self.passes, 2) == 1);
+            list(ui, width, has_keys);
             is_closed
         });
         self.is_open &= !(modal.inner || modal.should_close());
@@ -55,10 +64,10 @@ impl Help {
 }
 
 /// Returns whether its close button was clicked. Its title has the focus: unlike a button, it leaves Space alone.
-fn title_bar(ui: &mut Ui, takes_focus: bool) -> bool {
+fn title_bar(ui: &mut Ui, has_keys: bool, takes_focus: bool) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
     ui.horizontal(|ui| {
-        let title = if style::is_for_fingers(ui) { text::GESTURES } else { text::HELP_TITLE };
+        let title = if has_keys { text::HELP_TITLE } else { text::GESTURES };
         overlays::name_modal(ui, title);
         // Not a label, which would be underlined while it has the focus.
         let galley = ui.painter().layout_no_wrap(title.to_owned(), style::HEADING, style::palette(ui).text);
@@ -73,10 +82,10 @@ fn title_bar(ui: &mut Ui, takes_focus: bool) -> bool {
     .inner
 }
 
-fn list(ui: &mut Ui, width: f32) {
+fn list(ui: &mut Ui, width: f32, has_keys: bool) {
     let accent = style::palette(ui).accent;
     let for_fingers = style::is_for_fingers(ui);
-    let keys = KEY_TABLE.iter().filter(|_| !for_fingers).map(|line| (line.keys, line.does));
+    let keys = KEY_TABLE.iter().filter(|_| has_keys).map(|line| (line.keys, line.does));
     let gestures = GESTURES.map(|(pointer, fingers, does)| (if for_fingers { fingers } else { pointer }, does));
     let lines = keys.chain(gestures).filter(|(how, _)| !how.is_empty());
     let max_height = (ui.ctx().content_rect().height() - 160.0).max(120.0);

@@ -19,6 +19,8 @@ pub struct Messages {
     failed_to_open: Option<String>,
     /// The load under way.
     pub progress: Option<Progress>,
+    /// What can't be used of the view; shown until dismissed, or until another view replaces it.
+    pub about_view: Option<String>,
     /// The latest one; a new toast replaces it.
     pub toast: Option<Toast>,
 }
@@ -66,10 +68,11 @@ impl Messages {
         self.error = Some(after_name.unwrap_or(error).to_owned());
     }
 
-    /// Shows the load under way, the error and the toast in the viewport's lower left corner.
+    /// Shows the messages in the viewport's lower left corner.
     pub(super) fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
         self.expire_toast(ui);
-        if self.toast.is_none() && self.error.is_none() && self.progress.is_none() {
+        let has_stay = self.error.is_some() || self.about_view.is_some();
+        if self.toast.is_none() && self.progress.is_none() && !has_stay {
             return;
         }
         let width = (viewport.width() - 28.0).min(520.0);
@@ -82,6 +85,7 @@ impl Messages {
             ui.set_max_width(width);
             self.show_progress(ui, width, out);
             self.show_error(ui, out);
+            self.show_about_view(ui);
             self.show_toast(ui, width, out);
         });
     }
@@ -121,22 +125,26 @@ impl Messages {
         let Some(error) = &self.error else { return };
         let error = error.lines().map(text::sentence).collect::<Vec<_>>().join("\n");
         let color = style::palette(ui).error;
-        notice(ui, color, |ui| {
-            ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-                if icon_button(ui, Icon::Close, text::DISMISS_ERROR, false).clicked() {
-                    self.clear_error();
-                }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| self.show_error_text(ui, &error, out));
-            });
+        if dismissible(ui, color, text::DISMISS_ERROR, |ui| self.show_error_text(ui, &error, out)) {
+            self.clear_error();
+        }
+    }
+
+    fn show_about_view(&mut self, ui: &mut Ui) {
+        let Some(about) = &self.about_view else { return };
+        let line = style::palette(ui).line;
+        let is_dismissed = dismissible(ui, line, text::DISMISS_NOTICE, |ui| {
+            // Beside the middle of its button.
+            ui.add_space(4.0);
+            scrolled_text(ui, about);
         });
+        self.about_view.take_if(|_| is_dismissed);
     }
 
     fn show_error_text(&mut self, ui: &mut Ui, error: &str, out: &mut Output) {
         let color = style::palette(ui).error;
         ui.label(RichText::new(self.error_title()).strong().color(color));
-        egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
-            ui.add(egui::Label::new(error).wrap().selectable(true));
-        });
+        scrolled_text(ui, error);
         if self.motion_refused {
             self.offer_alternatives(ui, out);
         }
@@ -189,6 +197,22 @@ impl Messages {
             self.toast = None;
         }
     }
+}
+
+/// Shows a message with a button that dismisses it; returns whether that was pressed.
+fn dismissible(ui: &mut Ui, line: Color32, label: &str, contents: impl FnOnce(&mut Ui)) -> bool {
+    let row = |ui: &mut Ui| {
+        let is_dismissed = icon_button(ui, Icon::Close, label, false).clicked();
+        ui.with_layout(Layout::top_down(Align::Min), contents);
+        is_dismissed
+    };
+    notice(ui, line, |ui| ui.with_layout(Layout::right_to_left(Align::Min), row).inner)
+}
+
+fn scrolled_text(ui: &mut Ui, text: &str) {
+    egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+        ui.add(egui::Label::new(text).wrap().selectable(true));
+    });
 }
 
 fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) -> R {

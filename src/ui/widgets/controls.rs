@@ -75,7 +75,8 @@ pub fn small_button(ui: &mut Ui, label: &str) -> Response {
     ui.add(egui::Button::new(label).small().min_size(vec2(0.0, height)))
 }
 
-/// A button with a menu. Moving the focus to a control outside closes the menu; Esc also gives the focus back to the button.
+/// A button with a menu. Moving the focus to a control outside closes the menu; Esc and an entry pressed by key also give the focus
+/// back to the button.
 pub fn menu_button(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let (button, menu) = egui::containers::menu::MenuButton::new(label).ui(ui, contents);
     keep_menu_focus(ui, &button, menu.is_some());
@@ -84,13 +85,17 @@ pub fn menu_button(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) -> 
 
 fn keep_menu_focus(ui: &Ui, button: &Response, is_open: bool) {
     let before = button.id.with("focus before");
+    let focused = ui.memory(egui::Memory::focused);
+    let is_outside = |id| ui.ctx().read_response(id).is_some_and(|control| control.layer_id == button.layer_id);
     if !is_open {
-        ui.data_mut(|data| data.remove::<Option<egui::Id>>(before));
+        let before = ui.data_mut(|data| data.remove_temp::<Option<egui::Id>>(before)).flatten();
+        // The entry is gone.
+        if before.is_some() && !focused.is_some_and(is_outside) {
+            button.request_focus();
+        }
         return;
     }
-    let focused = ui.memory(egui::Memory::focused);
     let before = ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(before, focused), focused));
-    let is_outside = |id| ui.ctx().read_response(id).is_some_and(|control| control.layer_id == button.layer_id);
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         // Only if the keyboard was used: after a click, keys go on controlling the viewport.
         if before.is_some() {
@@ -466,13 +471,15 @@ fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextS
 
 /// Room for the floating scroll bar, which widens under the pointer.
 pub const SCROLL_BAR_WIDTH: f32 = 12.0;
+/// Space below what scrolls.
+pub const SCROLLED_MARGIN: f32 = 12.0;
 
 /// The contents of a tab, which scroll if they are higher than the panel. `id` identifies the scroll position.
 pub fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut Ui)) {
     egui::ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH);
         contents(ui);
-        ui.add_space(12.0);
+        ui.add_space(SCROLLED_MARGIN);
         follow_focus(ui);
     });
 }

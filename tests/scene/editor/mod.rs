@@ -70,7 +70,7 @@ fn active(editor: &Editor) -> &str {
 fn notices(events: &[Event]) -> Vec<&str> {
     let mut texts = Vec::new();
     for event in events {
-        if let Event::Notice { text, .. } = event {
+        if let Event::Notice { text, .. } | Event::AboutView(text) = event {
             texts.push(text.as_str());
         }
     }

@@ -132,10 +132,22 @@ fn an_exported_clip_is_called_by_its_own_name() {
     }
 }
 
+#[test]
+fn a_joint_that_the_model_lacks_is_told_of_every_link() {
+    let told = "joint=999: expected a joint's index in the file; this model can't show it, so it is left out.";
+    let mut view = ViewerState::of_model("sample:walker".to_owned());
+    view.selection.joint = Some(999);
+    let mut editor = Editor::default();
+    editor.open(contents(&["sample:walker"]), Some(view.clone()), &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), [told]);
+    editor.open(Contents::default(), Some(view), &mut any).expect("only replaces the state");
+    assert_eq!(notices(&editor.take_events()), [told]);
+}
+
 /// A view's clip that the model lacks isn't an error, but is reported.
 #[test]
 fn an_unknown_clip_of_a_view_is_told() {
-    let told = "clip: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave; the rest pose is used.";
+    let told = "clip: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the rest pose is used.";
     let view = || {
         let mut view = ViewerState::of_model("sample:walker".to_owned());
         view.playhead.clip = ClipChoice::Named("Fly".to_owned());

@@ -118,6 +118,22 @@ fn a_motion_that_does_not_fit_can_be_shown_alone_or_mapped_manually() {
     }
 }
 
+/// After a click, keys go on controlling the viewport.
+#[test]
+fn mapping_manually_by_key_leads_to_the_first_joint() {
+    for by_key in [true, false] {
+        let mut harness = motion_tab();
+        press(&mut harness, text::FILES);
+        harness.state_mut().panels.on_map_started(by_key);
+        harness.run();
+        harness.run();
+        let focused =
+            harness.query_all_by_role(egui::accesskit::Role::Button).find(|node| node.accesskit_node().is_focused());
+        let name = focused.and_then(|node| node.accesskit_node().label());
+        assert_eq!(name, by_key.then(|| text::edit_joint("Hips")));
+    }
+}
+
 /// A model without a skeleton has no joints to map.
 #[test]
 fn a_motion_for_a_model_without_a_skeleton_can_only_be_shown_alone() {
