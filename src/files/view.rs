@@ -144,7 +144,8 @@ async fn read_map_of<S: Source>(
     read.ok().map(|map| MotionMap::of_file(&map))
 }
 
-/// Opens the models that a view lists; one of several that cannot be read becomes a problem of the contents. If the one it names is not in its archive, the archive's first one is named instead.
+/// Opens the models that a view lists; one of several that cannot be read becomes a problem of the contents. If the one it names is
+/// not in its archive, the archive's first one is named instead.
 async fn open_models<S: Source>(
     source: &S,
     models: &mut [String],

@@ -320,8 +320,8 @@ impl UiState {
         }
     }
 
-    /// Shows the joint table of a motion that the user maps manually.
-    /// `takes_focus`: the first joint gets the focus, which the control that began it had.
+    /// Shows the joint table of a motion that the user maps manually. With `takes_focus`, its first joint gets the focus, which the
+    /// control that began it had.
     pub fn on_map_started(&mut self, takes_focus: bool) {
         self.layout.show_tab(Tab::Motion);
         self.motion.focus_table(takes_focus);
@@ -423,7 +423,8 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
     }
 }
 
-/// Names the edge that resizes a panel of this `Ui`, and tells its share of the room: egui calls each of them the same. The salt of its id is egui's own.
+/// Names the edge that resizes a panel of this `Ui`, and tells its share of the room: egui calls each of them the same. The salt of
+/// its id is egui's own.
 fn name_edge(ui: &Ui, panel: &str, name: &str) {
     let edge = ui.scope_id().with(panel).with("__resize");
     ui.ctx().accesskit_node_builder(edge, |node| {
