@@ -114,6 +114,11 @@ pub async fn web_options(canvas: &web_sys::HtmlCanvasElement) -> Result<eframe::
     let (device, queue) =
         adapter.request_device(&device_descriptor(&adapter)).await.map_err(|error| error.to_string())?;
     next_turn().await;
+    if adapter.get_info().backend == wgpu::Backend::Gl {
+        // The browser compiles the translator of shaders as it is first called; eframe creates the same renderer next.
+        drop(egui_wgpu::Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm, Default::default()));
+        next_turn().await;
+    }
     let existing = egui_wgpu::WgpuSetupExisting { instance, adapter, device, queue };
     Ok(eframe::WebOptions { wgpu_options: configuration(existing.into()), ..Default::default() })
 }
