@@ -18,8 +18,10 @@ pub(super) struct SceneTexture {
 #[cfg(target_arch = "wasm32")]
 #[derive(Debug, Clone, Copy)]
 pub enum RehearsalPart {
-    /// What draws the surroundings is created.
-    Scenery,
+    /// What draws the ground is created.
+    Ground,
+    /// What draws the studio's background is created.
+    Backdrop,
     /// The environment is computed.
     Light,
     /// The model is uploaded.
@@ -33,8 +35,8 @@ pub enum RehearsalPart {
 #[cfg(target_arch = "wasm32")]
 impl RehearsalPart {
     /// All parts, in order. There are two pictures, of more and more surfaces, since pipelines take the longest of all.
-    pub const ALL: [Self; 6] =
-        [Self::Scenery, Self::Light, Self::Upload, Self::Picture, Self::Picture, Self::Refinement];
+    pub const ALL: [Self; 7] =
+        [Self::Ground, Self::Backdrop, Self::Light, Self::Upload, Self::Picture, Self::Picture, Self::Refinement];
 }
 
 impl SceneTexture {
@@ -94,7 +96,8 @@ impl SceneTexture {
         const SIZE: [u32; 2] = [64, 64];
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         match part {
-            RehearsalPart::Scenery => self.renderer.prepare_scenery(device),
+            RehearsalPart::Ground => self.renderer.prepare_ground(device),
+            RehearsalPart::Backdrop => self.renderer.prepare_backdrop(device),
             RehearsalPart::Light => self.renderer.prepare_light(device, queue, frame),
             // A model that can't be uploaded is skipped.
             RehearsalPart::Upload => drop(self.renderer.upload(device, queue, model)),

@@ -202,16 +202,16 @@ pub(super) struct Pipelines {
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
     /// Created for the first picture.
-    pub scenery: Option<Scenery>,
+    pub ground: Option<GroundPipelines>,
+    /// Draws the studio's background. Created for the first picture, too.
+    pub backdrop: Option<wgpu::RenderPipeline>,
     /// Sharp and blurred, with the tone mapping they were made for.
     sky: Option<(ToneMap, [wgpu::RenderPipeline; 2])>,
 }
 
-/// What draws the surroundings of a model.
-pub(super) struct Scenery {
+pub(super) struct GroundPipelines {
     pub grid: wgpu::RenderPipeline,
-    pub ground_shadow: wgpu::RenderPipeline,
-    pub background: wgpu::RenderPipeline,
+    pub shadow: wgpu::RenderPipeline,
 }
 
 pub(super) fn pipeline_layout(
@@ -324,42 +324,44 @@ impl Pipelines {
             mesh_groups: [&layouts.frame, &layouts.light, &layouts.draw].map(Clone::clone),
             by_key: HashMap::new(),
             meshes: Vec::new(),
-            scenery: None,
+            ground: None,
+            backdrop: None,
             sky: None,
         }
     }
 
-    /// Creates the pipelines that draw a model's surroundings, unless they exist.
-    pub fn prepare_scenery(&mut self, device: &wgpu::Device, layouts: &Layouts) {
-        if self.scenery.is_some() {
+    /// Creates what draws grid and shadow on the ground, unless it exists.
+    pub fn prepare_ground(&mut self, device: &wgpu::Device, layouts: &Layouts) {
+        if self.ground.is_some() {
             return;
         }
         let samples = self.samples;
-        let frame = Some(&layouts.frame);
-        let light = Some(&layouts.light);
-        let frame_layout = pipeline_layout(device, "frame only", &[frame]);
-        let ground_module = shaders::GROUND_PLANE.module(device);
-        let ground_layout = pipeline_layout(device, "ground", &[frame, light]);
+        let module = shaders::GROUND_PLANE.module(device);
+        let layout = pipeline_layout(device, "ground", &[Some(&layouts.frame), Some(&layouts.light)]);
         let taps = [("SHADOW_TAPS", if samples > 1 { 16.0 } else { 4.0 })];
-        let ground = |label, vertex, fragment| {
-            ScenePipeline {
-                constants: &taps,
-                ..ScenePipeline::new(label, &ground_module, &ground_layout, [vertex, fragment])
-            }
-            .create(device, samples)
+        let create = |label, vertex, fragment| {
+            ScenePipeline { constants: &taps, ..ScenePipeline::new(label, &module, &layout, [vertex, fragment]) }
+                .create(device, samples)
         };
-        let grid = ground("grid", "grid_vertex", "grid_fragment");
-        let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
+        let grid = create("grid", "grid_vertex", "grid_fragment");
+        let shadow = create("ground shadow", "shadow_vertex", "shadow_fragment");
+        self.ground = Some(GroundPipelines { grid, shadow });
         flush(&self.queue);
+    }
 
-        let background_module = shaders::BACKDROP.module(device);
-        // Drawn behind everything, so only visible pixels are shaded.
-        let background = ScenePipeline {
-            blend: None,
-            ..ScenePipeline::new("background", &background_module, &frame_layout, ["full_screen", "backdrop"])
+    /// Creates what draws the studio's background, unless it exists.
+    pub fn prepare_backdrop(&mut self, device: &wgpu::Device, layouts: &Layouts) {
+        if self.backdrop.is_some() {
+            return;
         }
-        .create(device, samples);
-        self.scenery = Some(Scenery { grid, ground_shadow, background });
+        let module = shaders::BACKDROP.module(device);
+        let layout = pipeline_layout(device, "frame only", &[Some(&layouts.frame)]);
+        // Drawn behind everything, so only visible pixels are shaded.
+        let pipeline = ScenePipeline {
+            blend: None,
+            ..ScenePipeline::new("background", &module, &layout, ["full_screen", "backdrop"])
+        };
+        self.backdrop = Some(pipeline.create(device, self.samples));
         flush(&self.queue);
     }
 

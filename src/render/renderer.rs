@@ -201,9 +201,14 @@ impl Renderer {
         self.models.retain(|model| keep.contains(&model.id));
     }
 
-    /// Creates what draws a model's surroundings, unless it exists. [`Self::draw`] does it as well; it takes a while.
-    pub fn prepare_scenery(&mut self, device: &wgpu::Device) {
-        self.pipelines.prepare_scenery(device, &self.layouts);
+    /// Creates what draws grid and shadow on the ground, unless it exists. [`Self::draw`] does it as well; it takes a while.
+    pub fn prepare_ground(&mut self, device: &wgpu::Device) {
+        self.pipelines.prepare_ground(device, &self.layouts);
+    }
+
+    /// The same for what draws the studio's background.
+    pub fn prepare_backdrop(&mut self, device: &wgpu::Device) {
+        self.pipelines.prepare_backdrop(device, &self.layouts);
     }
 
     /// Computes a frame's environment, unless it is the current one. So does [`Self::draw`]; it takes a while.
@@ -226,7 +231,8 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
-        self.prepare_scenery(device);
+        self.prepare_ground(device);
+        self.prepare_backdrop(device);
         // A browser compiles the pipelines in another process meanwhile.
         self.prepare_light(device, queue, frame);
         if matches!(frame.look.background, Background::Environment | Background::Blurred) {
@@ -443,20 +449,20 @@ impl Renderer {
             pass.set_bind_group(1, &self.light.group, &[]);
             stats += overlay_call;
         }
-        let Some(scenery) = &self.pipelines.scenery else { return stats };
-        if background == Background::Studio {
-            pass.set_pipeline(&scenery.background);
+        if let (Background::Studio, Some(backdrop)) = (background, &self.pipelines.backdrop) {
+            pass.set_pipeline(backdrop);
             pass.draw(0..3, 0..1);
             stats += overlay_call;
         }
-        if ground.is_some_and(|ground| ground.grid) {
-            pass.set_pipeline(&scenery.grid);
+        let (Some(ground), Some(pipelines)) = (ground, &self.pipelines.ground) else { return stats };
+        if ground.grid {
+            pass.set_pipeline(&pipelines.grid);
             pass.draw(0..18, 0..1);
             stats += overlay_call;
         }
         // After the grid, so that the shadow darkens its lines.
-        if ground.is_some_and(|ground| ground.shadow) {
-            pass.set_pipeline(&scenery.ground_shadow);
+        if ground.shadow {
+            pass.set_pipeline(&pipelines.shadow);
             pass.draw(0..6, 0..1);
             stats += overlay_call;
         }
