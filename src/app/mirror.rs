@@ -34,12 +34,13 @@ impl Mirror {
         Self { show, shown: String::new(), events: Vec::new(), has_focus: false, due_secs: None }
     }
 
-    /// Queues a user's action on an entry: `focus`, `click`, `more` or `less` (by one step), or `set` with the new value as data.
-    /// Ignores anything else.
+    /// Queues a user's action on an entry: `focus`, `blur`, `click`, `more` or `less` (by one step), or `set` with the new value as
+    /// data. Ignores anything else.
     pub fn act(&mut self, id: &str, action: &str, data: Option<ActionData>) {
         let Ok(id) = id.parse() else { return };
         let action = match action {
             "focus" => Action::Focus,
+            "blur" => Action::Blur,
             "click" => Action::Click,
             "more" => Action::Increment,
             "less" => Action::Decrement,
@@ -74,6 +75,10 @@ impl Mirror {
     }
 }
 
+fn is_blur(event: &Event) -> bool {
+    matches!(event, Event::AccessKitActionRequest(ActionRequest { action: Action::Blur, .. }))
+}
+
 fn moves_focus(event: &Event) -> bool {
     use egui::Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, End, Home, PageDown, PageUp};
     let keys = [ArrowDown, ArrowLeft, ArrowRight, ArrowUp, End, Home, PageDown, PageUp];
@@ -88,7 +93,13 @@ impl Plugin for Mirror {
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
         let is_input = |event: &Event| !matches!(event, Event::PointerMoved(_) | Event::MouseMoved(_));
         let has_input = !self.events.is_empty() || input.events.iter().any(is_input);
-        input.events.append(&mut self.take_events());
+        let mut events = self.take_events();
+        if events.iter().any(is_blur) {
+            // egui doesn't do it.
+            context
+                .memory_mut(|memory| memory.focused().into_iter().for_each(|focused| memory.surrender_focus(focused)));
+        }
+        input.events.append(&mut events);
         if !self.events.is_empty() {
             context.request_repaint();
         }

@@ -192,6 +192,7 @@ impl Editor {
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
+        let name = model.clip_name(clip);
         let Some(clip) = model.clip(clip) else { return Ok(BakedClip { clip: None, remark: None }) };
         let mut baked = BakedClip { clip: None, remark: None };
         if !below.is_empty() || !over.is_empty() {
@@ -206,6 +207,9 @@ impl Editor {
         let (period_secs, eye) = (f64::from(clip.duration_secs()), looks_at_camera(&self.state).then(|| self.eye()));
         let pinned = pinned_clip(model, &self.state, baked.clip.as_ref().unwrap_or(clip), period_secs, eye);
         baked.clip = pinned.or(baked.clip);
+        if let Some(name) = name.filter(|&name| name != clip.name()) {
+            baked.clip = Some(baked.clip.unwrap_or_else(|| clip.clone()).with_name(name.to_owned()));
+        }
         Ok(baked)
     }
 

@@ -54,9 +54,11 @@ impl Editor {
                 self.state = before.state;
             }
             self.retarget();
-            self.refused = motions;
-            let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
-            self.events.push(Event::MotionsRefused { lacks_skeleton });
+            if motions.iter().any(|motion| !motion.asset.clips.is_empty()) {
+                self.refused = motions;
+                let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
+                self.events.push(Event::MotionsRefused { lacks_skeleton });
+            }
             return Err(why);
         }
         self.remember(before);
@@ -133,9 +135,13 @@ impl Editor {
     /// Returns why motions that were just added don't fit. Unlike the command line's error, it doesn't explain how to write a
     /// map: shells offer alternatives.
     fn why_refused(&self, motions: &[Motion], problems: &[String]) -> String {
+        if let [motion] = motions
+            && motion.asset.clips.is_empty()
+        {
+            return format!("{}: it has no animation, so there is nothing to borrow", short_name(&motion.source));
+        }
         let last = self.library.motions().len().saturating_sub(1);
         if let (Some(model), [motion]) = (self.library.active(), motions)
-            && !motion.asset.clips.is_empty()
             && self.library.proposal(last).is_some_and(|proposal| proposal.pairs.is_empty())
         {
             let has_skeleton = model.has_skeleton();

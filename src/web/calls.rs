@@ -215,8 +215,8 @@ pub(super) fn rest_progress(page: &Page, name: &str, received_bytes: u64, total_
     }
 }
 
-/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. `clip` is null for
-/// the rest pose; `isEmpty` is true without a model.
+/// Returns the contents of the live regions as `{model, isEmpty, unlisted, clip, playing, notice, problem}`. `clip` is null for
+/// the rest pose; `isEmpty` is true without a model; `unlisted` are the names of the open models that the link leaves out.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
@@ -228,9 +228,12 @@ pub fn summary() -> Result<String, JsValue> {
         let state = app.state();
         let model = app.library().active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
+        let models = app.library().models().iter();
+        let unlisted = models.filter(|other| !other.is_placeholder() && !state.sources.model.contains(&other.origin));
         json!({
             "model": model.map_or_else(String::new, named),
             "isEmpty": model.is_none_or(Model::is_placeholder),
+            "unlisted": unlisted.map(|model| short_name(&model.source)).collect::<Vec<_>>(),
             "clip": clip,
             "playing": state.playback.playing,
             "notice": app.notice(),

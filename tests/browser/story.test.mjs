@@ -161,6 +161,20 @@ for (const renderer of BACK_ENDS)
       }
     });
 
+    onPage("a motion that arrives before its model waits for it, and both are shown as the link says", () => fragment([["model", "file:Soldier.glb"], ["motion", "file:cmu_01_01.bvh"], ["play", 0], ["t", 1]]), async (page) => {
+      await whenAsked(page);
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "cmu_01_01.bvh", url: site.data(WALK) }]);
+      await whenAsked(page);
+      assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["Soldier.glb (model)"]);
+      assert.equal(await page.locator("#problem").textContent(), "", "nothing is refused");
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
+      await whenBorrowed(page, 1);
+      await until(page, async () => (await window.gaitway.state()).t === 1);
+      assert.equal((await state(page)).feet, null, "the link says nothing of feet");
+    });
+
     onPage("somebody who opens something else is told what the link asks for, but isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
       await whenAsked(page);
       await page.locator("#bring-later").click();

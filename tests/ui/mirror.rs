@@ -311,6 +311,9 @@ fn lists_come_when_something_changed_and_what_is_done_reaches_the_panels() {
     assert_eq!(entry(&last(), "slider")["now"], 7.0);
     assert_eq!(entry(&last(), "textbox")["value"], "42");
     assert_eq!(last()["focus"], entry(&last(), "textbox")["id"]);
+    act("textbox", "blur", None);
+    frame(3.7);
+    assert_ne!(last()["focus"], entry(&last(), "textbox")["id"]);
     // A menu hangs on the button that opens it.
     let entries = last()["entries"].as_array().expect("entries").clone();
     let more =

@@ -58,6 +58,17 @@ export async function load(items, as, isPrivate, isByHand = false) {
 }
 
 /**
+ * Holds on to files of the user's that can't be shown before others arrive.
+ * @param {Item[]} items
+ */
+export function keep(items) {
+  beginPrivate(items);
+  holdLast(items);
+  rememberRejected();
+  endPrivate();
+}
+
+/**
  * Parses the app's report on a followed link or an applied state. Files read from URLs replace held ones of the same
  * names.
  * @param {string} answer

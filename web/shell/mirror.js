@@ -150,6 +150,10 @@ export class Mirror {
       this.#program.mirror_act(id, "click");
     });
     if (element instanceof HTMLInputElement) {
+      if (element.type === "number") {
+        element.addEventListener("input", () => void (element.dataset.typing = ""));
+        for (const type of ["change", "blur"]) element.addEventListener(type, () => void delete element.dataset.typing);
+      }
       element.addEventListener(element.type === "number" ? "change" : "input", () => {
         const value = element.type === "text" ? element.value : element.valueAsNumber;
         if (!Number.isNaN(value)) this.#program.mirror_act(id, "set", value);
@@ -200,6 +204,12 @@ export class Mirror {
       event.preventDefault();
       return;
     }
+    if (type === "number" && isCommand && /^[yz]$/i.test(key)) {
+      // The browser takes back what is being typed, the program what was entered: its own field would take back the text alone.
+      const { id, typing } = /** @type {HTMLElement} */ (target).dataset;
+      if (typing !== undefined) return;
+      this.#program.mirror_act(id ?? "", "blur");
+    }
     if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
     this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
     // The browser's own commands stay, also those of function keys.
@@ -248,7 +258,7 @@ function updateInput(input, { value, now, min, max }) {
   if (!isText) [input.min, input.max, input.step] = [String(min ?? ""), String(max ?? ""), "any"];
   const shown = String((isText ? value : now) ?? "");
   // The program doesn't know yet what is being typed.
-  const isTyping = input === document.activeElement && input.type !== "range";
+  const isTyping = input === document.activeElement && (isText || input.dataset.typing !== undefined);
   if (input.value !== shown && !isTyping) input.value = shown;
 }
 

@@ -1,6 +1,6 @@
 // Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
 // complete it.
-import { askForRest, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
+import { askForRest, awaited, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { withCompanions } from "./companions.js";
 import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
@@ -9,7 +9,7 @@ import { fileName, heldItems, heldMotionsAndLight, nameOf } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
 import { linkWithFiles } from "./links.js";
-import { load } from "./load.js";
+import { keep, load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
 import { running, session } from "./session.js";
 
@@ -31,7 +31,9 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
   await running();
   try {
-    const { shown, document } = await load(wanted, role, isPrivate, isByHand);
+    // What a link waits for is shown as the link says.
+    const isAwaited = completable()?.wanted.some((file) => hasFile(wanted, file)) ?? false;
+    const { shown, document } = await load(wanted, role, isPrivate, isByHand && !isAwaited);
     forgetProblem();
     const hint = await completeLink(wanted, shown);
     // In place of the app's notice, which says less.
@@ -60,7 +62,7 @@ export async function openByHand(items, options) {
   openedCount += 1;
   const number = openedCount;
   try {
-    await open(items, { ...options, isByHand: true });
+    if (!(await keptForModel(toItems(items)))) await open(items, { ...options, isByHand: true });
     hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
@@ -71,6 +73,26 @@ export async function openByHand(items, options) {
   // The dialog has given the focus back to the control that opened it, if that is still there.
   if (!byId("stage").contains(document.activeElement)) focusCanvas();
 }
+
+/**
+ * Keeps what a link needs besides its model until the model arrives: nothing can be shown of it before. Returns whether that is so.
+ * @param {Item[]} items
+ */
+async function keptForModel(items) {
+  const missing = awaited()?.missing ?? [];
+  const roles = missing.filter((file) => hasFile(items, file)).map(({ role }) => role);
+  if (roles.length === 0 || roles.includes("model") || !missing.some(({ role }) => role === "model")) return false;
+  keep(items);
+  await completeLink(items);
+  return true;
+}
+
+/**
+ * Whether a file of a link is among items, by its bare name.
+ * @param {Item[]} items
+ * @param {import("./types.d.ts").LinkedFile} file
+ */
+const hasFile = (items, { name }) => items.some((item) => fileName(nameOf(item)) === fileName(name));
 
 /**
  * Turns anything that `gaitway.open` takes, alone or in a list, into items.
@@ -128,10 +150,8 @@ async function completeLink(items, shown) {
   waiting.sets.push(items);
   const { marked, wanted, sets } = waiting;
   const found = wanted.map((file) => {
-    /** @type {(item: Item) => boolean} */
-    const isIt = (item) => fileName(nameOf(item)) === fileName(file.name);
-    const set = sets.findLast((items) => items.some(isIt));
-    return { file, set, item: set?.find(isIt) };
+    const set = sets.findLast((items) => hasFile(items, file));
+    return { file, set, item: set?.find((item) => hasFile([item], file)) };
   });
   const missing = found.filter(({ item }) => item === undefined);
   if (missing.length > 0) {

@@ -31,6 +31,10 @@ export function share(link) {
     return `${name} (${role})${companions.length === 0 ? "" : `, with ${listOf(companions)}`}`;
   });
   showList("share-files", lines);
+  /** @type {{ model: string, unlisted: string[] }} */
+  const { model, unlisted } = JSON.parse(session.app.summary());
+  byId("share-unlisted").hidden = unlisted.length === 0;
+  byId("share-unlisted").textContent = `The link shows ${model}, without ${listOf(unlisted)}.`;
   field("share-link").value = address;
   field("share-frame").value = frameHtml(addressOf(embeddedLink(link)));
   // A phone that scans the code hardly has the files, and there is no room for both.

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use gaitway::anim::Clip;
 use gaitway::asset::{Asset, AssetParts};
-use gaitway::editor::{Contents, Editor, Event};
-use gaitway::library::{Library, Model};
+use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export};
+use gaitway::formats::{FileSet, load};
+use gaitway::library::{Library, Model, Motion};
 use gaitway::state::{ViewerState, active_clip};
 use glam::Vec3;
 
@@ -38,6 +40,41 @@ fn a_model_without_a_skeleton_is_told_what_it_lacks() {
     let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
     assert!(error.contains("chair.glb has no skeleton that a motion could move; bind its mesh to one"), "{error}");
     assert_eq!(editor.take_events().last(), Some(&Event::MotionsRefused { lacks_skeleton: true }));
+}
+
+#[test]
+fn a_file_without_animation_is_not_offered_to_be_mapped() {
+    let mut editor = editor("sample:pilot");
+    let still = editor.library().active().expect("a model").asset.clone();
+    drop(editor);
+    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(still).expect("of one model").into_parts() };
+    let duck = Motion::new("duck.glb".to_owned(), Arc::new(Asset::new(parts).expect("indices in range")));
+    editor = self::editor("sample:pilot");
+    let contents = Contents { motions: Some(vec![duck]), ..Contents::default() };
+    let error = editor.open(contents, None, &mut any).expect_err("has nothing");
+    assert_eq!(error, "duck.glb: it has no animation, so there is nothing to borrow");
+    assert_eq!(editor.take_events(), []);
+}
+
+#[test]
+fn an_exported_clip_of_mixamo_is_named_like_its_file() {
+    let source = editor("sample:walker");
+    let asset = source.library().active().expect("a model").asset.clone();
+    drop(source);
+    let mut parts = Arc::into_inner(asset).expect("of one model").into_parts();
+    parts.clips.truncate(1);
+    parts.clips = parts.clips.into_iter().map(|clip| clip.with_name("mixamo.com".to_owned())).collect();
+    let motion = Motion::new("Samba.fbx".to_owned(), Arc::new(Asset::new(parts).expect("indices in range")));
+    let mut editor = editor("sample:walker");
+    let contents = Contents { motions: Some(vec![motion]), ..Contents::default() };
+    editor.open(contents, None, &mut any).expect("fits");
+    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays");
+    for what in [Export::Clip { clip, format: ClipFormat::Glb }, Export::Model { clip }] {
+        let mut files = FileSet::default();
+        files.insert("exported.glb", editor.export(what).expect("is written").bytes);
+        let written = load(&files).expect("a GLB");
+        assert_eq!(written.clips.last().map(Clip::name), Some("Samba"));
+    }
 }
 
 #[test]

@@ -285,6 +285,12 @@ impl Model {
         &self.clip_titles
     }
 
+    /// The name of a clip in a file: its own; its title if it has none, or the one that Mixamo gives to all of its clips.
+    pub fn clip_name(&self, clip: usize) -> Option<&str> {
+        let named = self.clip(clip).filter(|clip| is_named(clip)).map(Clip::name);
+        named.or_else(|| self.clip_titles.get(clip).map(String::as_str))
+    }
+
     /// Whether the indices of instance, primitive and vertex are in range.
     pub fn has_vertex(&self, instance: usize, primitive: usize, vertex: usize) -> bool {
         let mesh = self.asset.instances.get(instance).and_then(|instance| self.asset.meshes.get(instance.mesh));
@@ -415,6 +421,11 @@ impl Model {
 /// The name of every clip that Mixamo exports, alone or within a longer one such as `Armature|mixamo.com|Layer0`.
 const MIXAMO_CLIP: &str = "mixamo.com";
 
+/// Whether a clip has a name of its own.
+fn is_named(clip: &Clip) -> bool {
+    !clip.name().trim().is_empty() && !clip.name().contains(MIXAMO_CLIP)
+}
+
 /// Titles by index: each clip's name, otherwise its number in its own file. Mixamo's clips are called as their file is.
 fn unique_titles(source: &str, own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<String> {
     let title = |index: usize, clip: &Clip| match clip.name().trim() {
@@ -426,8 +437,7 @@ fn unique_titles(source: &str, own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<S
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let mut titles = Vec::new();
     for (clip, unnamed) in own.chain(borrowed) {
-        let is_named = !clip.name().trim().is_empty() && !clip.name().contains(MIXAMO_CLIP);
-        let base = if is_named { clip.name().to_owned() } else { unnamed };
+        let base = if is_named(clip) { clip.name().to_owned() } else { unnamed };
         let mut title = base.clone();
         loop {
             let count = seen.entry(title.clone()).or_insert(0);
