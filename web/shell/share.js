@@ -31,10 +31,8 @@ export function share(link) {
     return `${name} (${role})${companions.length === 0 ? "" : `, with ${listOf(companions)}`}`;
   });
   showList("share-files", lines);
-  /** @type {{ model: string, unlisted: string[] }} */
-  const { model, unlisted } = JSON.parse(session.app.summary());
-  byId("share-unlisted").hidden = unlisted.length === 0;
-  byId("share-unlisted").textContent = `The link shows ${model}, without ${listOf(unlisted)}.`;
+  // The app can't be asked during its own call.
+  queueMicrotask(tellUnlisted);
   field("share-link").value = address;
   field("share-frame").value = frameHtml(addressOf(embeddedLink(link)));
   // A phone that scans the code hardly has the files, and there is no room for both.
@@ -43,6 +41,15 @@ export function share(link) {
   byId("share-said").textContent = "";
   if (!dialog("share").open) dialog("share").showModal();
   copy("share-link", "Link copied.", "");
+}
+
+/** Tells which open models the link leaves out. */
+function tellUnlisted() {
+  if (session.app === null) return;
+  /** @type {{ model: string, unlisted: string[] }} */
+  const { model, unlisted } = JSON.parse(session.app.summary());
+  byId("share-unlisted").hidden = unlisted.length === 0;
+  byId("share-unlisted").textContent = `The link shows ${model}, without ${listOf(unlisted)}.`;
 }
 
 /**
