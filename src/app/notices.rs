@@ -47,7 +47,7 @@ impl App {
             match event {
                 Event::Notice { text, undoable } => self.show_toast(text, undoable),
                 Event::Problem(problem) => self.add_error(&problem),
-                // An embedded view is to be looked at: nothing stays over it.
+                // Nothing stays over an embedded view.
                 Event::AboutView(text) if self.state().page.embed => self.toast(text),
                 Event::AboutView(text) => {
                     self.panels.messages.about_view = Some(text);

@@ -153,7 +153,11 @@ for (const renderer of BACK_ENDS)
       for (const [key, step] of /** @type {const} */ ([["ArrowDown", 1], ["ArrowDown", 2], ["ArrowDown", 3], ["ArrowUp", 2], ["ArrowUp", 1]])) {
         await untilStill(page);
         await page.keyboard.press(key);
-        await until(page, ([id, step]) => [...(document.activeElement?.parentElement?.children ?? [])].findIndex((entry) => entry === document.activeElement) === [...(document.activeElement?.parentElement?.children ?? [])].findIndex((entry) => /** @type {HTMLElement} */ (entry).dataset.id === id) + step, /** @type {const} */ ([first?.id ?? "", step]));
+        const isAway = (/** @type {readonly [string, number]} */ [id, step]) => {
+          const entries = /** @type {HTMLElement[]} */ ([...(document.activeElement?.parentElement?.children ?? [])]);
+          return entries[entries.findIndex((entry) => entry.dataset.id === id) + step] === document.activeElement;
+        };
+        await until(page, isAway, /** @type {const} */ ([first?.id ?? "", step]));
       }
       const entry = control(page, "button", "Image and video settings…");
       await entry.press("Enter");

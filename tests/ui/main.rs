@@ -19,6 +19,7 @@ mod models;
 mod motion;
 mod picture;
 mod pins;
+mod scene_tree;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
 mod text_widths;

@@ -28,6 +28,9 @@ export async function read(items) {
   );
 }
 
+/** @param {Item[]} items */
+const areLocal = (items) => items.some((item) => typeof item !== "string");
+
 /**
  * Reads and shows items, and holds on to local ones.
  * @param {Item[]} items
@@ -38,7 +41,7 @@ export async function read(items) {
  */
 export async function load(items, as, isPrivate, isByHand = false) {
   // A link has URLs in full; other files have to be held.
-  const isLocal = items.some((item) => typeof item !== "string");
+  const isLocal = areLocal(items);
   const isPrivateNow = isLocal && (isPrivate || arePrivate(items));
   if (isPrivateNow) beginPrivate(items);
   if (isLocal) hold(items);
@@ -62,6 +65,7 @@ export async function load(items, as, isPrivate, isByHand = false) {
  * @param {Item[]} items
  */
 export function keep(items) {
+  if (!areLocal(items)) return;
   beginPrivate(items);
   holdLast(items);
   rememberRejected();

@@ -208,7 +208,7 @@ export class Mirror {
       // The browser takes back what is being typed, the program what was entered: its own field would take back the text alone.
       const { id, typing } = /** @type {HTMLElement} */ (target).dataset;
       if (typing !== undefined) return;
-      this.#program.mirror_act(id ?? "", "blur");
+      if (event.type === "keydown") this.#program.mirror_act(id ?? "", "blur");
     }
     if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
     this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);

@@ -63,8 +63,7 @@ fn node_tests(cli: &str) -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
-    // Each file drives a browser that renders on the CPU and waits for it half of the time, so two cores have two files to do.
-    // A file takes minutes; one that hangs is killed.
+    // Each file drives a browser that renders on the CPU and keeps about one core busy. A file takes minutes; one that hangs is killed.
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let concurrency = format!("--test-concurrency={}", cores.min(MAX_FILES));
     let mut arguments = vec!["--test", &concurrency, "--test-timeout=1200000"];

@@ -80,14 +80,14 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
     let length = |value: Option<f64>| value.map(|metres| format!("{:.1} cm", 100.0 * metres));
-    let share = |value: Option<f64>| value.map(|share| format!("{:.0} %", 100.0 * share));
+    let share = |value: Option<f64>| value.map(text::percent);
     let group = |title, hint| Line::Group { title, hint };
     let angles = |mean: Option<f64>, mean_verdict, max: Option<f64>, max_verdict| {
         [figure(text::MEAN, degrees(mean), mean_verdict), figure("Largest", degrees(max), max_verdict)]
     };
     let hint = match contacts {
         Contacts::Off => "Angle between a limb and its source: the visible error.",
-        Contacts::Keep => "Angle between a limb and its source. Arms turn away from theirs to keep contacts.",
+        Contacts::Keep => "Angle between a limb and its source. Arms and legs turn away from theirs to keep contacts.",
     };
     let mut lines = vec![group("LIMB DIRECTION ERROR", hint)];
     lines.extend(angles(

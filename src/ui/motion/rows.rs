@@ -337,7 +337,7 @@ impl<'a> PairFacts<'a> {
         let mut why: Vec<String> = slot.map(|_| what.clone()).into_iter().collect();
         let left_out = pairing.proposal.and_then(|proposal| left_out(&proposal.model, joint));
         why.push(match (source, given, as_proposed) {
-            (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
+            (_, _, Some(pair)) => format!("{} · {}", pair.reason, text::percent(f64::from(pair.confidence))),
             (Some(_), _, None) => "chosen manually".to_owned(),
             (None, Some(None), None) => text::DELIBERATELY_NONE.to_owned(),
             (None, None, None) if left_out.is_some() => {

@@ -71,8 +71,8 @@ impl Messages {
     /// Shows the messages in the viewport's lower left corner.
     pub(super) fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
         self.expire_toast(ui);
-        let has_stay = self.error.is_some() || self.about_view.is_some();
-        if self.toast.is_none() && self.progress.is_none() && !has_stay {
+        let has_lasting = self.error.is_some() || self.about_view.is_some();
+        if self.toast.is_none() && self.progress.is_none() && !has_lasting {
             return;
         }
         let width = (viewport.width() - 28.0).min(520.0);

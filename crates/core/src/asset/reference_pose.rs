@@ -7,15 +7,12 @@ use super::{Asset, AssetParts};
 use crate::anim::{JointIndex, Pose, Skeleton, Transform, nearest_rotation};
 
 impl Asset {
-    /// Returns the rest pose with the rotations of the bind pose where a skin covers a joint. A declared humanoid is its own
-    /// reference: VRM says so.
+    /// Returns the rest pose with the [reference rotations](AssetParts::reference_rotations).
     pub fn reference_pose(&self) -> Pose {
         let mut pose = self.skeleton.rest().clone();
-        if self.humanoid.is_none() {
-            for (joint, rotation) in self.skeleton.joints().zip(self.bind_rotations()) {
-                if let Some(rotation) = rotation {
-                    pose.set_rotation(joint, rotation.as_quat());
-                }
+        for (joint, rotation) in self.skeleton.joints().zip(self.reference_rotations()) {
+            if let Some(rotation) = rotation {
+                pose.set_rotation(joint, rotation.as_quat());
             }
         }
         pose
@@ -23,6 +20,12 @@ impl Asset {
 }
 
 impl AssetParts {
+    /// Returns each joint's local rotation in the reference pose where that isn't the rest pose: the one in the bind pose where a
+    /// skin covers the joint. A declared humanoid is its own reference: VRM says so.
+    pub fn reference_rotations(&self) -> Vec<Option<DQuat>> {
+        if self.humanoid.is_some() { vec![None; self.skeleton.len()] } else { self.bind_rotations() }
+    }
+
     /// Returns each joint's local rotation in the bind pose. It is taken relative to the nearest ancestor in the same skin, because
     /// bind space may have other units and another up axis. `None` without such an ancestor and if a matrix is singular.
     pub fn bind_rotations(&self) -> Vec<Option<DQuat>> {

@@ -124,8 +124,8 @@ pub fn target_rest(target: &Asset, nodes: &[Local], choice: RestChoice) -> Vec<L
 fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
     let skeleton = &asset.skeleton;
     match (choice, clip) {
-        (RestChoice::Auto, _) if asset.humanoid.is_some() => node_locals(skeleton),
-        (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(asset),
+        (RestChoice::Auto, _) => rotated(node_locals(skeleton), asset.reference_rotations()),
+        (RestChoice::Bind, _) => rotated(node_locals(skeleton), asset.bind_rotations()),
         (RestChoice::FirstFrame, Some(clip)) => {
             clip_locals(skeleton, clip, first_key_secs(clip), &mut Scratch::default())
         }
@@ -139,10 +139,9 @@ pub(super) fn first_key_secs(clip: &Clip) -> f32 {
     if first.is_finite() { first } else { 0.0 }
 }
 
-/// The nodes' rest with the rotations of the bind pose where a skin covers a joint.
-fn bind_locals(asset: &Asset) -> Vec<Local> {
-    let mut locals = node_locals(&asset.skeleton);
-    for (local, rotation) in locals.iter_mut().zip(asset.bind_rotations()) {
+/// The same with other rotations where there are any.
+fn rotated(mut locals: Vec<Local>, rotations: Vec<Option<DQuat>>) -> Vec<Local> {
+    for (local, rotation) in locals.iter_mut().zip(rotations) {
         local.rotation = rotation.unwrap_or(local.rotation);
     }
     locals

@@ -74,8 +74,8 @@ struct Solver<'a> {
     moves: [Vec<DVec3>; 2],
 }
 
-/// Returns all channels of the clip with its hands where they touch, or `None` if there is nothing to do. `resampled` lists the joints whose
-/// keys in `clip` are not the source's own.
+/// Returns all channels of the clip with its hands where they touch, or `None` if there is nothing to do. `resampled` lists the joints
+/// whose keys in `clip` are not the source's own.
 pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
     let skeleton = scene.transfer.target_skeleton;
     let mut solver = Solver::new(scene);

@@ -51,8 +51,7 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<
     let materials: Vec<Value> = asset.materials.iter().map(material).collect();
     let counts = clip::Counts { accessors: data.accessors.len(), buffer_views: data.views.len() };
     let Data { mut binary, mut views, mut accessors } = data;
-    let mut added = clip::add(clips, skeleton, false, counts, &mut binary)?;
-    clip::mark_added(added.animations.get_mut(asset.clips.len()..).unwrap_or_default());
+    let added = clip::add(clips, asset.clips.len(), skeleton, false, counts, &mut binary)?;
     accessors.extend(added.accessors.iter().map(|accessor| json!(accessor)));
     views.extend(added.buffer_views.iter().map(|view| json!(view)));
     let lists = [

@@ -4,14 +4,13 @@
 use std::collections::BTreeMap;
 
 use glam::{DQuat, Quat, Vec3};
-use serde_json::json;
-use serde_json::value::RawValue;
+use serde_json::{Map, Value, json};
 
 use super::WriteError;
 use super::glb::pad;
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
 use crate::formats::gltf::animations::Extras;
-use crate::formats::gltf::object::{Array, Object, raw};
+use crate::formats::gltf::object::{Array, raw};
 
 /// A rotation whose squared length is farther from 1 is normalized. Rounding errors are far smaller, so a clip that was
 /// loaded is written back bit for bit.
@@ -32,16 +31,18 @@ pub struct Counts {
     pub buffer_views: usize,
 }
 
-/// Appends the keys of `clips` to `binary`, the beginning of the buffer. `weights` includes morph weights.
+/// Appends the keys of `clips` to `binary`, the beginning of the buffer. The first `own` are the file's, the others are marked as
+/// added to it. `weights` includes morph weights.
 pub fn add(
     clips: &[&Clip],
+    own: usize,
     skeleton: &Skeleton,
     weights: bool,
     counts: Counts,
     binary: &mut Vec<u8>,
 ) -> Result<Added, WriteError> {
     let mut added = Added::default();
-    for clip in clips {
+    for (index, clip) in clips.iter().enumerate() {
         pad(binary, 0);
         let mut data = Data {
             start: binary.len(),
@@ -50,21 +51,15 @@ pub fn add(
             first: counts.accessors,
             accessors: &mut added.accessors,
         };
-        let animation = animation(clip, skeleton, weights, &mut data)?;
+        let mut animation = animation(clip, skeleton, weights, &mut data)?;
+        if index >= own {
+            animation.insert("extras".to_owned(), json!(Extras { gaitway_added: true }));
+        }
         let (start, end) = (data.start, data.binary.len());
-        added.animations.push(animation);
+        added.animations.push(raw(&animation));
         added.buffer_views.push(raw(&json!({ "buffer": 0, "byteOffset": start, "byteLength": end - start })));
     }
     Ok(added)
-}
-
-/// Marks animations as added to what was there before.
-pub fn mark_added(animations: &mut [Box<RawValue>]) {
-    for animation in animations {
-        let mut object: Object = serde_json::from_str(animation.get()).unwrap_or_default();
-        object.set("extras", &Extras { gaitway_added: true });
-        *animation = raw(&object);
-    }
 }
 
 /// The buffer view of one clip.
@@ -100,7 +95,12 @@ impl Data<'_> {
     }
 }
 
-fn animation(clip: &Clip, skeleton: &Skeleton, weights: bool, data: &mut Data) -> Result<Box<RawValue>, WriteError> {
+fn animation(
+    clip: &Clip,
+    skeleton: &Skeleton,
+    weights: bool,
+    data: &mut Data,
+) -> Result<Map<String, Value>, WriteError> {
     let written = written(clip, skeleton, weights);
     if written.is_empty() {
         return Err(WriteError::EmptyClip { clip: clip.name().to_owned() });
@@ -130,13 +130,13 @@ fn animation(clip: &Clip, skeleton: &Skeleton, weights: bool, data: &mut Data) -
         channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
         samplers.push(json!({ "input": input, "interpolation": interpolation, "output": output }));
     }
-    let mut animation = json!({ "name": clip.name(), "channels": channels, "samplers": samplers });
-    if clip.name().is_empty()
-        && let Some(animation) = animation.as_object_mut()
-    {
-        animation.shift_remove("name");
+    let mut animation = Map::new();
+    if !clip.name().is_empty() {
+        animation.insert("name".to_owned(), json!(clip.name()));
     }
-    Ok(raw(&animation))
+    animation.insert("channels".to_owned(), json!(channels));
+    animation.insert("samplers".to_owned(), json!(samplers));
+    Ok(animation)
 }
 
 /// Returns the channels to write. A file may have only one per property: the last, which is the one that the player uses.

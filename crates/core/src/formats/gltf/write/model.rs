@@ -51,8 +51,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     join_buffers(&mut json, &root, &buffers, &outside, &mut binary);
     embed_images(files, file, &mut json, &root, &outside, &mut binary);
     let counts = Counts { accessors: json.count("accessors"), buffer_views: json.count("bufferViews") };
-    let mut added = clip::add(clips, skeleton, true, counts, &mut binary)?;
-    clip::mark_added(&mut added.animations);
+    let added = clip::add(clips, 0, skeleton, true, counts, &mut binary)?;
     json.extend("accessors", added.accessors);
     json.extend("bufferViews", added.buffer_views);
     json.extend("animations", added.animations);

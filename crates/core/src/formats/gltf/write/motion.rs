@@ -11,7 +11,7 @@ use crate::asset::Asset;
 pub fn motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let mut root = nodes_and_scenes(asset, skeleton);
     let mut binary = Vec::new();
-    let added = clip::add(clips, skeleton, false, clip::Counts::default(), &mut binary)?;
+    let added = clip::add(clips, clips.len(), skeleton, false, clip::Counts::default(), &mut binary)?;
     if !added.animations.is_empty() {
         root["animations"] = json!(added.animations);
         root["accessors"] = json!(added.accessors);

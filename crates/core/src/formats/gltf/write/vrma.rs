@@ -63,7 +63,7 @@ pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip)
     root["extensionsUsed"] = json!([EXTENSION]);
     root["extensions"] = json!({ EXTENSION: extension(asset, &bones, targets) });
     let mut binary = Vec::new();
-    let added = clip::add(&[&written], &skeleton, false, clip::Counts::default(), &mut binary)?;
+    let added = clip::add(&[&written], 1, &skeleton, false, clip::Counts::default(), &mut binary)?;
     root["animations"] = json!(added.animations);
     root["accessors"] = json!(added.accessors);
     root["bufferViews"] = json!(added.buffer_views);
