@@ -43,11 +43,24 @@ pub fn with_boxes(rig: &Rig, belly: f32) -> Figure {
 
 /// The same with hands of a given half width.
 fn with_hands(rig: &Rig, belly: f32, hand: f32) -> Figure {
+    dressed(rig, &boxes(belly, hand))
+}
+
+/// A figure with legs of boxes, of a given half width.
+fn with_legs(radius: f32) -> Figure {
+    let leg = |length: f32| [Vec3::new(-radius, -length, -radius), Vec3::new(radius, 0.0, radius)];
+    let foot = [Vec3::new(-radius, -0.08, -0.06), Vec3::new(radius, 0.02, 0.18)];
+    let left = [(Slot::LeftUpperLeg, leg(0.45)), (Slot::LeftLowerLeg, leg(0.42)), (Slot::LeftFoot, foot)];
+    let right = [(Slot::RightUpperLeg, leg(0.45)), (Slot::RightLowerLeg, leg(0.42)), (Slot::RightFoot, foot)];
+    dressed(&Rig::default(), &[&boxes(0.1, 0.02)[..], &left, &right].concat())
+}
+
+fn dressed(rig: &Rig, boxes: &[(Slot, [Vec3; 2])]) -> Figure {
     let mut figure = build(rig);
     let size = rig.size as f32;
     let mut meshes = Vec::new();
     let mut instances = Vec::new();
-    for (slot, corners) in boxes(belly, hand) {
+    for &(slot, corners) in boxes {
         let positions = points(corners.map(|corner| size * corner));
         let geometry = Geometry { positions, indices: vec![0, 1, 2], ..Geometry::default() };
         instances.push(MeshInstance::new(figure.joint(slot), meshes.len(), None));
@@ -128,6 +141,26 @@ fn bend_down(mut figure: Figure, degrees: f32) -> Figure {
     figure
 }
 
+/// Lifts the right foot, brings it to the left leg for half a second and back: thigh and shin bend alike, so the shin is behind the knee.
+fn legs_together(mut figure: Figure) -> Figure {
+    let mut clip = ClipBuilder::new("together", &figure.asset.skeleton);
+    let bend = |share: f32| Quat::from_rotation_x(share * 25.0_f32.to_radians());
+    let inwards = Quat::from_rotation_z(8.0_f32.to_radians());
+    let turns = [
+        (Slot::RightUpperLeg, [bend(-1.0), inwards * bend(-1.0)]),
+        (Slot::RightLowerLeg, [bend(2.0); 2]),
+        (Slot::RightFoot, [bend(-1.0); 2]),
+    ];
+    for (slot, [up, together]) in turns {
+        let keys = vec![Quat::IDENTITY, up, together, together, up, Quat::IDENTITY];
+        let times = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5];
+        clip.channel(figure.joint(slot), Interpolation::Linear, &times, Keys::Rotation(keys)).unwrap();
+    }
+    let clip = clip.build();
+    figure.set_clip(clip);
+    figure
+}
+
 fn hands_to_the_ground(figure: Figure) -> Figure {
     bend_down(figure, 134.5)
 }
@@ -177,6 +210,30 @@ fn a_hand_stays_out_of_a_larger_belly_and_keeps_touching_it() {
         assert!(degrees(before[hand].0, after[hand].0) < 1.0, "at {time} s");
     }
     assert!(keep.unplanted.is_some());
+}
+
+#[test]
+fn a_leg_stays_out_of_the_one_that_stands() {
+    let motion = legs_together(with_legs(0.035));
+    let model = with_legs(0.075);
+    let (off, before) = retarget(&model, &motion, Contacts::Off);
+    let (keep, after) = retarget(&model, &motion, Contacts::Keep);
+    let shares = [before, after].map(|figures| figures.self_penetration_share.unwrap());
+    assert!(shares[0] > 0.01 && shares[1] < 0.3 * shares[0], "{shares:?}");
+    let feet =
+        |time: f32, slot: Slot| [&off.clip, &keep.clip].map(|clip| model.world(clip, time)[model.joint(slot).get()]);
+    for frame in 0..=50 {
+        let [before, after] = feet(0.05 * frame as f32, Slot::LeftFoot);
+        assert!(before.1.distance(after.1) < 1e-6, "it stands");
+    }
+    let [before, after] = feet(1.25, Slot::RightFoot);
+    let moved = after.1 - before.1;
+    assert!(moved.x < -0.03 && moved.y.abs() < 0.01 && degrees(before.0, after.0) < 0.1, "{moved}");
+    // Legs as thin as the source's keep their clip.
+    let clips = [Contacts::Off, Contacts::Keep].map(|contacts| retarget(&motion, &motion, contacts).0.clip);
+    for joint in motion.asset.skeleton.joints() {
+        assert!(keys_of(&clips[0], joint) == keys_of(&clips[1], joint), "{joint:?}");
+    }
 }
 
 /// As with a source that has no hands.

@@ -1,6 +1,6 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use super::contacts::{Bodies, Scene, grounded_knees, kept_hands};
+use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
@@ -70,7 +70,7 @@ pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>
     Ok(Retargeted { unplanted: planted.unplanted.or(Some(planted.clip)), planting: planted.planting, ..built })
 }
 
-/// Brings knees to the ground, then hands to where they rest; `None` if there is nothing to do.
+/// Brings knees to the ground, then hands to where they rest and limbs out of the body; `None` if there is nothing to do.
 fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Result<Option<Retargeted>, RetargetError> {
     let rebuilt = |channels: Option<Vec<NewChannel>>| {
         channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
@@ -82,7 +82,7 @@ fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Resu
         None => scene,
     };
     let before = knelt.as_ref().unwrap_or(planted);
-    let kept = rebuilt(kept_hands(scene, &before.clip, &before.resampled))?;
+    let kept = rebuilt(kept_limbs(scene, &before.clip, &before.resampled))?;
     Ok(kept.or(knelt))
 }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::body::{Bodies, Body, BodyMotion, Frames, GroundPart, POINTS};
+use super::limb::ARMS;
 use crate::retarget::feet::{contacts_of, foot_pairs, standing_height};
 use crate::retarget::transfer::Transfer;
 
@@ -81,6 +82,16 @@ impl Ground {
         parts.map(move |(index, part)| {
             (part.part, self.heights[index][at] - (lowest(&bodies.target, part, target) - self.height))
         })
+    }
+
+    /// Whether a leg stands or kneels on the ground at each time. `side` is 0 for the left one, 1 for the right one.
+    pub fn standing(&self, bodies: &Bodies, side: usize) -> Vec<bool> {
+        let sole = bodies.target.soles.feet[..side].iter().flatten().count();
+        let is_own = |part: &GroundPart| part.is_knee && bodies.regions[part.part].limb() == Some(ARMS + side);
+        let knee = bodies.ground_parts.iter().position(is_own).map(|knee| &self.touching[knee]);
+        let rests = |rows: Option<&Vec<bool>>, at: usize| rows.is_some_and(|row| row[at]);
+        let foot = self.feet.get(sole);
+        (0..self.feet.first().map_or(0, Vec::len)).map(|at| rests(foot, at) || rests(knee, at)).collect()
     }
 
     /// How much higher a sole of the target should be behind a knee that goes up by `along`: on the ground if it is planted there, else

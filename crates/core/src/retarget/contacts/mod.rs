@@ -5,8 +5,9 @@
 mod arm;
 mod body;
 mod ground;
-mod hands;
 mod knees;
+mod limb;
+mod limbs;
 mod parts;
 mod scene;
 mod shape;
@@ -16,14 +17,14 @@ mod touch;
 
 pub use body::{Bodies, BodyMotion};
 pub use ground::Ground;
-pub use hands::kept_hands;
 pub use knees::grounded_knees;
+pub use limbs::kept_limbs;
 pub use scene::Scene;
 pub use touch::TouchFigures;
 
-/// Shares of the body's height: a wrist, a knee or the hips are never moved further than the first, and moves below the second are
+/// Shares of the body's height: a wrist, an ankle, a knee or the hips are never moved further than the first, and moves below the second are
 /// none.
-const MAX_MOVE: f64 = 0.11;
+const MAX_MOVE: f64 = 0.105;
 const MIN_MOVE: f64 = 1e-4;
 
 /// How far a bone of an arm or a leg may be turned, and how fast.

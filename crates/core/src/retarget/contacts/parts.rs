@@ -21,10 +21,17 @@ pub enum Region {
 impl Region {
     /// 0 for the left arm, 1 for the right one.
     pub fn arm(self) -> Option<usize> {
+        self.limb().filter(|_| !self.is_leg())
+    }
+
+    /// 0 for the left arm, 1 for the right one, 2 for the left leg, 3 for the right one.
+    pub fn limb(self) -> Option<usize> {
         match self {
+            Self::Trunk => None,
             Self::LeftArm => Some(0),
             Self::RightArm => Some(1),
-            _ => None,
+            Self::LeftLeg => Some(2),
+            Self::RightLeg => Some(3),
         }
     }
 

@@ -1,11 +1,12 @@
-//! Moves hands to where the source's touch, and arms out of other parts of the body and the ground: how far each wrist moves, smooth
-//! over time, and the turns of upper arm and forearm that follow in closed form. Legs and trunk stay as `knees` leaves them.
+//! Moves hands to where the source's touch, arms out of other parts of the body and the ground, and legs out of each other: how far
+//! each wrist and ankle moves, smooth over time, and the turns of the limb's bones that follow in closed form. The trunk and feet that
+//! stand stay as `knees` leaves them.
 
 use glam::{DQuat, DVec3};
 
-use super::arm::Arm;
 use super::body::{Bodies, Frames, place_of};
 use super::ground::{Ground, Sunken};
+use super::limb::{ARMS, LIMBS, Limb};
 use super::scene::Scene;
 use super::smooth::eased;
 use super::touch::Touches;
@@ -14,7 +15,7 @@ use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::ranges;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
-use crate::retarget::math::HORIZONTAL;
+use crate::retarget::math::{HORIZONTAL, smooth};
 use crate::retarget::pose::WorldPose;
 use crate::retarget::transfer::{removed_travel, rotation_laws};
 use crate::retarget::two_bones::limb_rotations;
@@ -32,16 +33,20 @@ const TOLERATED: f64 = 0.002;
 /// A point that is deeper than that by this share is pushed out fully.
 const CLEARLY_INSIDE: f64 = 0.003;
 
+/// A foot stays where it is until the first of these times after it has stood, and is free from the second on; the same before it
+/// stands. Other times are sampled when slide is measured: the first is more than a frame.
+const LANDING_SECS: [f64; 2] = [0.05, 0.2];
+
 /// One moment of the clip.
 struct Moment {
-    /// With the arms moved so far.
+    /// With the limbs moved so far.
     frames: Frames,
     touches: Touches,
     /// Turn and scale.
     target_from_source: (DQuat, f64),
 }
 
-/// What the points of one arm want its wrist to do: a weighted least-squares fit.
+/// What the points of one limb want its end to do: a weighted least-squares fit.
 #[derive(Clone, Copy, Default)]
 struct Wish {
     sum: DVec3,
@@ -65,18 +70,22 @@ struct Solver<'a> {
     /// The clip without corrections.
     poses: Vec<WorldPose>,
     moments: Vec<Moment>,
-    arms: [Option<Arm>; 2],
+    limbs: [Option<Limb>; LIMBS],
+    /// How freely each ankle moves at each time: from 0, where the leg stands or kneels, to 1.
+    freedom: [Vec<f64>; LIMBS - ARMS],
     /// `None` without feet.
     ground: Option<Ground>,
     /// How far each wrist has to move over the ground to stay in place while it rests there, at each time.
-    holds: [Vec<DVec3>; 2],
-    /// How far each wrist moves, at each time.
-    moves: [Vec<DVec3>; 2],
+    holds: [Vec<DVec3>; ARMS],
+    /// How far the end of each limb moves, at each time.
+    moves: [Vec<DVec3>; LIMBS],
 }
 
-/// Returns all channels of the clip with its hands where they touch, or `None` if there is nothing to do. `resampled` lists the joints
-/// whose keys in `clip` are not the source's own.
-pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
+type Wishes = [Wish; LIMBS];
+
+/// Returns all channels of the clip with its hands where they touch and its limbs out of the body, or `None` if there is nothing to do.
+/// `resampled` lists the joints whose keys in `clip` are not the source's own.
+pub fn kept_limbs(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
     let skeleton = scene.transfer.target_skeleton;
     let mut solver = Solver::new(scene);
     for _ in 0..ROUNDS {
@@ -87,11 +96,11 @@ pub fn kept_hands(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option
         solver.add(Solver::compromise);
     }
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
-    for (index, arm) in solver.arms.iter().enumerate() {
+    for (index, limb) in solver.limbs.iter().enumerate() {
         let turns = solver.turns(index);
-        let Some(arm) = arm.filter(|_| turns.iter().flatten().any(|&turn| turn != DQuat::IDENTITY)) else { continue };
+        let Some(limb) = limb.filter(|_| turns.iter().flatten().any(|&turn| turn != DQuat::IDENTITY)) else { continue };
         let turns = turns.each_ref().map(Vec::as_slice);
-        rotations.extend(limb_rotations(skeleton, arm.joints, &solver.poses, turns));
+        rotations.extend(limb_rotations(skeleton, limb.joints(), &solver.poses, turns));
     }
     (!rotations.is_empty()).then(|| NewChannel::corrected(clip, resampled, &solver.times, None, rotations))
 }
@@ -106,10 +115,15 @@ impl<'a> Solver<'a> {
         for ((&time, frames), touches) in times.iter().zip(target.frames).zip(bodies.touches(&times, &source.frames)) {
             moments.push(Moment { frames, touches, target_from_source: (removed.turn(time), scale) });
         }
-        let arms = bodies.arms.map(|joints| Some(Arm::new(joints?, &transfer.alignment.target)));
-        let [moves, mut holds] = [(); 2].map(|()| std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]));
+        let limbs = Limb::mapped(transfer, bodies);
+        let freedom = [0, 1].map(|side| match &ground {
+            Some(ground) => freedom(&times, &ground.standing(bodies, side)),
+            None => vec![0.0; times.len()],
+        });
+        let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
+        let mut holds = [(); ARMS].map(|()| vec![DVec3::ZERO; times.len()]);
         for (part, touching) in bodies.ground_parts.iter().zip(ground.iter().flat_map(|ground| &ground.touching)) {
-            let Some(arm) = bodies.regions[part.part].arm().filter(|&arm| arms[arm].is_some()) else { continue };
+            let Some(arm) = bodies.regions[part.part].arm().filter(|&arm| limbs[arm].is_some()) else { continue };
             // How far the wrist is from where the source's is: constant if it goes over the ground like that.
             let offset = |at: usize| {
                 let turn_back = moments[at].target_from_source.0.conjugate();
@@ -125,39 +139,39 @@ impl<'a> Solver<'a> {
                 }
             }
         }
-        Self { bodies, times, poses, moments, arms, ground, holds, moves }
+        Self { bodies, times, poses, moments, limbs, freedom, ground, holds, moves }
     }
 
     /// What touches on the source should touch on the target.
-    fn touch(&self, at: usize) -> [Wish; 2] {
+    fn touch(&self, at: usize) -> Wishes {
         let moment = &self.moments[at];
-        let mut wishes = [Wish::default(); 2];
+        let mut wishes = [Wish::default(); LIMBS];
         for miss in self.bodies.misses(&moment.touches, &moment.frames, moment.target_from_source) {
             let pair = &self.bodies.pairs[miss.pair];
-            self.wish(&mut wishes, pair.limb, Some(pair.other), 1.0, miss.by, [miss.weight; 2]);
+            self.wish(&mut wishes, at, (pair.limb, 1.0), Some(pair.other), miss.by, [miss.weight; 2]);
         }
         for (part, by) in self.ground.iter().flat_map(|ground| ground.misses(self.bodies, at, &moment.frames)) {
             if let Some(arm) = self.bodies.regions[part].arm() {
                 let over = (self.holds[arm][at] - self.moves[arm][at]) * HORIZONTAL;
-                self.wish(&mut wishes, part, None, 1.0, over + by * DVec3::Y, [1.0; 2]);
+                self.wish(&mut wishes, at, (part, 1.0), None, over + by * DVec3::Y, [1.0; 2]);
             }
         }
         wishes
     }
 
     /// What is inside other parts, and is not on the source, should come out.
-    fn push_out(&self, at: usize) -> [Wish; 2] {
-        let mut wishes = [Wish::default(); 2];
+    fn push_out(&self, at: usize) -> Wishes {
+        let mut wishes = [Wish::default(); LIMBS];
         for Overlap { limb, other, point, excess, outward } in self.overlaps(at) {
             let share = (excess / (CLEARLY_INSIDE * self.bodies.target.height)).min(1.0);
             let lever = self.bodies.lever(limb, place_of(point).share);
-            self.wish(&mut wishes, limb, other, lever, excess * outward, [excess, share]);
+            self.wish(&mut wishes, at, (limb, lever), other, excess * outward, [excess, share]);
         }
         wishes
     }
 
     /// Both at once, where they contradict each other.
-    fn compromise(&self, at: usize) -> [Wish; 2] {
+    fn compromise(&self, at: usize) -> Wishes {
         let (mut wishes, pushes) = (self.touch(at), self.push_out(at));
         let weight = PUSH_WEIGHT / self.bodies.target.height;
         for (wish, push) in wishes.iter_mut().zip(pushes) {
@@ -197,68 +211,81 @@ impl<'a> Solver<'a> {
         overlaps
     }
 
-    /// Adds a wish of a limb's part, which moves with its wrist by `lever`, relative to another part or the ground. Two arms share
-    /// it.
+    /// Adds a wish of a part, which moves with the end of its limb by `lever`, relative to another part or the ground. Two arms or two
+    /// legs share it; arms give way to legs.
     fn wish(
         &self,
-        wishes: &mut [Wish; 2],
-        limb: usize,
+        wishes: &mut Wishes,
+        at: usize,
+        (part, lever): (usize, f64),
         other: Option<usize>,
-        lever: f64,
         by: DVec3,
         [weight, share]: [f64; 2],
     ) {
-        let movable = |part: usize| self.bodies.regions[part].arm().filter(|&arm| self.arms[arm].is_some());
-        let own = movable(limb).map(|arm| (arm, lever));
-        let partner = other.and_then(|part| Some((movable(part)?, self.bodies.lever(part, 0.5))));
-        let by = if own.is_some() && partner.is_some() { 0.5 * by } else { by };
-        for (moved, by) in [(own, by), (partner, -by)] {
-            if let Some((arm, lever)) = moved {
-                wishes[arm].sum += weight * lever * by;
-                wishes[arm].squares += weight * lever * lever;
-                wishes[arm].share = share.max(wishes[arm].share);
+        let is_of_leg = self.bodies.regions[part].is_leg();
+        // Feet stay as high as they are.
+        let by = if is_of_leg { by * HORIZONTAL } else { by };
+        let movable = |part: usize, lever: f64| {
+            let region = self.bodies.regions[part];
+            let limb = region.limb().filter(|&limb| self.limbs[limb].is_some() && region.is_leg() == is_of_leg)?;
+            Some((limb, lever, self.freedom(limb, at)))
+        };
+        let partner = other.and_then(|part| movable(part, self.bodies.lever(part, 0.5)));
+        let limbs = [movable(part, lever), partner];
+        let total: f64 = limbs.iter().flatten().map(|(.., freedom)| freedom).sum();
+        for (moved, by) in limbs.into_iter().zip([by, -by]) {
+            if let Some((limb, lever, freedom)) = moved.filter(|_| total > 0.0) {
+                wishes[limb].sum += weight * lever * freedom / total * by;
+                wishes[limb].squares += weight * lever * lever;
+                wishes[limb].share = share.max(wishes[limb].share);
             }
         }
     }
 
-    /// Moves the wrists further, smoothly over time.
-    fn add(&mut self, wishes: fn(&Self, usize) -> [Wish; 2]) {
-        let wishes: Vec<[Wish; 2]> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
+    fn freedom(&self, limb: usize, at: usize) -> f64 {
+        limb.checked_sub(ARMS).map_or(1.0, |leg| self.freedom[leg][at])
+    }
+
+    /// Moves the ends of the limbs further, smoothly over time.
+    fn add(&mut self, wishes: fn(&Self, usize) -> Wishes) {
+        let wishes: Vec<Wishes> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
         let limit = MAX_MOVE * self.bodies.target.height;
-        for arm in 0..2 {
+        for limb in 0..LIMBS {
             let fit = |wish: Wish| {
                 if wish.squares > 0.0 { (wish.sum / wish.squares, wish.share) } else { (DVec3::ZERO, 0.0) }
             };
-            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| fit(wishes[arm])).collect();
-            for (by, more) in self.moves[arm].iter_mut().zip(eased(&self.times, &wanted)) {
-                *by = (*by + more).clamp_length_max(limit);
+            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| fit(wishes[limb])).collect();
+            for (at, more) in eased(&self.times, &wanted).into_iter().enumerate() {
+                let freedom = self.freedom(limb, at);
+                let by = &mut self.moves[limb][at];
+                *by = (*by + freedom * more).clamp_length_max(limit);
             }
         }
         for at in 0..self.times.len() {
-            let turns = [0, 1].map(|arm| self.reach(arm, at));
+            let turns = std::array::from_fn(|limb| self.reach(limb, at));
             self.moments[at].frames = self.turned_frames(at, turns);
         }
     }
 
-    fn reach(&self, arm: usize, at: usize) -> [DQuat; 2] {
-        let by = self.moves[arm][at];
+    fn reach(&self, limb: usize, at: usize) -> [DQuat; 2] {
+        let by = self.moves[limb][at];
         let is_moved = by.length() > MIN_MOVE * self.bodies.target.height;
-        let arm = self.arms[arm].filter(|_| is_moved);
-        arm.map_or([DQuat::IDENTITY; 2], |arm| arm.reach(&self.poses[at], by))
+        let limb = self.limbs[limb].filter(|_| is_moved);
+        limb.map_or([DQuat::IDENTITY; 2], |limb| limb.reach(&self.poses[at], by))
     }
 
-    /// The target's parts with its arms turned.
-    fn turned_frames(&self, at: usize, turns: [[DQuat; 2]; 2]) -> Frames {
+    /// The target's parts with its limbs turned.
+    fn turned_frames(&self, at: usize, turns: [[DQuat; 2]; LIMBS]) -> Frames {
         let target = &self.bodies.target;
         let pose = &self.poses[at];
         let mut frames = target.frames(pose);
-        for (arm, [upper, lower]) in self.arms.iter().zip(turns) {
-            let Some(arm) = arm else { continue };
-            let [shoulder, elbow, wrist] = arm.joints.map(|joint| pose.position(joint));
-            let moved_elbow = shoulder + upper * (elbow - shoulder);
-            let moved_wrist = moved_elbow + lower * (wrist - elbow);
-            let moved = [(shoulder, upper), (moved_elbow, lower), (moved_wrist, DQuat::IDENTITY)];
-            for (joint, (position, turn)) in arm.joints.iter().zip(moved) {
+        for (limb, [upper, lower]) in self.limbs.iter().zip(turns) {
+            let Some(joints) = limb.as_ref().map(Limb::joints) else { continue };
+            let [root, middle, end] = joints.map(|joint| pose.position(joint));
+            let moved_middle = root + upper * (middle - root);
+            let moved_end = moved_middle + lower * (end - middle);
+            let moved = [(root, upper), (moved_middle, lower), (moved_end, DQuat::IDENTITY)];
+            for (joint, (position, turn)) in joints.iter().zip(moved) {
                 if let Some(part) = target.joints.iter().position(|other| other == joint) {
                     frames[part] = (position, turn * frames[part].1);
                 }
@@ -267,12 +294,12 @@ impl<'a> Solver<'a> {
         frames
     }
 
-    /// How an arm turns at each time.
-    fn turns(&self, arm: usize) -> [Vec<DQuat>; 2] {
+    /// How a limb turns at each time.
+    fn turns(&self, limb: usize) -> [Vec<DQuat>; 2] {
         let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
         let mut turns = [Vec::new(), Vec::new()];
         for at in 0..self.times.len() {
-            let [upper, lower] = self.reach(arm, at);
+            let [upper, lower] = self.reach(limb, at);
             turns[0].push(upper);
             turns[1].push(lower);
         }
@@ -281,4 +308,18 @@ impl<'a> Solver<'a> {
         }
         turns
     }
+}
+
+/// How freely an ankle moves at each time, given where its leg stands.
+fn freedom(times: &[f32], standing: &[bool]) -> Vec<f64> {
+    let [near, far] = LANDING_SECS;
+    let mut freedom = vec![1.0_f64; times.len()];
+    for contact in ranges(standing) {
+        let [from, to] = [times[contact.start], times[contact.end - 1]];
+        for (freedom, &time) in freedom.iter_mut().zip(times) {
+            let away = f64::from((from - time).max(time - to).max(0.0));
+            *freedom = freedom.min(smooth((away - near) / (far - near)));
+        }
+    }
+    freedom
 }
