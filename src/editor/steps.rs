@@ -48,8 +48,10 @@ impl Editor {
 
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
-        let (before, playing) = (self.loaded_names(), self.retargeted_clip());
-        let view = if self.history.would_undo_retargeting(&self.state) { self.automatic_view() } else { None };
+        let before = self.loaded_names();
+        let is_retargeting = self.history.would_undo_retargeting(&self.state);
+        let (playing, view) =
+            if is_retargeting { (self.retargeted_clip(), self.automatic_view()) } else { (None, None) };
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Redo");
@@ -60,8 +62,10 @@ impl Editor {
 
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
-        let (before, playing) = (self.loaded_names(), self.retargeted_clip());
-        let view = if self.history.would_redo_retargeting(&self.state) { self.automatic_view() } else { None };
+        let before = self.loaded_names();
+        let is_retargeting = self.history.would_redo_retargeting(&self.state);
+        let (playing, view) =
+            if is_retargeting { (self.retargeted_clip(), self.automatic_view()) } else { (None, None) };
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, playing, "Undo");

@@ -53,16 +53,17 @@ fn closing_activates_the_neighbour_and_can_be_undone() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:creature".into()]);
     desk.open(&["sample:dwarf".into()]);
+    let opened = ["sample:pilot", "sample:creature", "sample:dwarf"];
     desk.press(&text::close_model("Dwarf"));
     assert_eq!((desk.active(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
     desk.undo();
     assert_eq!(desk.active(), "sample:dwarf");
-    assert_eq!(desk.models().len(), 3);
+    assert_eq!(desk.models(), opened);
     // Closing an inactive model only removes it from the list.
     desk.press(&text::close_model("Pilot"));
     assert_eq!((desk.active(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
     desk.undo();
-    assert_eq!(desk.models().len(), 3);
+    assert_eq!(desk.models(), opened);
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn undo_relists_a_closed_model_and_keeps_the_view() {
     assert_eq!(library.listed(), [second]);
     assert_eq!(library.active().map(|model| model.id), Some(second));
     assert!(library.show(first), "a step may activate a closed model");
-    assert_eq!(library.listed(), [second, first]);
+    assert_eq!(library.listed(), [first, second]);
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn sorting_errors_say_what_to_do() {
         assert!(matches!(&no_map, SortError::Map { file, .. } if file == "map.json"), "{no_map}");
     }
     let unknown = fails(Role::Any, &[("notes.txt", "hello")]);
-    assert!(unknown.to_string().ends_with("or a joint map (.json)"), "{unknown}");
+    assert!(unknown.to_string().ends_with("or an environment (.hdr)"), "{unknown}");
     assert!(matches!(fails(Role::Any, &[("notes.txt", "hello")]), SortError::Load(_)));
     let many: Vec<(String, &str)> = (0..65).map(|index| (format!("{index}.bvh"), BVH)).collect();
     let many: Vec<(&str, &str)> = many.iter().map(|(name, text)| (name.as_str(), *text)).collect();

@@ -302,6 +302,23 @@ fn lists_that_drop_down_fit_low_windows() {
 }
 
 #[test]
+fn a_channel_without_data_says_so() {
+    // The sample has colours and no texture coordinates, the other model neither.
+    for (mut harness, lacks) in [(sample_bench(WIDE), [false, true]), (bench(WIDE, model_with_clips(1)), [true, true])]
+    {
+        press(&mut harness, Tab::Display.label());
+        for (channel, text, lacks) in
+            [(Channel::VertexColor, "No vertex colours", lacks[0]), (Channel::Uv, "No texture coordinates", lacks[1])]
+        {
+            harness.state_mut().change(|state| state.display.channel = channel);
+            harness.run();
+            let count = painted(&harness).iter().filter(|(painted, ..)| painted == text).count();
+            assert_eq!(count, if lacks { 2 } else { 0 }, "{text}: in the tab and in the viewport");
+        }
+    }
+}
+
+#[test]
 fn the_focus_returns_to_what_started_a_recording() {
     let mut harness = sample_bench([1280.0, 1600.0]);
     press(&mut harness, Tab::Camera.label());

@@ -176,7 +176,9 @@ export class Mirror {
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
     const selected = this.root.querySelector("[role=treeitem][aria-selected=true]");
-    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? stopsIn(this.root)[0]);
+    /** @type {HTMLElement | null} */
+    const viewport = this.root.querySelector("[role=img][tabindex]");
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? viewport ?? stopsIn(this.root)[0]);
     const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();

@@ -2,7 +2,8 @@
 
 use super::{counted, grouped, labelled};
 use crate::editor::ValidatorReport;
-use crate::mesh::SkinningMode;
+use crate::library::Model;
+use crate::mesh::{Geometry, SkinningMode};
 use crate::state::Channel;
 
 // Scene tab
@@ -200,6 +201,16 @@ pub fn channel(channel: Channel) -> &'static str {
         Channel::VertexColor => "Vertex colours",
         Channel::Influences => "Number of influences",
         Channel::Wireframe => "Wireframe",
+    }
+}
+
+/// Returns what a model lacks that a channel shows, beside the channel or in place of its name.
+pub fn absent(channel: Channel, model: &Model) -> Option<&'static str> {
+    let none_has = |has: fn(&Geometry) -> bool| !model.asset.meshes.iter().flat_map(|mesh| &mesh.primitives).any(has);
+    match channel {
+        Channel::VertexColor if none_has(|geometry| !geometry.colors.is_empty()) => Some("No vertex colours"),
+        Channel::Uv if none_has(|geometry| !geometry.uvs[0].is_empty()) => Some("No texture coordinates"),
+        _ => None,
     }
 }
 

@@ -18,7 +18,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     }
     let painter = ui.painter_at(rect);
     pane_labels(ui, &painter, rect, &shown);
-    legend::show(ui, &painter, rect.with_max_y(rect.bottom() - label_height(&shown)), shown.state);
+    legend::show(ui, &painter, rect.with_max_y(rect.bottom() - label_height(&shown)), &shown);
     if local.motion.is_clicking() {
         return;
     }

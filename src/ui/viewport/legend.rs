@@ -3,10 +3,11 @@
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Rgba, Ui, pos2, vec2};
 
 use crate::render::shaders::{HEAT_COLORS, INFLUENCE_COLORS};
-use crate::state::{Channel, ViewerState};
-use crate::ui::{style, text};
+use crate::state::Channel;
+use crate::ui::{Shown, style, text};
 
-pub fn show(ui: &Ui, painter: &Painter, rect: Rect, state: &ViewerState) {
+pub fn show(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
+    let state = shown.state;
     match state.display.channel {
         Channel::Shaded if state.inspect.weights && state.selection.joint.is_some() => {
             let colors = HEAT_COLORS.map(|[red, green, blue]| Rgba::from_rgb(red, green, blue).into());
@@ -20,7 +21,10 @@ pub fn show(ui: &Ui, painter: &Painter, rect: Rect, state: &ViewerState) {
             });
             scale(ui, painter, rect, &colors, ["1", "16"], text::INFLUENCES_LEGEND);
         }
-        channel => caption(ui, painter, rect, text::channel(channel)),
+        channel => {
+            let absent = shown.library.active().and_then(|model| text::absent(channel, model));
+            caption(ui, painter, rect, absent.unwrap_or(text::channel(channel)));
+        }
     }
 }
 

@@ -37,6 +37,20 @@ fn the_clip_before_a_motion_plays_again_after_undo() {
 }
 
 #[test]
+fn redo_plays_the_motion_that_was_added_last() {
+    let mut editor = editor("sample:pilot");
+    open(&mut editor, "sample:walk");
+    let walk = editor.state().playhead.clip.clone();
+    open_motion(&mut editor, "dance.glb");
+    let dance = editor.state().playhead.clip.clone();
+    assert_ne!(dance, walk);
+    editor.undo();
+    assert_eq!(editor.state().playhead.clip, walk);
+    editor.redo();
+    assert_eq!(editor.state().playhead.clip, dance);
+}
+
+#[test]
 fn undo_says_which_models_it_brings_back() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "dance.glb");

@@ -145,7 +145,8 @@ impl Library {
     pub fn show(&mut self, id: ModelId) -> bool {
         let is_there = self.get(id).is_some();
         if let Some(at) = self.closed.iter().position(|model| model.id == id) {
-            self.models.push(self.closed.remove(at));
+            let place = self.models.partition_point(|known| known.id < id);
+            self.models.insert(place, self.closed.remove(at));
         }
         if is_there && self.active != id {
             self.active = id;
@@ -174,10 +175,9 @@ impl Library {
 
     /// Lists these models and the active one, and closes all others.
     pub fn set_listed(&mut self, ids: &[ModelId]) {
-        let place = |model: &Model| ids.iter().position(|&id| id == model.id);
         let all = self.closed.drain(..).chain(self.models.drain(..));
-        (self.models, self.closed) = all.partition(|model| place(model).is_some() || model.id == self.active);
-        self.models.sort_by_key(|model| place(model).unwrap_or(ids.len()));
+        (self.models, self.closed) = all.partition(|model| ids.contains(&model.id) || model.id == self.active);
+        self.models.sort_by_key(|model| model.id);
     }
 
     /// Captures the active model and its motions for [`Library::restore`].
