@@ -76,7 +76,7 @@ async function putProgram(backend) {
 /** @returns {Record<string, string>} */
 function putParts() {
   const folder = path.join(programs, "parts");
-  const names = fs.readdirSync(folder).map((file) => path.parse(file).name);
+  const names = fs.readdirSync(folder).filter((file) => file.endsWith(".wasm")).map((file) => path.parse(file).name);
   return Object.fromEntries(names.map((name) => [name, put("parts", name, ".wasm", fs.readFileSync(path.join(folder, `${name}.wasm`)))]));
 }
 

@@ -1,10 +1,11 @@
 //! The page: one program per back end, compiled, bound and optimized here; `xtask/site` makes a site of them.
 
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use wasm_bindgen_cli_support::Bindgen;
 
 use crate::process::{Step, repository, run, run_with, target_folder, text};
@@ -59,7 +60,11 @@ pub fn build(features: &[&str], url: Option<&str>, cli: Option<&str>) -> anyhow:
         let mut optimizing = Vec::new();
         for back_end in BACK_ENDS {
             compile(back_end, features)?;
-            optimizing.push(scope.spawn(move || optimize(back_end)));
+            let made = Made::new(&compiled("gaitway"), programs().join(format!("{back_end}.wasm")))?;
+            if !made.is_up_to_date() {
+                bind(back_end)?;
+                optimizing.push(scope.spawn(move || optimize(back_end, &made)));
+            }
         }
         optimizing
             .into_iter()
@@ -87,8 +92,7 @@ fn programs() -> PathBuf {
 fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
     let features = [&["viewer", back_end], features].concat().join(",");
     let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..]].concat();
-    run_with("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat(), &[UNSTABLE])?;
-    bind(back_end)
+    run_with("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat(), &[UNSTABLE])
 }
 
 /// Writes the program's JavaScript, and the wasm that goes with it.
@@ -100,11 +104,40 @@ fn bind(back_end: &str) -> anyhow::Result<()> {
     step.end(bound)
 }
 
-fn optimize(back_end: &str) -> anyhow::Result<()> {
+fn optimize(back_end: &str, made: &Made) -> anyhow::Result<()> {
     let bound = programs().join(format!("{back_end}_bg.wasm"));
-    let optimized = programs().join(format!("{back_end}.wasm"));
-    wasm_opt(&bound, &optimized)?;
-    Ok(fs::remove_file(bound)?)
+    wasm_opt(&bound, &made.wasm)?;
+    fs::remove_file(bound)?;
+    made.remember()
+}
+
+/// An optimized program, and what it is made from, which is remembered beside it: optimizing takes half a minute. Times of files don't
+/// tell, since cargo restores earlier builds with other features.
+struct Made {
+    wasm: PathBuf,
+    from: String,
+}
+
+impl Made {
+    fn new(compiled: &Path, wasm: PathBuf) -> anyhow::Result<Self> {
+        let mut hasher = DefaultHasher::new();
+        for path in [compiled, &std::env::current_exe()?, &repository().join("package-lock.json")] {
+            fs::read(path).with_context(|| path.display().to_string())?.hash(&mut hasher);
+        }
+        Ok(Self { wasm, from: format!("{:016x}", hasher.finish()) })
+    }
+
+    fn note(&self) -> PathBuf {
+        self.wasm.with_extension("made-from")
+    }
+
+    fn is_up_to_date(&self) -> bool {
+        self.wasm.exists() && fs::read_to_string(self.note()).is_ok_and(|from| from == self.from)
+    }
+
+    fn remember(&self) -> anyhow::Result<()> {
+        Ok(fs::write(self.note(), &self.from)?)
+    }
 }
 
 fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
@@ -144,7 +177,13 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
     let package = format!("gaitway-{part}");
     let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..]].concat();
     run_with("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat(), &[UNSTABLE])?;
-    wasm_opt(&compiled(&package), &wasm)
+    let compiled = compiled(&package);
+    let made = Made::new(&compiled, wasm)?;
+    if made.is_up_to_date() {
+        return Ok(());
+    }
+    wasm_opt(&compiled, &made.wasm)?;
+    made.remember()
 }
 
 fn compiled(program: &str) -> PathBuf {
