@@ -42,32 +42,34 @@ impl Editor {
         if let Some(view) = view {
             return self.open_view(view, motions, map, admit);
         }
+        let has_map = map.is_some();
+        let (motions, still) = without_still(motions);
+        if motions.is_empty() && !still.is_empty() {
+            return Err(still.join("\n"));
+        }
         self.check_room(&motions)?;
         let before = self.snapshot();
-        let has_map = map.is_some();
         let problems = self.add_motions(motions.clone(), map);
-        let clips = self.clips_of_last(motions.len());
-        if clips == 0 && !motions.is_empty() {
+        let added = self.added_from(&motions);
+        if added.is_none() && !motions.is_empty() {
             let why = self.why_refused(&motions, &problems);
             if let Some(before) = before {
                 self.library.restore(before.loaded);
                 self.state = before.state;
             }
             self.retarget();
-            if motions.iter().any(|motion| !motion.asset.clips.is_empty()) {
-                self.refused = motions;
-                let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
-                self.events.push(Event::MotionsRefused { lacks_skeleton });
-            }
+            self.refused = motions;
+            let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
+            self.events.push(Event::MotionsRefused { lacks_skeleton });
             return Err(why);
         }
         self.remember(before);
         self.report(problems);
         self.choose_retargeted(motions.first().map(ClipIdentity::first_of));
         self.events.push(Event::MotionsAdded);
-        let mut notice = added_from(clips, &motions);
+        let mut notice = added.unwrap_or_default();
         if is_by_hand {
-            if !has_map && let Some(about_feet) = self.suit_feet() {
+            if !has_map && let Some(about_feet) = self.suit_feet(motions.len()) {
                 notice = format!("{notice} {about_feet}");
             }
             self.suits_follow = true;
@@ -76,6 +78,7 @@ impl Editor {
         // The new clip may leave the camera's view.
         self.apply(Command::FrameAll);
         self.notify_undoable(notice);
+        self.report(still);
         Ok(())
     }
 
@@ -119,11 +122,16 @@ impl Editor {
         self.library.motions().iter().filter(is_other)
     }
 
-    /// Number of clips retargeted from the last `count` motions.
-    pub(super) fn clips_of_last(&self, count: usize) -> usize {
-        let first = self.library.motions().len().saturating_sub(count);
-        let is_new = |(_, borrowed): &(usize, &BorrowedClip)| borrowed.motion >= first;
-        self.library.active().map_or(0, |model| model.borrowed_clips().filter(is_new).count())
+    /// Returns the notice for clips that were retargeted from the motions that were added last; `None` without any.
+    pub(super) fn added_from(&self, motions: &[Motion]) -> Option<String> {
+        let first = self.library.motions().len().saturating_sub(motions.len());
+        let lenders = self.library.active()?.borrowed_clips().map(|(_, borrowed)| borrowed.motion);
+        let lenders: Vec<usize> = lenders.filter(|&motion| motion >= first).collect();
+        let has_lent = |(index, _): &(usize, &Motion)| lenders.contains(&(first + index));
+        let names: Vec<String> =
+            motions.iter().enumerate().filter(has_lent).map(|(_, motion)| short_name(&motion.source)).collect();
+        let plural = if lenders.len() == 1 { "" } else { "s" };
+        (!lenders.is_empty()).then(|| format!("Added {} clip{plural} from {}.", lenders.len(), names.join(", ")))
     }
 
     fn set_motions(&mut self, motions: Vec<Motion>) {
@@ -135,11 +143,6 @@ impl Editor {
     /// Returns why motions that were just added don't fit. Unlike the command line's error, it doesn't explain how to write a
     /// map: shells offer alternatives.
     fn why_refused(&self, motions: &[Motion], problems: &[String]) -> String {
-        if let [motion] = motions
-            && motion.asset.clips.is_empty()
-        {
-            return format!("{}: it has no animation, so there is nothing to borrow", short_name(&motion.source));
-        }
         let last = self.library.motions().len().saturating_sub(1);
         if let (Some(model), [motion]) = (self.library.active(), motions)
             && self.library.proposal(last).is_some_and(|proposal| proposal.pairs.is_empty())
@@ -352,11 +355,13 @@ impl Editor {
     }
 }
 
-/// Returns the notice for clips that were retargeted from motions.
-pub(super) fn added_from(clips: usize, motions: &[Motion]) -> String {
-    let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
-    let plural = if clips == 1 { "" } else { "s" };
-    format!("Added {clips} clip{plural} from {}.", names.join(", "))
+/// Takes out the motions without animation, which no map can make useful. Returns the others, and what to tell the user.
+pub(super) fn without_still(motions: Vec<Motion>) -> (Vec<Motion>, Vec<String>) {
+    let (still, moving): (Vec<Motion>, Vec<Motion>) =
+        motions.into_iter().partition(|motion| motion.asset.clips.is_empty());
+    let why =
+        |motion: &Motion| format!("{}: it has no animation, so there is nothing to borrow", short_name(&motion.source));
+    (moving, still.iter().map(why).collect())
 }
 
 /// Whether the map has no pairs yet: the user has just started it.

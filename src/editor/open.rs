@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::motions::{ClipIdentity, added_from};
+use super::motions::{ClipIdentity, without_still};
 use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::asset::{Asset, Warning};
@@ -131,7 +131,8 @@ impl Editor {
         let (is_view, has_map) = (view.is_some(), map.is_some());
         let keeps_motions = !is_view && motions.as_ref().is_none_or(|motions| !motions.is_empty());
         let motions = motions.unwrap_or_default();
-        let borrows = is_by_hand && !is_view && !motions.is_empty();
+        let count = motions.len();
+        let borrows = is_by_hand && !is_view && count > 0;
         if keeps_motions {
             self.check_room(&motions)?;
         }
@@ -182,7 +183,7 @@ impl Editor {
             None
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
-        let about_feet = if borrows && !has_map { self.suit_feet() } else { None };
+        let about_feet = if borrows && !has_map { self.suit_feet(count) } else { None };
         let opened = Opened { name, is_new, others, evicted, lacks_joints, missing_images, about_motions, about_feet };
         self.announce(&opened, was_loaded && !is_view);
         Ok(())
@@ -228,6 +229,8 @@ impl Editor {
         mut map: Option<MotionMap>,
         plays_added: bool,
     ) -> Option<String> {
+        let (new, still) = without_still(new);
+        self.report(still);
         let has_map_for_loaded = new.is_empty() && map.is_some();
         if has_map_for_loaded {
             self.state.retarget.map.extend(map.take());
@@ -244,8 +247,7 @@ impl Editor {
             let problems = self.add_motions(new.clone(), map);
             self.report(problems);
             self.choose_retargeted(new.first().map(ClipIdentity::first_of));
-            let clips = self.clips_of_last(new.len());
-            (clips > 0).then(|| added_from(clips, &new))
+            self.added_from(&new)
         };
         let sentences: Vec<String> = [about_clip, dropped].into_iter().flatten().collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))

@@ -2,6 +2,7 @@
 //! sink in are held on the ground. Links and scripts get exactly what they say.
 
 use super::Editor;
+use crate::library::BorrowedClip;
 use crate::retarget::{Feet, Verdict, Verdicts};
 use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, active_clip, frame_all};
 
@@ -29,15 +30,11 @@ impl Editor {
         }
     }
 
-    /// Holds the feet on the ground if the borrowed clip that plays slides, hovers or sinks in more than is acceptable, in a step of
-    /// its own. Returns what to tell the user about it.
-    pub(super) fn suit_feet(&mut self) -> Option<&'static str> {
-        let model = self.library.active()?;
-        let clip = active_clip(model, &self.state)?;
-        let figures = self.library.figures(clip).filter(|_| self.state.retarget.feet.is_none())?;
-        let verdicts = Verdicts::new(figures, model.size_metres(), self.state.retarget.contacts.unwrap_or_default());
-        if ![verdicts.foot_slide, verdicts.foot_hover, verdicts.sole_penetration].contains(&Some(Verdict::NeedsReview))
-        {
+    /// Holds the feet on the ground if the borrowed clip that plays, or the first clip of a motion that was borrowed with it, slides,
+    /// hovers or sinks in more than is acceptable, in a step of its own. `motions` is how many were borrowed. Returns what to tell
+    /// the user about it.
+    pub(super) fn suit_feet(&mut self, motions: usize) -> Option<&'static str> {
+        if self.state.retarget.feet.is_some() || !self.needs_feet_held(motions) {
             return None;
         }
         self.end_gesture();
@@ -45,5 +42,19 @@ impl Editor {
         self.end_gesture();
         self.state.retarget.feet_are_automatic = true;
         Some("The feet would slide, hover or sink in, so they are held on the ground. Undo turns this off.")
+    }
+
+    fn needs_feet_held(&self, motions: usize) -> bool {
+        let Some(model) = self.library.active() else { return false };
+        let is_off = |clip: usize| {
+            let contacts = self.state.retarget.contacts.unwrap_or_default();
+            let verdicts = Verdicts::new(self.library.figures(clip)?, model.size_metres(), contacts);
+            let feet = [verdicts.foot_slide, verdicts.foot_hover, verdicts.sole_penetration];
+            Some(feet.contains(&Some(Verdict::NeedsReview)))
+        };
+        let from = self.library.motions().len().saturating_sub(motions);
+        let is_first = |borrowed: &BorrowedClip| borrowed.motion >= from && borrowed.source_clip == 0;
+        let firsts = model.borrowed_clips().filter(|(_, borrowed)| is_first(borrowed)).map(|(clip, _)| clip);
+        active_clip(model, &self.state).into_iter().chain(firsts).any(|clip| is_off(clip) == Some(true))
     }
 }

@@ -56,6 +56,30 @@ fn a_file_without_animation_is_not_offered_to_be_mapped() {
     assert_eq!(editor.take_events(), []);
 }
 
+/// Every link to the view would ask for them.
+#[test]
+fn of_several_motions_those_without_animation_are_not_kept() {
+    let mut editor = editor("sample:pilot");
+    let asset = editor.library().active().expect("a model").asset.clone();
+    drop(editor);
+    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(asset).expect("of one model").into_parts() };
+    let duck = Motion::new("duck.glb".to_owned(), Arc::new(Asset::new(parts).expect("indices in range")));
+    let moving = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X]);
+    let cube = Motion::new("cube.glb".to_owned(), moving.active().expect("a box").asset.clone());
+    for with in [Contents::default(), contents(&["sample:dwarf"])] {
+        editor = self::editor("sample:pilot");
+        let motions = Some(vec![duck.clone(), motion("dance.glb"), cube.clone()]);
+        editor.open(Contents { motions, ..with }, None, &mut any).expect("one fits");
+        assert_eq!(self::motions(&editor), ["dance.glb", "cube.glb"], "the cube can be mapped by hand");
+        assert_eq!(editor.state().sources.motion, ["dance.glb", "cube.glb"]);
+        let events = editor.take_events();
+        let notices = notices(&events);
+        assert!(notices.iter().any(|notice| notice.contains("clips from dance.glb.")), "{notices:?}");
+        let duck = Event::Problem("duck.glb: it has no animation, so there is nothing to borrow".to_owned());
+        assert!(events.contains(&duck), "{events:?}");
+    }
+}
+
 #[test]
 fn an_exported_clip_of_mixamo_is_named_like_its_file() {
     let source = editor("sample:walker");
