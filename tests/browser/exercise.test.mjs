@@ -45,6 +45,8 @@ for (const renderer of BACK_ENDS) {
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
       // The selected joint's “Pose manually” switch, then the handle of the first slider: an angle of 0, in the middle.
       await apply(page, { joint: 5 });
+      // Its controls scroll into sight.
+      await untilStill(page);
       const posing = await centreOf(controls(page, "checkbox", "Pose manually"));
       // egui finds what is under the pointer in the previous frame.
       await page.mouse.move(posing.x, posing.y);
