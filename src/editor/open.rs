@@ -57,7 +57,7 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems, link_errors } =
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, link_errors } =
             contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
@@ -68,6 +68,15 @@ impl Editor {
         self.link_errors = link_errors;
         let opened = match motions {
             motions if has_models => {
+                // A view's motions stay as it names them.
+                let motions = match motions {
+                    Some(motions) if !is_view && !motions.is_empty() => {
+                        let (moving, still) = without_still(motions);
+                        problems.extend(still);
+                        (!moving.is_empty()).then_some(moving)
+                    }
+                    motions => motions,
+                };
                 let opened = self.open_models(models, Companions { motions, map: waiting, view, is_by_hand }, admit);
                 if opened.is_ok() {
                     self.suit_automatic_follow();
@@ -229,8 +238,6 @@ impl Editor {
         mut map: Option<MotionMap>,
         plays_added: bool,
     ) -> Option<String> {
-        let (new, still) = without_still(new);
-        self.report(still);
         let has_map_for_loaded = new.is_empty() && map.is_some();
         if has_map_for_loaded {
             self.state.retarget.map.extend(map.take());

@@ -4,6 +4,7 @@
 use super::motions::ClipIdentity;
 use super::{Editor, Event, short_name};
 use crate::library::ModelId;
+use crate::state::OrbitCamera;
 
 impl Editor {
     /// Returns whether there is a step to undo.
@@ -48,33 +49,34 @@ impl Editor {
 
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
-        let before = self.loaded_names();
-        let is_retargeting = self.history.would_undo_retargeting(&self.state);
-        let (playing, view) =
-            if is_retargeting { (self.retargeted_clip(), self.automatic_view()) } else { (None, None) };
+        let before = self.before_step(self.history.would_undo_retargeting(&self.state));
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, playing, "Redo");
-            self.hold_view(view);
+            self.finish_step(before, "Redo");
         }
         done
     }
 
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
-        let before = self.loaded_names();
-        let is_retargeting = self.history.would_redo_retargeting(&self.state);
-        let (playing, view) =
-            if is_retargeting { (self.retargeted_clip(), self.automatic_view()) } else { (None, None) };
+        let before = self.before_step(self.history.would_redo_retargeting(&self.state));
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, playing, "Undo");
-            self.hold_view(view);
+            self.finish_step(before, "Undo");
         }
         done
     }
 
-    fn finish_step(&mut self, before: LoadedNames, playing: Option<ClipIdentity>, opposite: &str) {
+    fn before_step(&self, is_retargeting: bool) -> BeforeStep {
+        BeforeStep {
+            names: self.loaded_names(),
+            playing: if is_retargeting { self.retargeted_clip() } else { None },
+            view: if is_retargeting { self.automatic_view() } else { None },
+        }
+    }
+
+    fn finish_step(&mut self, before: BeforeStep, opposite: &str) {
+        let BeforeStep { names: before, playing, view } = before;
         (self.needs_redraw, self.is_changed) = (true, true);
         self.events.push(Event::Stepped);
         let problems = self.retarget();
@@ -89,6 +91,7 @@ impl Editor {
         if let Some(text) = step_notice(&before, &after, opposite) {
             self.notify(text);
         }
+        self.hold_view(view);
     }
 
     fn loaded_names(&self) -> LoadedNames {
@@ -98,6 +101,15 @@ impl Editor {
             motions: self.library.motions().iter().map(|motion| short_name(&motion.source)).collect(),
         }
     }
+}
+
+/// What a step may change. A step that opened or removed something restores its own clip and view.
+struct BeforeStep {
+    names: LoadedNames,
+    /// What played before a step of retargeting.
+    playing: Option<ClipIdentity>,
+    /// What the camera showed before a step of retargeting, unless the user has chosen the view.
+    view: Option<OrbitCamera>,
 }
 
 struct LoadedNames {

@@ -4,7 +4,7 @@
 use super::Editor;
 use crate::library::BorrowedClip;
 use crate::retarget::{Feet, Verdict, Verdicts};
-use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, active_clip, frame_all};
+use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, frame_all};
 
 /// The camera follows if framing the whole travel would take it this many times as far away as framing the character.
 const FAR: f32 = 1.7;
@@ -30,9 +30,8 @@ impl Editor {
         }
     }
 
-    /// Holds the feet on the ground if the borrowed clip that plays, or the first clip of a motion that was borrowed with it, slides,
-    /// hovers or sinks in more than is acceptable, in a step of its own. `motions` is how many were borrowed. Returns what to tell
-    /// the user about it.
+    /// Holds the feet on the ground if the first clip of one of the last `motions` motions slides, hovers or sinks in more than is
+    /// acceptable, in a step of its own. Returns what to tell the user about it.
     pub(super) fn suit_feet(&mut self, motions: usize) -> Option<&'static str> {
         if self.state.retarget.feet.is_some() || !self.needs_feet_held(motions) {
             return None;
@@ -54,7 +53,6 @@ impl Editor {
         };
         let from = self.library.motions().len().saturating_sub(motions);
         let is_first = |borrowed: &BorrowedClip| borrowed.motion >= from && borrowed.source_clip == 0;
-        let firsts = model.borrowed_clips().filter(|(_, borrowed)| is_first(borrowed)).map(|(clip, _)| clip);
-        active_clip(model, &self.state).into_iter().chain(firsts).any(|clip| is_off(clip) == Some(true))
+        model.borrowed_clips().any(|(clip, borrowed)| is_first(borrowed) && is_off(clip) == Some(true))
     }
 }

@@ -62,6 +62,7 @@ pub fn build(features: &[&str], url: Option<&str>, cli: Option<&str>) -> anyhow:
             compile(back_end, features)?;
             let made = Made::new(&compiled("gaitway"), programs().join(format!("{back_end}.wasm")))?;
             if !made.is_up_to_date() {
+                made.forget()?;
                 bind(back_end)?;
                 optimizing.push(scope.spawn(move || optimize(back_end, &made)));
             }
@@ -111,8 +112,8 @@ fn optimize(back_end: &str, made: &Made) -> anyhow::Result<()> {
     made.remember()
 }
 
-/// An optimized program, and what it is made from, which is remembered beside it: optimizing takes half a minute. Times of files don't
-/// tell, since cargo restores earlier builds with other features.
+/// An optimized program, and what it is made from and how, which is remembered beside it: optimizing takes minutes. Times of files
+/// don't tell, since cargo restores earlier builds with other features.
 struct Made {
     wasm: PathBuf,
     from: String,
@@ -121,7 +122,9 @@ struct Made {
 impl Made {
     fn new(compiled: &Path, wasm: PathBuf) -> anyhow::Result<Self> {
         let mut hasher = DefaultHasher::new();
-        for path in [compiled, &std::env::current_exe()?, &repository().join("package-lock.json")] {
+        include_str!("page.rs").hash(&mut hasher);
+        // It pins wasm-opt; what is compiled tells the version of wasm-bindgen.
+        for path in [compiled, &repository().join("package-lock.json")] {
             fs::read(path).with_context(|| path.display().to_string())?.hash(&mut hasher);
         }
         Ok(Self { wasm, from: format!("{:016x}", hasher.finish()) })
@@ -133,6 +136,11 @@ impl Made {
 
     fn is_up_to_date(&self) -> bool {
         self.wasm.exists() && fs::read_to_string(self.note()).is_ok_and(|from| from == self.from)
+    }
+
+    /// To be called before anything that belongs to the program is made again.
+    fn forget(&self) -> anyhow::Result<()> {
+        if self.note().exists() { Ok(fs::remove_file(self.note())?) } else { Ok(()) }
     }
 
     fn remember(&self) -> anyhow::Result<()> {
@@ -182,6 +190,7 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
     if made.is_up_to_date() {
         return Ok(());
     }
+    made.forget()?;
     wasm_opt(&compiled, &made.wasm)?;
     made.remember()
 }

@@ -42,15 +42,19 @@ fn a_model_without_a_skeleton_is_told_what_it_lacks() {
     assert_eq!(editor.take_events().last(), Some(&Event::MotionsRefused { lacks_skeleton: true }));
 }
 
+/// The pilot without its clips as a motion of this name.
+fn still(name: &str) -> Motion {
+    let pilot = editor("sample:pilot");
+    let asset = pilot.library().active().expect("a model").asset.clone();
+    drop(pilot);
+    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(asset).expect("of one model").into_parts() };
+    Motion::new(name.to_owned(), Arc::new(Asset::new(parts).expect("indices in range")))
+}
+
 #[test]
 fn a_file_without_animation_is_not_offered_to_be_mapped() {
     let mut editor = editor("sample:pilot");
-    let still = editor.library().active().expect("a model").asset.clone();
-    drop(editor);
-    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(still).expect("of one model").into_parts() };
-    let duck = Motion::new("duck.glb".to_owned(), Arc::new(Asset::new(parts).expect("indices in range")));
-    editor = self::editor("sample:pilot");
-    let contents = Contents { motions: Some(vec![duck]), ..Contents::default() };
+    let contents = Contents { motions: Some(vec![still("duck.glb")]), ..Contents::default() };
     let error = editor.open(contents, None, &mut any).expect_err("has nothing");
     assert_eq!(error, "duck.glb: it has no animation, so there is nothing to borrow");
     assert_eq!(editor.take_events(), []);
@@ -59,16 +63,11 @@ fn a_file_without_animation_is_not_offered_to_be_mapped() {
 /// Every link to the view would ask for them.
 #[test]
 fn of_several_motions_those_without_animation_are_not_kept() {
-    let mut editor = editor("sample:pilot");
-    let asset = editor.library().active().expect("a model").asset.clone();
-    drop(editor);
-    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(asset).expect("of one model").into_parts() };
-    let duck = Motion::new("duck.glb".to_owned(), Arc::new(Asset::new(parts).expect("indices in range")));
     let moving = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X]);
     let cube = Motion::new("cube.glb".to_owned(), moving.active().expect("a box").asset.clone());
     for with in [Contents::default(), contents(&["sample:dwarf"])] {
-        editor = self::editor("sample:pilot");
-        let motions = Some(vec![duck.clone(), motion("dance.glb"), cube.clone()]);
+        let mut editor = editor("sample:pilot");
+        let motions = Some(vec![still("duck.glb"), motion("dance.glb"), cube.clone()]);
         editor.open(Contents { motions, ..with }, None, &mut any).expect("one fits");
         assert_eq!(self::motions(&editor), ["dance.glb", "cube.glb"], "the cube can be mapped by hand");
         assert_eq!(editor.state().sources.motion, ["dance.glb", "cube.glb"]);

@@ -86,11 +86,10 @@ impl Ground {
 
     /// Whether a leg stands or kneels on the ground at each time. `side` is 0 for the left one, 1 for the right one.
     pub fn standing(&self, bodies: &Bodies, side: usize) -> Vec<bool> {
-        let sole = bodies.target.soles.feet[..side].iter().flatten().count();
+        let foot = self.feet.get(bodies.target.soles.index(side));
         let is_own = |part: &GroundPart| part.is_knee && bodies.regions[part.part].limb() == Some(ARMS + side);
         let knee = bodies.ground_parts.iter().position(is_own).map(|knee| &self.touching[knee]);
-        let rests = |rows: Option<&Vec<bool>>, at: usize| rows.is_some_and(|row| row[at]);
-        let foot = self.feet.get(sole);
+        let rests = |row: Option<&Vec<bool>>, at: usize| row.is_some_and(|row| row[at]);
         (0..self.feet.first().map_or(0, Vec::len)).map(|at| rests(foot, at) || rests(knee, at)).collect()
     }
 

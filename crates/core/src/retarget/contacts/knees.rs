@@ -76,7 +76,7 @@ fn wishes(scene: &Scene, side: usize) -> Option<(Leg, Vec<Option<Wish>>)> {
     let ground = scene.ground.as_ref()?;
     let (leg, _) = Leg::mapped(scene.transfer)[side]?;
     let shin = bodies.target.joints.iter().position(|&joint| joint == leg.knee)?;
-    let sole = bodies.target.soles.feet[..side].iter().flatten().count();
+    let sole = bodies.target.soles.index(side);
     let (source, soles) = (source.soles.get(sole)?, target.soles.get(sole)?);
     let low = LOW * bodies.target.height;
     let plants = scene.transfer.map.feet == Feet::Plant;

@@ -71,6 +71,11 @@ impl Soles {
         Self::of(transfer, transfer.target, &transfer.alignment.unaligned_target, |pair| pair.target)
     }
 
+    /// The place of a foot among those that are mapped. `side` is 0 for the left one, 1 for the right one.
+    pub fn index(&self, side: usize) -> usize {
+        self.feet[..side].iter().flatten().count()
+    }
+
     /// The soles of either side.
     pub fn of(transfer: &Transfer, asset: &Asset, rest: &WorldPose, joint: fn(&Pair) -> JointIndex) -> Self {
         let feet = FEET.map(|slots| {
