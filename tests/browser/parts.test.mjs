@@ -431,7 +431,7 @@ for (const renderer of BACK_ENDS)
     for (const [name, replacement, message, before] of troubles)
       test(`a part ${name} is an error, and the page goes on`, async () => {
         const page = await site.page({ renderer, before });
-        await page.evaluate(withShortMinute);
+        if (name === "that never ends") await page.evaluate(withShortMinute);
         await page.route("**/parts/*", (route) => (replacement === null ? route.abort() : route.fulfill({ body: replacement, contentType: "application/wasm" })));
         await assert.rejects(open(page, site.data(FOX)), message);
         assert.equal((await state(page)).model[0], "sample:walker", "the model is still there");

@@ -174,6 +174,26 @@ for (const renderer of BACK_ENDS)
       assert.equal((await state(page)).feet, null, "the link says nothing of feet");
     });
 
+    const THREE_FILES = () => fragment([["model", "file:Soldier.glb"], ["motion", "file:gone.bvh"], ["motion", "file:cmu_01_01.bvh"], ["clip", "cmu_01_01"], ["play", 0], ["t", 1], ["joint", 5]]);
+    onPage("a link is shown as far as its files have arrived, while the page asks for the rest", THREE_FILES, async (page) => {
+      await whenAsked(page);
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
+      await whenAsked(page);
+      assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)", "cmu_01_01.bvh (motion)"]);
+      await page.locator("#bring-later").click();
+      const { t, joint } = await state(page);
+      assert.deepEqual([t, joint], [1, 5]);
+      await drop(page, [{ name: "cmu_01_01.bvh", url: site.data(WALK) }]);
+      await whenAsked(page);
+      assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)"]);
+      await page.locator("#bring-later").click();
+      await whenBorrowed(page, 1);
+      assert.equal((await pose(page)).clip, "cmu_01_01");
+      assert.equal((await state(page)).t, 1);
+      assert.deepEqual(await page.evaluate(() => [history.length, location.hash.match(/file:/g)?.length]), [2, 3], "the address has the whole link");
+    });
+
     onPage("somebody who opens something else is told what the link asks for, but isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
       await whenAsked(page);
       await page.locator("#bring-later").click();

@@ -135,7 +135,7 @@ for (const renderer of BACK_ENDS)
     for (const [name, body, message, before] of damaged)
       test(`that ${name} is an error, and the page goes on`, async () => {
         const page = await infoOf(`${FILES}/made.gltf`, { "made.gltf": MISTAKES }, before);
-        await page.evaluate(withShortMinute);
+        if (name === "never ends") await page.evaluate(withShortMinute);
         await page.route("**/parts/validator-*", (route) => route.fulfill({ body, contentType: "text/javascript" }));
         await press(page, "button", CHECK);
         await says(page, message);

@@ -99,6 +99,15 @@ fn only_keys_that_apply_without_the_missing_files_are_kept() {
     check(awaited, awaited);
     check("v=1&model=a.glb&motion=file:b.bvh&map=x.json&clip=run&t=1", "v=1&model=a.glb&t=1");
     check("model=a.glb&motion=b.bvh&motion=file:c.bvh&play=0", "model=a.glb&motion=b.bvh&play=0");
+    // The clip may be one of a motion that is there, and motions with the same joints share a map.
+    check(
+        "model=a.glb&motion=file:b.bvh&motion=c.bvh&map=x.json&map=y.json&clip=run&t=1",
+        "model=a.glb&motion=c.bvh&map=y.json&clip=run&t=1",
+    );
+    check(
+        "model=a.glb&motion=file:b.bvh&motion=c.bvh&map=x.json&clip=1&t=1",
+        "model=a.glb&motion=c.bvh&map=x.json&t=1",
+    );
 }
 
 #[test]
@@ -110,6 +119,11 @@ fn supplied_files_replace_the_missing_ones() {
     check("model=file:two.zip%23!/man.glb&motion=c.bvh", &["two.zip"], "model=two.zip%23!%2Fman.glb&motion=c.bvh");
     check("model=file:a.glb&motion=file:b.bvh", &["x/a.glb", "b.bvh"], "model=x%2Fa.glb&motion=b.bvh");
     check("model=a.glb", &[], "model=a.glb");
+    check(
+        "model=file:a.glb&motion=file:b.bvh&motion=file:c.bvh",
+        &["", "x/b.bvh"],
+        "model=file:a.glb&motion=x%2Fb.bvh&motion=file:c.bvh",
+    );
 }
 
 #[test]

@@ -5,17 +5,15 @@ import { companionWords, fileName } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
 
-/** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
 
 /**
  * A link that waits for files.
  * @typedef {object} Awaited
  * @property {string} link As given.
- * @property {string} marked The link with all of `wanted` marked as local files.
+ * @property {string} marked The link with all of `wanted` marked as local files, and the names of those that have arrived.
  * @property {LinkedFile[]} wanted The files that it waits for.
  * @property {LinkedFile[]} missing Those that the page asks for.
- * @property {Item[][]} sets The sets of files that have arrived meanwhile.
  * @property {boolean} isOwn The files were open in this entry of the history before the page was reloaded.
  */
 
@@ -52,23 +50,26 @@ export function passOver() {
 }
 
 /**
- * Some of a link's files have arrived: asks for the rest.
+ * Some of a link's files have arrived, but nothing can be shown before its model: asks for the rest.
  * @param {Awaited} waiting
- * @param {LinkedFile[]} missing
+ * @param {string} marked
+ * @param {LinkedFile[]} rest What hasn't arrived.
  */
-export function askForRest(waiting, missing) {
-  current = { ...waiting, missing };
+export function askForRest(waiting, marked, rest) {
+  const isLeft = (/** @type {LinkedFile} */ file) => rest.some(({ role, name }) => role === file.role && name === file.name);
+  current = { ...waiting, marked, wanted: rest, missing: waiting.missing.filter(isLeft) };
 }
 
 /**
  * Waits for the files that a link asks for, if it does.
  * @param {string} link
+ * @param {boolean} [isOwn]
  */
-export function awaitFiles(link) {
+export function awaitFiles(link, isOwn = isOwnEntry()) {
   dialog("bring").close();
   const wanted = filesToBring(link);
   forgetAwaited();
-  if (wanted.length > 0) current = { link, marked: link, wanted, missing: wanted, sets: [], isOwn: isOwnEntry() };
+  if (wanted.length > 0) current = { link, marked: link, wanted, missing: wanted, isOwn };
 }
 
 /**
@@ -78,7 +79,7 @@ export function awaitFiles(link) {
  */
 export function awaitCopies(link, names) {
   const marked = publicLink(link, names);
-  current = { link, marked, wanted: filesToBring(marked), missing: current?.missing ?? [], sets: [], isOwn: isOwnEntry() };
+  current = { link, marked, wanted: filesToBring(marked), missing: current?.missing ?? [], isOwn: isOwnEntry() };
 }
 
 const isOwnEntry = () => history.state?.own === true;

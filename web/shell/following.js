@@ -20,6 +20,7 @@ import { linkOfAddress, session, unlessStopped } from "./session.js";
  * @property {Item[]} [motionItems] Local files of the motions.
  * @property {string} [link] The link that names them, where the address has `file:`.
  * @property {boolean} [wasPrivate]
+ * @property {boolean} [isOwn] The link's files were open in this entry before the page was reloaded.
  */
 
 let lastFollow = 0;
@@ -30,7 +31,7 @@ let lastFollow = 0;
  * @param {Followed} [entry]
  * @param {boolean} [again] Read all of it again.
  */
-export async function follow(link, { items = [], motionItems = [], link: heldLink = link, wasPrivate = false } = {}, again = false) {
+export async function follow(link, { items = [], motionItems = [], link: heldLink = link, wasPrivate = false, isOwn } = {}, again = false) {
   const app = session.app;
   if (app === null) return;
   lastFollow += 1;
@@ -39,7 +40,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
   beginFollowing();
   dialog("missing").close();
   if (wasPrivate) rememberPrivateVisit();
-  awaitFiles(heldLink);
+  awaitFiles(heldLink, isOwn);
   const linkForNow = linkWithoutMissing(heldLink);
   showInEntry(linkForNow);
   /** @type {(problems: string[], isUnchanged?: boolean) => void} */

@@ -8,6 +8,7 @@ import { codeOf, coded } from "./errors.js";
 import { fileName, heldItems, heldMotionsAndLight, nameOf } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
+import { beginFollowing, endFollowing } from "./history.js";
 import { linkWithFiles } from "./links.js";
 import { keep, load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -30,9 +31,11 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   // The page around this one completes none of the user's models.
   const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
   await running();
+  // What a link waits for is shown as the link says, in the link's entry of the history.
+  const isAwaited = completable()?.wanted.some((file) => hasFile(wanted, file)) ?? false;
+  const isInEntry = isAwaited && awaited() !== null;
+  if (isInEntry) beginFollowing();
   try {
-    // What a link waits for is shown as the link says.
-    const isAwaited = completable()?.wanted.some((file) => hasFile(wanted, file)) ?? false;
     const { shown, document } = await load(wanted, role, isPrivate, isByHand && !isAwaited);
     forgetProblem();
     const hint = await completeLink(wanted, shown);
@@ -46,6 +49,8 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
     if (code === "not-found") showAwaited(namesOf(wanted));
     else if (code !== "cancelled") await completeLink(wanted);
     throw error;
+  } finally {
+    if (isInEntry) endFollowing();
   }
 }
 
@@ -139,31 +144,27 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
 }
 
 /**
- * Adds a set of files to those that a link waits for, and shows the link once all have arrived. Returns what to tell the user
- * who opened another model instead.
+ * Shows a link with files that it waits for among these, as far as that is possible without the rest, which the page goes on
+ * asking for. Returns what to tell the user who opened another model instead.
  * @param {Item[]} items
  * @param {"model" | "motion" | "light" | "map"} [shown] What it was, unless it couldn't be opened.
  */
 async function completeLink(items, shown) {
   const waiting = completable();
   if (waiting === null) return;
-  waiting.sets.push(items);
-  const { marked, wanted, sets } = waiting;
-  const found = wanted.map((file) => {
-    const set = sets.findLast((items) => hasFile(items, file));
-    return { file, set, item: set?.find((item) => hasFile([item], file)) };
-  });
-  const missing = found.filter(({ item }) => item === undefined);
-  if (missing.length > 0) {
-    const isOther = !found.some(({ set }) => set === items);
-    if (isOther && shown === "model") return passOver();
-    if (!isOther) askForRest(waiting, missing.map(({ file }) => file));
-    return void showAwaited(shown === undefined && isOther ? namesOf(items) : undefined);
+  const arrived = waiting.wanted.map((file) => items.find((item) => hasFile([item], file)));
+  if (arrived.every((item) => item === undefined)) {
+    if (shown === "model") return passOver();
+    return void showAwaited(shown === undefined ? namesOf(items) : undefined);
   }
-  const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
-  const complete = linkWithFiles(marked, names);
+  const link = linkWithFiles(waiting.marked, arrived.map((item) => (item === undefined ? "" : nameOf(item))));
+  const rest = waiting.wanted.filter((_, index) => arrived[index] === undefined);
+  if (rest.some(({ role }) => role === "model")) {
+    askForRest(waiting, link, rest);
+    return void showAwaited();
+  }
   forgetAwaited();
-  await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotionsAndLight(complete) });
+  await follow(link, { link, items: heldItems(link), motionItems: heldMotionsAndLight(link), isOwn: waiting.isOwn });
 }
 
 /** @param {Item[]} items */

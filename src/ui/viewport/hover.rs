@@ -11,8 +11,9 @@ use crate::ui::{Output, Shown, UiState, motion};
 /// How close to a bone a click selects its joint.
 const PICK_POINTS: f32 = 10.0;
 
-/// Hovering labels a joint, a click selects it, and a click beside all joints deselects. While the source is on the stage,
-/// the hovered joint is labelled on both skeletons, and a click on a source joint selects the joint mapped to it.
+/// Hovering labels a joint, a click selects it, and a click beside all joints closes an open sheet, otherwise deselects. While
+/// the source is on the stage, the hovered joint is labelled on both skeletons, and a click on a source joint selects the joint
+/// mapped to it.
 pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
     if motion::clicking(canvas, local, out) {
         return;
@@ -31,10 +32,10 @@ pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
     local.viewport.hovered = hovered.filter(|_| shown.frame.bones.iter().any(|bone| bone.visible));
     local.viewport.hovered_joint = local.viewport.hovered.and_then(of_model);
     if response.clicked() {
-        if local.layout.sheet.take().is_some() {
+        let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
+        if clicked.is_none() && local.layout.sheet.take().is_some() {
             return;
         }
-        let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
         if clicked != shown.state.selection.joint {
             out.commands.push(Command::SelectJoint(clicked));
         }
