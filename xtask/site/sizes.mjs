@@ -1,14 +1,15 @@
 // Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor
 // downloads: the shell and one of the two programs. Fails if that, or a part that some files need, exceeds its budget.
-// Samples and images are counted apart, since each is loaded when it is shown. Arguments: the folder, then `NAME=BYTES`
-// for each program and part.
+// Samples and images are counted apart, since each is loaded when it is shown. Arguments: the folder, one that keeps the copies
+// for the next time, since compressing takes a minute, then `NAME=BYTES` for each program and part.
+import crypto from "node:crypto";
 import fs from "node:fs";
 import path from "node:path";
 import zlib from "node:zlib";
 
-const folder = process.argv[2];
+const [folder, kept] = process.argv.slice(2);
 /** @type {Record<string, number>} */
-const BUDGETS = Object.fromEntries(process.argv.slice(3).map((argument) => [argument.split("=")[0], Number(argument.split("=")[1])]));
+const BUDGETS = Object.fromEntries(process.argv.slice(4).map((argument) => [argument.split("=")[0], Number(argument.split("=")[1])]));
 const COMPRESSED_ALREADY = [".webp", ".jpg", ".png"];
 /** @typedef {{ raw: number, gzip: number, brotli: number }} Size */
 
@@ -16,6 +17,29 @@ const COMPRESSED_ALREADY = [".webp", ".jpg", ".png"];
 const number = (value) => value.toLocaleString("en").padStart(12);
 /** @type {(name: string, size: Size) => void} */
 const line = (name, { raw, gzip, brotli }) => console.log(`${name.padEnd(48)}${number(raw)}${number(gzip)}${number(brotli)}`);
+
+/** Ways to compress, by the extension of the copy. @type {Record<string, (bytes: Buffer) => Buffer>} */
+const COMPRESSIONS = {
+  gz: (bytes) => zlib.gzipSync(bytes, { level: 9 }),
+  br: (bytes) => zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }),
+};
+
+fs.mkdirSync(kept, { recursive: true });
+const unused = new Set(fs.readdirSync(kept));
+/**
+ * Returns a compressed copy: the kept one, if there was one of the same content.
+ * @param {Buffer} bytes
+ * @param {string} extension
+ */
+function compressed(bytes, extension) {
+  const name = `${crypto.createHash("sha256").update(bytes).digest("hex")}.${extension}`;
+  const copy = path.join(kept, name);
+  if (unused.delete(name) || fs.existsSync(copy)) return fs.readFileSync(copy);
+  const content = COMPRESSIONS[extension](bytes);
+  fs.writeFileSync(`${copy}.part`, content);
+  fs.renameSync(`${copy}.part`, copy);
+  return content;
+}
 
 /** @type {Record<string, Size>} */
 const parts = {};
@@ -28,15 +52,18 @@ for (const file of fs.readdirSync(folder, { recursive: true, encoding: "utf8" })
   const bytes = fs.readFileSync(file);
   const size = { raw: bytes.length, gzip: bytes.length, brotli: bytes.length };
   if (!COMPRESSED_ALREADY.includes(path.extname(name))) {
-    const copies = { gzip: zlib.gzipSync(bytes, { level: 9 }), brotli: zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }) };
-    fs.writeFileSync(`${file}.gz`, copies.gzip);
-    fs.writeFileSync(`${file}.br`, copies.brotli);
-    [size.gzip, size.brotli] = [copies.gzip.length, copies.brotli.length];
+    const [gzip, brotli] = ["gz", "br"].map((extension) => {
+      const content = compressed(bytes, extension);
+      fs.writeFileSync(`${file}.${extension}`, content);
+      return content.length;
+    });
+    Object.assign(size, { gzip, brotli });
   }
   const part = (parts[partOf(name)] ??= { raw: 0, gzip: 0, brotli: 0 });
   for (const kind of /** @type {const} */ (["raw", "gzip", "brotli"])) part[kind] += size[kind];
   line(name, size);
 }
+for (const name of unused) fs.rmSync(path.join(kept, name));
 for (const [part, size] of Object.entries(parts)) line(`all: ${part}`, size);
 for (const [part, budget] of Object.entries(BUDGETS)) {
   if (parts[part] === undefined) {

@@ -68,11 +68,11 @@ impl Step {
     pub fn end(self, outcome: anyhow::Result<()>) -> anyhow::Result<()> {
         let took = self.start.elapsed();
         eprintln!("  {:.1} s", took.as_secs_f32());
-        outcome.with_context(|| self.shown.clone())?;
+        let outcome = outcome.with_context(|| self.shown.clone());
         if let Ok(mut times) = TIMES.lock() {
             times.push((self.shown, took));
         }
-        Ok(())
+        outcome
     }
 }
 

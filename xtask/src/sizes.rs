@@ -1,7 +1,7 @@
 //! Measures the page's download and leaves compressed copies beside the files.
 
 use crate::page::dist;
-use crate::process::{run, text};
+use crate::process::{run, target_folder, text};
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
 const MAX_BYTES: [(&str, u32); 11] = [
@@ -20,8 +20,11 @@ const MAX_BYTES: [(&str, u32); 11] = [
 
 /// If `limited`, fails when anything exceeds [`MAX_BYTES`].
 pub fn compress_and_print(limited: bool) -> anyhow::Result<()> {
-    let dist = dist();
+    let (dist, kept) = (dist(), target_folder().join("compressed"));
     let limit = |bytes: u32| if limited { bytes.to_string() } else { "Infinity".to_owned() };
     let limits = MAX_BYTES.map(|(name, bytes)| format!("{name}={}", limit(bytes)));
-    run("node", &[&["xtask/site/sizes.mjs", text(&dist)?], &limits.each_ref().map(String::as_str)[..]].concat())
+    run(
+        "node",
+        &[&["xtask/site/sizes.mjs", text(&dist)?, text(&kept)?], &limits.each_ref().map(String::as_str)[..]].concat(),
+    )
 }
