@@ -1,4 +1,5 @@
-//! The Python package: sets up a virtual environment in the target folder, and lints, builds and tests the package there.
+//! The Python package: sets up a virtual environment in the target folder, and lints, builds and tests the package there. A test of
+//! written BVH files uses Blender's module from it.
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,8 +10,8 @@ use crate::process::{output, repository, run, run_with, target_folder, text};
 
 /// The environment's packages: a list in `python`, copied into the environment once they are installed.
 const REQUIREMENTS: &str = "requirements.txt";
-/// A large package for one test.
-const RAY: &str = "requirements-ray.txt";
+/// Large packages for one test each.
+const LARGE: [(&str, &str); 2] = [("Ray", "requirements-ray.txt"), ("Blender", "requirements-blender.txt")];
 
 const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
 
@@ -19,18 +20,25 @@ pub fn is_present() -> bool {
     output(PYTHON, &["-c", "import ensurepip, venv"]).is_some()
 }
 
-/// Makes the environment. Without Ray, its test is skipped, and the next call tries again.
+/// Makes the environment. Without Ray or Blender, its test is skipped, and the next call tries again.
 pub fn setup() -> anyhow::Result<()> {
     if output(&program("python")?, &["--version"]).is_none() || !is_installed(REQUIREMENTS) {
         run(PYTHON, &["-m", "venv", "--clear", text(&environment())?])?;
         install(REQUIREMENTS)?;
     }
-    if !is_installed(RAY)
-        && let Err(error) = install(RAY)
-    {
-        eprintln!("warning: {error:#}; the test with Ray is skipped");
+    for (name, requirements) in LARGE {
+        if !is_installed(requirements)
+            && let Err(error) = install(requirements)
+        {
+            eprintln!("warning: {error:#}; the test with {name} is skipped");
+        }
     }
     Ok(())
+}
+
+/// Returns the path of the environment's interpreter, whether or not it is there.
+pub fn interpreter() -> anyhow::Result<String> {
+    program("python")
 }
 
 /// Format and lints of the Python code.
