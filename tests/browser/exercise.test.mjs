@@ -19,7 +19,7 @@ for (const renderer of BACK_ENDS) {
     /**
      * Tests on a fresh page, which must report no errors but the forgiven ones.
      * @param {string} name
-     * @param {{ link?: (site: import("./browser.mjs").Site) => string, forgiven?: RegExp }} options
+     * @param {{ link?: (site: import("./browser.mjs").Site) => string, deviceScaleFactor?: number, forgiven?: RegExp }} options
      * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
      */
     const onPage = (name, options, body) =>
@@ -36,7 +36,8 @@ for (const renderer of BACK_ENDS) {
     const dropModel = (page, name) =>
       drop(page, KINDS.map((kind) => ({ name: `${name}.${kind}`, url: site.data(`mit6837/${name}.${kind}`) })));
 
-    onPage("three files dropped together are bent by a slider without stutter", {}, async (page) => {
+    // A slider moves by whole pixels.
+    onPage("three files dropped together are bent by a slider without stutter", { deviceScaleFactor: 1 }, async (page) => {
       await dropModel(page, "Model1");
       await whenShown(page, VERTICES);
       await toggleInspector(page);

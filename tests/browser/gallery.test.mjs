@@ -92,7 +92,7 @@ for (const renderer of BACK_ENDS)
           await page.finish();
         }
         // Paused, at the size of the gallery's image. Later keys of a link win.
-        const calm = await site.page({ renderer, link: `${linkOf(scene)}&play=0&turntable=0&embed=1`, viewport: { width: STILL.width, height: 700 } });
+        const calm = await site.page({ renderer, link: `${linkOf(scene)}&play=0&turntable=0&embed=1`, viewport: { width: STILL.width, height: 700 }, deviceScaleFactor: 1 });
         try {
           const around = 700 - (await picture(calm)).height;
           await resize(calm, STILL.width, STILL.height + around);
