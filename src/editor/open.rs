@@ -46,7 +46,7 @@ struct Opened {
     others: Vec<String>,
     evicted: Vec<String>,
     lacks_joints: bool,
-    missing_images: Vec<String>,
+    about_images: String,
     about_motions: Option<String>,
     about_feet: Option<&'static str>,
 }
@@ -152,7 +152,7 @@ impl Editor {
         let Some(first) = models.next() else { return Ok(()) };
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
         let lacks_joints = is_jointless_obj(&name, &first.model.asset);
-        let missing_images = missing_images(&first.model.asset);
+        let about_images = about_images(&first.model.asset);
         let before = self.snapshot();
         let playing = before.as_ref().and_then(|before| before.playing.clone());
         let (id, is_new) = self.add(first);
@@ -193,7 +193,7 @@ impl Editor {
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
         let about_feet = if borrows && !has_map { self.suit_feet(count) } else { None };
-        let opened = Opened { name, is_new, others, evicted, lacks_joints, missing_images, about_motions, about_feet };
+        let opened = Opened { name, is_new, others, evicted, lacks_joints, about_images, about_motions, about_feet };
         self.announce(&opened, was_loaded && !is_view);
         Ok(())
     }
@@ -509,6 +509,27 @@ fn missing_images(asset: &Asset) -> Vec<String> {
     asset.warnings.iter().filter_map(missing).collect()
 }
 
+/// Returns sentences about the images that can't be shown.
+fn about_images(asset: &Asset) -> String {
+    let unreadable = |warning: &Warning| match warning {
+        Warning::ImageUnreadable { image, .. } => Some(short_name(image)),
+        _ => None,
+    };
+    let unreadable: Vec<String> = asset.warnings.iter().filter_map(unreadable).collect();
+    // Not how many: warnings of one kind have a limit.
+    let missing = match &missing_images(asset)[..] {
+        [] => String::new(),
+        [image] => format!(" Its image {image} is missing; open it as well."),
+        _ => " Some of its images are missing; open them as well.".to_owned(),
+    };
+    let unreadable = match &unreadable[..] {
+        [] => String::new(),
+        [image] => format!(" Its image {image} can't be read; the Info tab says why."),
+        _ => " Some of its images can't be read; the Info tab says why.".to_owned(),
+    };
+    missing + &unreadable
+}
+
 impl Opened {
     fn text(&self) -> String {
         let mut text = if self.is_new { format!("Opened {}.", self.name) } else { format!("Reopened {}.", self.name) };
@@ -523,12 +544,7 @@ impl Opened {
         if self.lacks_joints {
             text += " Open its .skel and .attach as well to add its joints.";
         }
-        match &self.missing_images[..] {
-            [] => {}
-            [image] => text += &format!(" Its image {image} is missing; open it as well."),
-            // Not how many: warnings of one kind have a limit.
-            _ => text += " Some of its images are missing; open them as well.",
-        }
+        text += &self.about_images;
         for sentence in self.about_motions.as_deref().into_iter().chain(self.about_feet) {
             text += &format!(" {sentence}");
         }

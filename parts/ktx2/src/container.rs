@@ -1,6 +1,11 @@
 //! The KTX 2.0 container: a header, an index of the mip levels, a data format descriptor and, for ETC1S, the data that
 //! all levels share. Nothing in it is trusted.
 
+use std::borrow::Cow;
+
+use ruzstd::StreamingDecoder;
+use ruzstd::io::Read;
+
 use crate::texture::level_size;
 
 /// Magic number at the start of a file.
@@ -26,6 +31,24 @@ const UASTC: u32 = 166;
 pub enum Codec {
     Etc1s,
     Uastc,
+    /// Red, red and green, and so on: a byte for each.
+    Plain {
+        channels: usize,
+    },
+}
+
+impl Codec {
+    /// Of Vulkan's formats without Basis: whether they are sRGB is up to the material.
+    fn plain(format: u32) -> Option<Self> {
+        let channels = match format {
+            9 | 15 => 1,
+            16 | 22 => 2,
+            23 | 29 => 3,
+            37 | 43 => 4,
+            _ => return None,
+        };
+        Some(Self::Plain { channels })
+    }
 }
 
 #[derive(Debug)]
@@ -59,14 +82,15 @@ fn section(file: &[u8], at: usize) -> Result<&[u8], String> {
 /// Returns the width and height of an image in pixels, without reading more than the header.
 ///
 /// # Errors
-/// If the extension doesn't allow this kind of image.
+/// If it is another kind of image than the decoder reads.
 pub fn size(file: &[u8]) -> Result<[u32; 2], String> {
     if !file.starts_with(&MAGIC) {
         return Err("it is not a KTX2 file".to_owned());
     }
     let [format, width, height, depth] = [word(file, 12)?, word(file, 20)?, word(file, 24)?, word(file, 28)?];
-    if format != 0 {
-        return Err(format!("its texels are of Vulkan's format {format}; expected ETC1S or UASTC"));
+    if format != 0 && Codec::plain(format).is_none() {
+        let expected = "expected ETC1S, UASTC, or 8 bits for each of 1 to 4 channels";
+        return Err(format!("its texels are of Vulkan's format {format}; {expected}"));
     }
     let [layers, faces] = [word(file, 32)?, word(file, 36)?];
     if depth > 0 || layers > 1 || faces != 1 {
@@ -81,7 +105,9 @@ pub fn size(file: &[u8]) -> Result<[u32; 2], String> {
 impl<'a> Container<'a> {
     pub fn read(file: &'a [u8]) -> Result<Self, String> {
         let size = size(file)?;
-        let count = word(file, 40)? as usize;
+        let plain = Codec::plain(word(file, 12)?);
+        // Without levels, they are to be generated from the one that is there.
+        let count = (word(file, 40)? as usize).max(usize::from(plain.is_some()));
         let max_levels = size[0].max(size[1]).ilog2() as usize + 1;
         if count == 0 || count > max_levels {
             return Err(format!("it has {count} mip levels; expected 1 to {max_levels}"));
@@ -89,11 +115,12 @@ impl<'a> Container<'a> {
         let description = word(file, 48)? as usize;
         let model = word(file, description.saturating_add(12))? & 0xFF;
         let scheme = word(file, 44)?;
-        let codec = match (model, scheme) {
-            (ETC1S, BASIS_LZ) => Codec::Etc1s,
-            (UASTC, NONE | ZSTANDARD) => Codec::Uastc,
+        let codec = match (plain, model, scheme) {
+            (Some(plain), _, NONE | ZSTANDARD) => plain,
+            (None, ETC1S, BASIS_LZ) => Codec::Etc1s,
+            (None, UASTC, NONE | ZSTANDARD) => Codec::Uastc,
             _ => {
-                let expected = "expected ETC1S with BasisLZ, or UASTC with Zstandard or nothing";
+                let expected = "expected ETC1S with BasisLZ, or others with Zstandard or nothing";
                 return Err(format!("its texels are of model {model}, compressed with scheme {scheme}; {expected}"));
             }
         };
@@ -107,6 +134,17 @@ impl<'a> Container<'a> {
             levels: (0..count).map(|level| section(file, LEVELS + LEVEL * level)).collect::<Result<_, _>>()?,
             global: if codec == Codec::Etc1s { section(file, 64)? } else { &[] },
         })
+    }
+
+    /// Returns the first `length` bytes of a level, without Zstandard. `None` if it has fewer.
+    pub fn unpacked(&self, level: usize, length: usize) -> Option<Cow<'a, [u8]>> {
+        let bytes = self.levels[level];
+        if !self.is_packed {
+            return bytes.get(..length).map(Cow::Borrowed);
+        }
+        let mut unpacked = vec![0; length];
+        StreamingDecoder::new(bytes).ok()?.read_exact(&mut unpacked).ok()?;
+        Some(Cow::Owned(unpacked))
     }
 
     pub fn level_size(&self, level: usize) -> [u32; 2] {

@@ -1,4 +1,5 @@
-//! Transcodes the images of `KHR_texture_basisu`, KTX2 files with ETC1S or UASTC texels, into what the device can sample.
+//! Transcodes the images of `KHR_texture_basisu`, KTX2 files with ETC1S or UASTC texels, into what the device can sample. The
+//! extension doesn't allow other texels, but files have them: those of 8 bits per channel are read, too.
 //!
 //! Output by input format and device:
 //!
@@ -6,12 +7,14 @@
 //! | --- | --- | --- | --- | --- |
 //! | ETC1S | BC7 | ETC2, without loss | ETC2 (every device has both) | RGBA |
 //! | UASTC | BC7 | RGBA: ETC2 would blur normal maps | ASTC, without loss | RGBA |
+//! | 8 bits per channel | RGBA | RGBA | RGBA | RGBA |
 //!
 //! An image with missing mip levels becomes RGBA as well, so that they can be generated from it, and so does one whose
 //! edges aren't multiples of 4, which WebGPU doesn't accept in compressed formats.
 
 mod container;
 mod etc1s;
+mod plain;
 mod texture;
 mod uastc;
 
@@ -25,7 +28,7 @@ use container::{Codec, Container};
 /// Transcodes an image ([`request`]). [`Texture::read`] reads the output.
 ///
 /// # Errors
-/// If the image is damaged, or is not what the extension allows.
+/// If the image is damaged, or of another kind.
 pub fn decode(input: &[u8]) -> Answer {
     let (formats, largest_edge, file) = texture::read_request(input).ok_or("the decoder's input is damaged")?;
     let container = Container::read(file)?;
@@ -34,6 +37,7 @@ pub fn decode(input: &[u8]) -> Answer {
     let mut texture = match container.codec {
         Codec::Etc1s => etc1s::transcode(&container, format, level)?,
         Codec::Uastc => uastc::transcode(&container, format, level)?,
+        Codec::Plain { channels } => plain::expand(&container, channels, level)?,
     };
     // Only RGBA gets here: compressed formats are chosen only if all mip levels are there.
     while texture.width.max(texture.height) > largest_edge.max(1) {
@@ -51,6 +55,7 @@ fn choose(container: &Container, formats: Formats, level: usize) -> Format {
     }
     let has = |format| formats.contains(format);
     match container.codec {
+        Codec::Plain { .. } => Format::Rgba8,
         _ if has(Formats::BC7) => Format::Bc7,
         Codec::Etc1s if has(Formats::ETC2) && container.has_alpha => Format::Etc2Rgba,
         Codec::Etc1s if has(Formats::ETC2) => Format::Etc2Rgb,
@@ -86,6 +91,36 @@ mod tests {
 
     fn decoded(file: &[u8], formats: Formats, largest_edge: u32) -> Texture {
         Texture::read(&decode(&request(formats, largest_edge, file)).unwrap().bytes).unwrap()
+    }
+
+    /// 3 × 2 texels of this format, with one level.
+    fn plain(format: u32, level_count: u32, scheme: u32, texels: &[u8]) -> Vec<u8> {
+        let descriptor = [28, 0, 2 | 24 << 16, 1];
+        let start = (80 + 24 + 4 * descriptor.len()) as u32;
+        let header = [format, 1, 3, 2, 0, 0, 1, level_count, scheme, 104, 28, 0, 0, 0, 0, 0, 0];
+        let level = [start, 0, texels.len() as u32, 0, texels.len() as u32, 0];
+        let words = header.into_iter().chain(level).chain(descriptor);
+        [&MAGIC[..], &words.flat_map(u32::to_le_bytes).collect::<Vec<u8>>(), texels].concat()
+    }
+
+    #[test]
+    fn plain_texels_become_rgba() {
+        let texels: Vec<u8> = (1..=24).collect();
+        let check = |format: u32, channels: usize, second: [u8; 4]| {
+            let texture = decoded(&plain(format, 1, 0, &texels[..6 * channels]), ALL, 4096);
+            assert_eq!((texture.format, texture.width, texture.height, texture.levels), (Format::Rgba8, 3, 2, 1));
+            assert_eq!((texture.data.len(), &texture.data[4..8]), (24, &second[..]), "format {format}");
+        };
+        check(9, 1, [2, 0, 0, 255]);
+        check(22, 2, [3, 4, 0, 255]);
+        check(23, 3, [4, 5, 6, 255]);
+        check(43, 4, [5, 6, 7, 8]);
+        // A frame of Zstandard with a single block, which isn't compressed.
+        let frame = [&[0x28, 0xB5, 0x2F, 0xFD, 0x20, 18, 18 << 3 | 1, 0, 0], &texels[..18]].concat();
+        let packed = decoded(&plain(23, 0, 2, &frame), ALL, 4096);
+        assert_eq!(packed, decoded(&plain(23, 1, 0, &texels[..18]), ALL, 4096));
+        let short = decode(&request(ALL, 4096, &plain(23, 1, 0, &texels[..17])));
+        assert_eq!(short.unwrap_err(), "mip level 0 is damaged");
     }
 
     /// As zip and PNG have it.
@@ -138,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_extension_does_not_allow_is_an_error() {
+    fn other_kinds_of_images_are_errors() {
         let check = |at: usize, value: u32, expected: &str| {
             let mut file = UASTC.to_vec();
             file[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -146,7 +181,7 @@ mod tests {
             assert!(problem.contains(expected), "{expected}: {problem}");
         };
         check(0, 0, "not a KTX2 file");
-        check(12, 37, "Vulkan's format 37");
+        check(12, 97, "Vulkan's format 97; expected ETC1S, UASTC, or 8 bits");
         check(20, 65_535, "65535 × 32 pixels; expected 1 to 16384");
         check(24, 0, "64 × 0 pixels");
         check(28, 2, "not a single 2D image");
@@ -169,7 +204,8 @@ mod tests {
     fn damaged_files_never_panic() {
         let mut damage = Damage::new();
         let (mut decoded, mut failed) = (0, 0);
-        for file in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_SINGLE] {
+        let plain = plain(23, 1, 0, &[7; 18]);
+        for file in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_SINGLE, &plain] {
             for case in 0..cases() {
                 let damaged = damage.of(file);
                 let input = request(if case % 2 == 0 { ALL } else { Formats(6) }, 64, &damaged);

@@ -1,12 +1,8 @@
 //! UASTC: independent blocks of 16 bytes, sometimes compressed once more with Zstandard.
 
-use std::borrow::Cow;
-
 use basisu::uastc::astc_pack::transcode_uastc_to_astc;
 use basisu::uastc::bc7::transcode_uastc_to_bc7;
 use basisu::uastc::unpack::unpack_uastc;
-use ruzstd::StreamingDecoder;
-use ruzstd::io::Read;
 
 use crate::container::Container;
 use crate::texture::{Format, Texture};
@@ -20,7 +16,7 @@ pub fn transcode(container: &Container, format: Format, first: usize) -> Result<
         let damaged = || format!("mip level {level} is damaged");
         let size @ [width, _] = container.level_size(level);
         let [columns, rows] = container.level_blocks(level).map(|count| count as usize);
-        let blocks = unpacked(container, level, columns * rows * BLOCK).ok_or_else(damaged)?;
+        let blocks = container.unpacked(level, columns * rows * BLOCK).ok_or_else(damaged)?;
         let blocks = blocks.as_chunks::<BLOCK>().0;
         let start = texture.data.len();
         texture.data.resize(start + format.byte_count(size), 0);
@@ -35,17 +31,6 @@ pub fn transcode(container: &Container, format: Format, first: usize) -> Result<
         texture.levels += 1;
     }
     Ok(texture)
-}
-
-/// Returns the blocks of a level, `length` bytes.
-fn unpacked<'a>(container: &Container<'a>, level: usize, length: usize) -> Option<Cow<'a, [u8]>> {
-    let bytes = container.levels[level];
-    if !container.is_packed {
-        return bytes.get(..length).map(Cow::Borrowed);
-    }
-    let mut unpacked = vec![0; length];
-    StreamingDecoder::new(bytes).ok()?.read_exact(&mut unpacked).ok()?;
-    Some(Cow::Owned(unpacked))
 }
 
 fn convert(blocks: &[[u8; BLOCK]], out: &mut [u8], block: fn(&[u8; BLOCK]) -> Option<[u8; BLOCK]>) -> Option<()> {

@@ -5,7 +5,9 @@ use egui::Ui;
 use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant};
+use crate::state::{
+    COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant, title as joint_title,
+};
 use crate::ui::controls::{self, SliderSettings, capitals};
 use crate::ui::{Output, Shown, text};
 
@@ -212,24 +214,25 @@ fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
     let asset = &model.asset;
     let now = shown.frame.characters.first().map_or(&[][..], |character| &character.morph_weights);
-    let mut titled = false;
     // Copies of a mesh at one node share its weights.
     let nodes = asset.instances.chunk_by(|a, b| a.joint == b.joint).filter_map(|copies| copies.first());
-    for instance in nodes {
+    let morphed = nodes.filter(|instance| !asset.skeleton.morph_range(instance.joint).is_empty());
+    let count = morphed.clone().count();
+    if count > 0 {
+        controls::section(ui, "MORPH TARGETS");
+        // Always visible, so that the sliders don't move when the first one is touched.
+        let is_edited = !shown.state.edits.morph.is_empty();
+        if ui.add_enabled(is_edited, egui::Button::new(text::RESET_MORPHS)).clicked() {
+            out.commands.push(Command::ClearMorphs);
+        }
+    }
+    for instance in morphed {
         let (Some(mesh), range) = (asset.meshes.get(instance.mesh), asset.skeleton.morph_range(instance.joint)) else {
             continue;
         };
-        if range.is_empty() {
-            continue;
-        }
-        if !titled {
-            titled = true;
-            controls::section(ui, "MORPH TARGETS");
-            // Always visible, so that the sliders don't move when the first one is touched.
-            let is_edited = !shown.state.edits.morph.is_empty();
-            if ui.add_enabled(is_edited, egui::Button::new(text::RESET_MORPHS)).clicked() {
-                out.commands.push(Command::ClearMorphs);
-            }
+        if count > 1 {
+            // Their targets often have the same names.
+            controls::hint(ui, joint_title(Some(shown.state), asset, instance.joint).into_owned());
         }
         for (target, index) in range.enumerate() {
             let name = mesh.target_names.get(target).filter(|name| !name.is_empty());

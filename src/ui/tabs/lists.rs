@@ -25,8 +25,8 @@ pub struct MaterialText {
     /// `None` is the default material.
     pub index: Option<usize>,
     pub name: String,
-    /// Alpha mode and maps; extensions; the nodes that use it.
-    pub lines: Vec<String>,
+    /// A line each for alpha mode and maps, extensions, and the nodes that use it.
+    pub facts: String,
 }
 
 #[derive(Debug)]
@@ -78,7 +78,7 @@ fn material_text(asset: &Asset, index: Option<usize>) -> MaterialText {
     MaterialText {
         index,
         name: text::material(index, &material.name),
-        lines: lines.into_iter().filter(|line| !line.is_empty()).collect(),
+        facts: lines.into_iter().filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n"),
     }
 }
 

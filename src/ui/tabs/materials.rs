@@ -1,6 +1,8 @@
 //! The materials and images of the model in the Info tab. Materials have an eye, images a thumbnail.
 
-use egui::{Id, Rect, Sense, Ui, pos2, vec2};
+use std::sync::Arc;
+
+use egui::{Galley, Id, Rect, Sense, Ui, pos2, vec2};
 
 use super::hiding::{self, Pressed};
 use super::lists::{ImageText, Lists, MaterialText};
@@ -10,7 +12,6 @@ use crate::ui::{HostState, Output, Shown, controls, style, text};
 
 /// Further materials and images are not listed.
 const MAX_ROWS: usize = 200;
-const LINE_HEIGHT: f32 = 16.0;
 const THUMBNAIL: f32 = 36.0;
 /// Height of the line with an image's name.
 const NAME_HEIGHT: f32 = 20.0;
@@ -31,18 +32,15 @@ fn row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, material: &MaterialText, o
     let is_shown = !hidden.materials.contains(&material.index);
     // As high as the button that hides the material.
     let name_height = controls::row_height(ui, 22.0);
-    let height = name_height + material.lines.len() as f32 * LINE_HEIGHT;
+    let facts = wrapped(ui, &material.facts, ui.available_width());
+    let height = name_height + facts.size().y;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let first = rect.with_max_y(rect.top() + name_height);
     let palette = style::palette(ui);
     let color = if is_shown { palette.text } else { palette.weak_text };
     let id = Id::unique(("material", material.index));
-    line(ui, id, first.with_max_x(rect.right() - hiding::EYE_WIDTH), &material.name, false, color);
-    for (at, text) in material.lines.iter().enumerate() {
-        let top = first.bottom() + at as f32 * LINE_HEIGHT;
-        let below = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), top + LINE_HEIGHT));
-        line(ui, id.with(at), below, text, true, palette.weak_text);
-    }
+    line(ui, id, first.with_max_x(rect.right() - hiding::EYE_WIDTH), &material.name, color);
+    show_wrapped(ui, id.with("facts"), rect.with_min_y(first.bottom()), &material.facts, facts);
     let hidden = match hiding::eye(ui, first, id.with("eye"), &material.name, is_shown) {
         Some(Pressed::Toggle) => hidden.clone().with_material_toggled(material.index),
         Some(Pressed::Solo) => hidden.clone().with_material_soloed(&model.asset, material.index),
@@ -52,16 +50,23 @@ fn row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, material: &MaterialText, o
 }
 
 /// A line of text; its tooltip has the whole text if it is cut.
-fn line(ui: &Ui, id: Id, rect: Rect, text: &str, is_small: bool, color: egui::Color32) {
+fn line(ui: &Ui, id: Id, rect: Rect, text: &str, color: egui::Color32) {
     let response = ui.interact(rect, id, Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
-    let cut = match is_small {
-        true => controls::elided_small(ui, rect, text, color),
-        false => controls::elided(ui, rect, text, color),
-    };
-    if cut {
+    if controls::elided(ui, rect, text, color) {
         response.on_hover_text(text);
     }
+}
+
+/// Lays small text out for [`show_wrapped`].
+fn wrapped(ui: &Ui, text: &str, width: f32) -> Arc<Galley> {
+    ui.painter().layout(text.to_owned(), style::SMALL, style::palette(ui).weak_text, width)
+}
+
+fn show_wrapped(ui: &Ui, id: Id, rect: Rect, text: &str, galley: Arc<Galley>) {
+    let response = ui.interact(rect, id, Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
+    ui.painter().galley(rect.min, galley, style::palette(ui).weak_text);
 }
 
 pub fn images(ui: &mut Ui, model: &Model, lists: &Lists, host: &HostState) {
@@ -75,12 +80,11 @@ pub fn images(ui: &mut Ui, model: &Model, lists: &Lists, host: &HostState) {
     }
 }
 
-/// The details wrap if the list of maps is too long for one line.
 fn image_row(ui: &mut Ui, id: Id, image: &ImageText, thumbnail: Option<egui::TextureId>) {
     const GAP: f32 = 8.0;
     let palette = style::palette(ui);
     let width = ui.available_width() - THUMBNAIL - GAP;
-    let facts = ui.painter().layout(image.line.clone(), style::SMALL, palette.weak_text, width);
+    let facts = wrapped(ui, &image.line, width);
     let height = (NAME_HEIGHT + facts.size().y).max(THUMBNAIL) + 4.0;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let square = Rect::from_min_size(rect.min + vec2(0.0, 2.0), vec2(THUMBNAIL, THUMBNAIL));
@@ -93,8 +97,6 @@ fn image_row(ui: &mut Ui, id: Id, image: &ImageText, thumbnail: Option<egui::Tex
     }
     let text = rect.with_min_x(square.right() + GAP);
     let below = text.with_min_y(text.top() + NAME_HEIGHT);
-    line(ui, id, text.with_max_y(below.top()), &image.name, false, palette.text);
-    let response = ui.interact(below, id.with("facts"), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &image.line));
-    ui.painter().galley(below.min, facts, palette.weak_text);
+    line(ui, id, text.with_max_y(below.top()), &image.name, palette.text);
+    show_wrapped(ui, id.with("facts"), below, &image.line, facts);
 }

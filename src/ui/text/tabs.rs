@@ -485,10 +485,11 @@ pub fn frame_graph(count: usize, line_fps: f32, full_secs: f32) -> String {
 
 /// Returns the maximum number of influences of a vertex, and how many vertices have more than the four that engines usually read.
 pub fn influences(max: usize, over_four: usize) -> String {
-    match over_four {
-        0 => format!("up to {max}"),
-        1 => format!("up to {max}, 1 vertex over 4"),
-        count => format!("up to {max}, {} vertices over 4", grouped(count)),
+    match (max, over_four) {
+        (0, _) => "none".to_owned(),
+        (_, 0) => format!("up to {max}"),
+        (_, 1) => format!("up to {max}, 1 vertex over 4"),
+        (_, count) => format!("up to {max}, {} vertices over 4", grouped(count)),
     }
 }
 

@@ -47,8 +47,6 @@ pub const UNDO_HELP: &str = "Undo, redo: edits, display settings and opening, bu
 pub const PINCH: &str = "Pinch";
 
 // Messages
-/// Title of an error without a more specific one.
-pub const ERROR_TITLE: &str = "Something went wrong";
 /// Title of the error for refused motions.
 pub const REFUSED_TITLE: &str = "Couldn't borrow the motion";
 /// Close button of an error.

@@ -8,6 +8,7 @@ use super::panes::{label_height, pane_index, pane_rects, to_screen};
 use crate::frame::PickedJoint;
 use crate::state::{Comparison, compared_rests, source_on_stage, title};
 use crate::ui::tabs::{display, formula};
+use crate::ui::tracks::short;
 use crate::ui::{Shown, UiState, style, text};
 
 /// Labels the selected and the hovered joint, and the panes of the comparison. Call once the frame has been evaluated, or
@@ -50,7 +51,7 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     let joint = asset.skeleton.joint_of_source(joint)?;
     let position = to_screen(shown, pane, character.world_from_joint.get(joint.get())?.translation.into())?;
     let state = matches!(picked, PickedJoint::Model(_)).then_some(shown.state);
-    let mut text = title(state, asset, joint).into_owned();
+    let mut text = short(&title(state, asset, joint)).to_owned();
     if let (PickedJoint::Model(_), Some(source)) = (picked, &source) {
         let pair = source.borrowed.pairs.iter().find(|pair| pair.target == joint);
         let error = pair.and_then(|pair| {

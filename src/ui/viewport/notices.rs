@@ -142,20 +142,21 @@ impl Messages {
     }
 
     fn show_error_text(&mut self, ui: &mut Ui, error: &str, out: &mut Output) {
-        let color = style::palette(ui).error;
-        ui.label(RichText::new(self.error_title()).strong().color(color));
+        match self.error_title() {
+            Some(title) => drop(ui.label(RichText::new(title).strong().color(style::palette(ui).error))),
+            // Beside the middle of the button.
+            None => ui.add_space(4.0),
+        }
         scrolled_text(ui, error);
         if self.motion_refused {
             self.offer_alternatives(ui, out);
         }
     }
 
-    fn error_title(&self) -> String {
-        match &self.failed_to_open {
-            Some(name) => text::couldnt_open(name),
-            None if self.motion_refused => text::REFUSED_TITLE.to_owned(),
-            None => text::ERROR_TITLE.to_owned(),
-        }
+    /// None for messages that say themselves what they are about.
+    fn error_title(&self) -> Option<String> {
+        let refused = self.motion_refused.then(|| text::REFUSED_TITLE.to_owned());
+        self.failed_to_open.as_deref().map(text::couldnt_open).or(refused)
     }
 
     fn offer_alternatives(&mut self, ui: &mut Ui, out: &mut Output) {

@@ -223,22 +223,27 @@ fn what_is_wrong_with_a_change_by_a_script_is_told() {
 }
 
 #[test]
-fn missing_images_are_told() {
+fn images_that_are_missing_or_unreadable_are_told() {
     let mut editor = editor("sample:walker");
-    let mut told = |name: &str, images: &[&str]| {
+    let mut told = |name: &str, warnings: &[Warning]| {
         let mut asset = Asset::default();
-        for &uri in images {
-            asset.warnings.push(Warning::ImageMissing { uri: uri.to_owned() });
-        }
+        warnings.iter().for_each(|warning| asset.warnings.push(warning.clone()));
         let model = Model::new(name.to_owned(), asset, Vec::new());
         let contents = Contents { models: vec![model.into()], ..Contents::default() };
         editor.open(contents, None, &mut any).expect("fits");
         notices(&editor.take_events()).concat()
     };
+    let missing = |uri: &str| Warning::ImageMissing { uri: uri.to_owned() };
+    let unreadable = |image: &str| Warning::ImageUnreadable { image: image.to_owned(), problem: "cut off".to_owned() };
     assert_eq!(told("a.gltf", &[]), "Opened a.gltf.");
-    assert_eq!(told("b.gltf", &["maps/skin.png"]), "Opened b.gltf. Its image skin.png is missing; open it as well.");
+    let one = "Opened b.gltf. Its image skin.png is missing; open it as well.";
+    assert_eq!(told("b.gltf", &[missing("maps/skin.png")]), one);
     let several = "Opened c.gltf. Some of its images are missing; open them as well.";
-    assert_eq!(told("c.gltf", &["skin.png", "eyes.png"]), several);
+    assert_eq!(told("c.gltf", &[missing("skin.png"), missing("eyes.png")]), several);
+    let one = "Opened d.gltf. Its image skin.ktx2 can't be read; the Info tab says why.";
+    assert_eq!(told("d.gltf", &[unreadable("maps/skin.ktx2")]), one);
+    let several = "Opened e.gltf. Some of its images can't be read; the Info tab says why.";
+    assert_eq!(told("e.gltf", &[unreadable("images[0]"), unreadable("images[1]")]), several);
 }
 
 #[test]
