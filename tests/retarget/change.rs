@@ -1,12 +1,13 @@
 //! Laws of changed clips: at any time, and not only at keys.
 
 use gaitway::anim::{
-    Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, SampleCursor, TimeRange, Transform,
+    Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, SampleCursor, Skeleton, TimeRange,
+    Transform, model_from_joint,
 };
 use gaitway::asset::{Asset, AssetParts, Slot};
 use gaitway::avatar::{Avatar, Expression};
 use gaitway::retarget::{ChangedClip, ClipChanges, Symmetry, change_clip, recognize};
-use glam::{DQuat, DVec3, Quat, Vec3};
+use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
 
 use crate::figure::{Figure, Rig, build};
 use crate::laws::degrees;
@@ -81,6 +82,46 @@ fn a_mirrored_clip_is_seen_in_a_mirror() {
             }
         }
         assert!(moved > 0.2, "the dance isn't symmetric");
+    }
+}
+
+/// A fish has no body parts, only sides in its names.
+#[test]
+fn joints_that_are_no_body_parts_are_mirrored_by_the_sides_in_their_names() {
+    let joint = |name: &str, parent, at: [f32; 3]| Joint {
+        name: name.to_owned(),
+        parent,
+        rest: Transform { translation: at.into(), ..Transform::IDENTITY },
+        ..Joint::default()
+    };
+    let joints = vec![
+        joint("fish", None, [0.0, 1.0, 0.0]),
+        joint("fin_l", Some(0), [0.3, 0.0, 0.1]),
+        joint("fin_tip_l", Some(1), [0.4, 0.1, 0.0]),
+        joint("fin_r", Some(0), [-0.3, 0.0, 0.1]),
+        joint("fin_tip_r", Some(3), [-0.4, 0.1, 0.0]),
+    ];
+    let asset = Asset::from(Skeleton::new(joints).expect("a hierarchy"));
+    let mut builder = ClipBuilder::new("flap", &asset.skeleton);
+    let keys = [Quat::IDENTITY, Quat::from_rotation_z(0.7), Quat::from_rotation_x(0.4)];
+    let fin = asset.skeleton.find("fin_l").expect("a joint");
+    builder.channel(fin, Interpolation::Linear, &[0.0, 0.5, 1.0], Keys::Rotation(keys.to_vec())).expect("valid");
+    let clip = builder.build();
+    let mirrored = change_clip(&asset, &clip, &ClipChanges { mirror: true, ..NONE }, || symmetry(&asset)).clip;
+    let places = |clip: &Clip, time: f32| {
+        let (mut pose, mut world) = (asset.skeleton.rest().clone(), Vec::new());
+        clip.sample(&asset.skeleton, time, &mut SampleCursor::default(), &mut pose);
+        model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world);
+        let place = |joint: JointIndex| Vec3::from(world[joint.get()].translation);
+        asset.skeleton.joints().map(place).collect::<Vec<Vec3>>()
+    };
+    for time in times(&clip) {
+        let (own, other) = (places(&clip, time), places(&mirrored, time));
+        for (joint, opposite) in [(0, 0), (1, 3), (2, 4), (3, 1), (4, 2)] {
+            let expected = own[joint] * Vec3::new(-1.0, 1.0, 1.0);
+            assert!(expected.distance(other[opposite]) < 1e-6, "{joint} at {time}: {}, {expected}", other[opposite]);
+        }
+        assert!(own[2].distance(other[2]) > 1e-3);
     }
 }
 
