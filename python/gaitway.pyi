@@ -75,6 +75,7 @@ class RetargetOptions(TypedDict, total=False):
     vertical: _RootPart | None
     yaw: _RootPart | None
     extract_root: bool
+    origin: Literal["rest", "feet"] | None
     feet: Literal["off", "plant"] | None
     contacts: Literal["off", "keep"] | None
     translations: _Keep | None

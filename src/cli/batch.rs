@@ -1,4 +1,4 @@
-//! `gaitway retarget` with `--out-dir`: many motions for one model in one process, on all cores. Each result is a line of JSON on
+//! `gaitway retarget` with `--out-dir`: many motions for one or more models in one process, on all cores. Each result is a line of JSON on
 //! standard output, printed as soon as it is written. A motion that fails doesn't end the run, and one whose output is newer than
 //! what it is made from is skipped.
 
@@ -25,8 +25,10 @@ use crate::files::{Disk, Opened, save_file};
 /// Shortest time between two updates of the progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A motion and the file to write.
+/// A motion for a model, and the file to write.
 struct Job {
+    /// Index into [`Batch::models`].
+    model: usize,
     motion: PathBuf,
     out: PathBuf,
 }
@@ -34,20 +36,21 @@ struct Job {
 /// Shared by all jobs.
 struct Batch<'a> {
     arguments: &'a RetargetArguments,
-    opened: Opened,
+    /// One for each path in the arguments.
+    models: Vec<Opened>,
     map: Option<OpenedMap>,
     format: ClipFormat,
-    /// The files of the model and the map.
+    /// The files of the models and the map.
     shared_files: Vec<PathBuf>,
 }
 
 pub(super) fn run(arguments: &RetargetArguments, folder: &Path, disk: &Disk) -> Outcome {
-    let opened = open(std::slice::from_ref(&arguments.model), disk)?;
+    let models = arguments.model.chunks(1).map(|path| open(path, disk)).collect::<Outcome<_>>()?;
     let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
     let format = arguments.format.map_or(ClipFormat::Glb, Into::into);
-    let jobs = jobs(&arguments.motion, folder, format)?;
+    let jobs = jobs(arguments, folder, format)?;
     refuse_inputs(&jobs, disk)?;
-    let batch = Batch { arguments, opened, map, format, shared_files: disk.files_read() };
+    let batch = Batch { arguments, models, map, format, shared_files: disk.files_read() };
     let workers = arguments.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let progress = Progress::new(jobs.len());
     let next = AtomicUsize::new(0);
@@ -76,9 +79,10 @@ impl Batch<'_> {
     /// Does a job and returns its line.
     fn line(&self, job: &Job) -> (Value, Ended) {
         let name = |path: &Path| path.display().to_string();
-        let mut line = json!({ "motion": name(&job.motion), "out": name(&job.out) });
+        let model = name(&self.arguments.model[job.model]);
+        let mut line = json!({ "model": model, "motion": name(&job.motion), "out": name(&job.out) });
         if self.is_up_to_date(job) {
-            line["skipped"] = json!("the output is newer than the motion, the model and the map");
+            line["skipped"] = json!("the output is newer than the motion, the models and the map");
             return (line, Ended::Skipped);
         }
         match self.write(job) {
@@ -105,8 +109,9 @@ impl Batch<'_> {
 
     fn write(&self, job: &Job) -> Outcome<Made> {
         let motion = read_motion(&job.motion, &Disk::default())?;
-        let made = make(&self.arguments.choices, &self.opened.model, &motion, self.map.as_ref())?;
-        let bytes = clip_file(&self.opened, &made, self.arguments.clip_only, self.format)?;
+        let opened = &self.models[job.model];
+        let made = make(&self.arguments.choices, &opened.model, &motion, self.map.as_ref())?;
+        let bytes = clip_file(opened, &made, self.arguments.clip_only, self.format)?;
         if let Some(folder) = job.out.parent() {
             fs::create_dir_all(folder)
                 .map_err(|error| Failure::new(crate::files::describe(&error)).in_file(folder.display()))?;
@@ -142,21 +147,45 @@ fn summary(mut document: Value) -> Vec<(&'static str, Value)> {
 }
 
 /// Finds the motions and their outputs; files in a folder keep their relative paths.
-fn jobs(paths: &[PathBuf], folder: &Path, format: ClipFormat) -> Outcome<Vec<Job>> {
+fn jobs(arguments: &RetargetArguments, folder: &Path, format: ClipFormat) -> Outcome<Vec<Job>> {
+    let folders = model_folders(&arguments.model, folder)?;
     let mut jobs = Vec::new();
     let mut origins: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
-    for inputs::Input { file, relative } in inputs::motions(paths, folder)? {
-        let out = folder.join(relative.with_extension(format.extension()));
-        if let Some(other) = origins.insert(out.clone(), file.clone()) {
+    for inputs::Input { file, relative } in inputs::motions(&arguments.motion, folder)? {
+        let relative = relative.with_extension(format.extension());
+        if let Some(other) = origins.insert(relative.clone(), file.clone()) {
             if other == file {
                 continue;
             }
-            let problem = format!("{} and {} would both become {}", other.display(), file.display(), out.display());
-            return Err(Failure::new(problem).with_hint("retarget them to different folders"));
+            return Err(same_output(&other, &file, &folder.join(relative)));
         }
-        jobs.push(Job { motion: file, out });
+        let of_model =
+            |(model, folder): (usize, &PathBuf)| Job { model, motion: file.clone(), out: folder.join(&relative) };
+        jobs.extend(folders.iter().enumerate().map(of_model));
     }
     Ok(jobs)
+}
+
+/// The folder of each model's results: that of the results itself if there is one model, else one of the model's name in it.
+fn model_folders(models: &[PathBuf], folder: &Path) -> Outcome<Vec<PathBuf>> {
+    if models.len() == 1 {
+        return Ok(vec![folder.to_owned()]);
+    }
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for model in models {
+        let name = model.file_stem().unwrap_or_default().to_string_lossy();
+        let own = folder.join(name.trim_start_matches("sample:"));
+        if let Some(other) = folders.iter().position(|folder| *folder == own) {
+            return Err(same_output(&models[other], model, &own));
+        }
+        folders.push(own);
+    }
+    Ok(folders)
+}
+
+fn same_output(one: &Path, other: &Path, out: &Path) -> Failure {
+    let problem = format!("{} and {} would both become {}", one.display(), other.display(), out.display());
+    Failure::new(problem).with_hint("retarget them to different folders")
 }
 
 /// Refuses outputs that are inputs, before anything is written.
@@ -207,7 +236,8 @@ impl Progress {
         }
         if self.is_shown && state.drawn.is_none_or(|drawn| drawn.elapsed() >= PROGRESS_INTERVAL) {
             state.drawn = Some(Instant::now());
-            let _ = write!(stderr(), "{}", self.text(&state));
+            let secs = self.start.elapsed().as_secs_f64();
+            let _ = write!(stderr(), "\r\x1b[K{}", progress_text(&state, self.total, secs));
         }
     }
 
@@ -215,17 +245,6 @@ impl Progress {
         if self.is_shown {
             let _ = write!(stderr(), "\r\x1b[K");
         }
-    }
-
-    /// Formats how many motions are done, the rate, and the time left.
-    fn text(&self, state: &ProgressState) -> String {
-        let done = state.written + state.skipped + state.failed;
-        let secs = self.start.elapsed().as_secs_f64().max(1e-3);
-        // Skipping takes no time.
-        let rate = (state.written + state.failed) as f64 / secs;
-        let left =
-            if rate > 0.0 { format!(", {:.0} s left", (self.total - done) as f64 / rate) } else { String::new() };
-        format!("\r\x1b[K{done} of {}, {rate:.1} per second{left}", self.total)
     }
 
     fn finish(self) -> Outcome {
@@ -241,5 +260,31 @@ impl Progress {
             return Err(Failure::new(format!("{failed} of {} motions failed; their lines say why", self.total)));
         }
         Ok(())
+    }
+}
+
+/// Formats a bar, how many results are done, the rate, and the time left.
+fn progress_text(state: &ProgressState, total: usize, secs: f64) -> String {
+    const CELLS: usize = 24;
+    let done = state.written + state.skipped + state.failed;
+    let filled = CELLS * done / total.max(1);
+    // Skipping takes no time.
+    let rate = (state.written + state.failed) as f64 / secs.max(1e-3);
+    let left = if rate > 0.0 { format!(", {:.0} s left", (total - done) as f64 / rate) } else { String::new() };
+    let bar = "#".repeat(filled) + &".".repeat(CELLS - filled);
+    format!("[{bar}] {done} of {total}, {rate:.1} per second{left}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_has_a_bar_the_rate_of_what_took_time_and_the_time_left() {
+        let state = |written, skipped| ProgressState { written, skipped, failed: 0, drawn: None, broken: None };
+        let check = |state: &ProgressState, expected: &str| assert_eq!(progress_text(state, 48, 2.0), expected);
+        check(&state(0, 0), "[........................] 0 of 48, 0.0 per second");
+        check(&state(8, 4), "[######..................] 12 of 48, 4.0 per second, 9 s left");
+        check(&state(48, 0), "[########################] 48 of 48, 24.0 per second, 0 s left");
     }
 }

@@ -37,7 +37,7 @@ use crate::editor::{ClipFormat, Editor};
 use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
-use crate::retarget::{Contacts, Feet, Keep, RestChoice, RootPart};
+use crate::retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use edit::EditOptions;
 use failure::{Failure, Outcome};
@@ -142,9 +142,9 @@ struct MapArguments {
 
 #[derive(Debug, Args)]
 struct RetargetArguments {
-    /// The model to animate.
-    #[arg(long, value_name = "FILE")]
-    model: PathBuf,
+    /// The model to animate. With --out-dir, any number of models, each with a folder of its own there.
+    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    model: Vec<PathBuf>,
     /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz. With --out-dir, any number of files, folders
     /// and patterns.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
@@ -204,6 +204,9 @@ struct RetargetOptions {
     /// Extracts root motion to the joint above the hips.
     #[arg(long)]
     extract_root: bool,
+    /// What the path is scaled from on the ground: the hips at rest, or the feet [default: as the map says; feet without one].
+    #[arg(long, value_enum)]
+    origin: Option<OriginArgument>,
     /// Foot planting.
     #[arg(long, value_enum)]
     feet: Option<FeetArgument>,
@@ -248,6 +251,7 @@ macro_rules! arguments_of {
 
 arguments_of! {
     RootPartArgument of RootPart { Keep, InPlace, Freeze }
+    OriginArgument of PathOrigin { Rest, Feet }
     FeetArgument of Feet { Off, Plant }
     ContactsArgument of Contacts { Off, Keep }
     KeepArgument of Keep { Auto, Keep, Drop }

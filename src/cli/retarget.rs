@@ -1,6 +1,6 @@
 //! `gaitway retarget`: appends a retargeted clip to a model, and reports how well it fits.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
@@ -26,11 +26,9 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
         (Some(out), None) => out,
         (None, None) => return Err(Failure::new("neither --out nor --out-dir was given")),
     };
-    let [motion] = &arguments.motion[..] else {
-        let found = arguments.motion.len().to_string();
-        return Err(Failure::expected("one motion", found).at("--motion").with_hint("--out-dir takes any number"));
-    };
-    let opened = open(std::slice::from_ref(&arguments.model), disk)?;
+    only(&arguments.model, "one model").map_err(|failure| failure.at("--model"))?;
+    let motion = only(&arguments.motion, "one motion").map_err(|failure| failure.at("--motion"))?;
+    let opened = open(&arguments.model, disk)?;
     let motion = open_motion(motion, disk)?;
     let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
     let made = make(&arguments.choices, &opened.model, &motion, map.as_ref())?;
@@ -44,6 +42,14 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
         return Ok(());
     }
     print_bytes(made.text.as_bytes())
+}
+
+/// Returns the only file; `expected` describes it.
+fn only<'a>(files: &'a [PathBuf], expected: &str) -> Outcome<&'a Path> {
+    match files {
+        [file] => Ok(file),
+        files => Err(Failure::expected(expected, files.len().to_string()).with_hint("--out-dir takes any number")),
+    }
 }
 
 /// A retargeted clip and what is reported about it.
@@ -176,6 +182,7 @@ fn apply_options(map: &mut JointMap, options: &RetargetOptions) {
     set(&mut map.root.vertical, options.vertical);
     set(&mut map.root.yaw, options.yaw);
     map.root.extract |= options.extract_root;
+    map.root.origin = options.origin.map_or(map.root.origin, Into::into);
     map.feet = options.feet.map_or(map.feet, Into::into);
     map.contacts = options.contacts.map_or(map.contacts, Into::into);
     map.translations = options.translations.map_or(map.translations, Into::into);
@@ -299,6 +306,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          facing            mean error {}, max. {}\n\
          rotations         mean error {}, max. {}\n\
          largest turn      {} in 1/60 s\n\
+         jerk              {}\n\
          foot slide        {} (source: {})\n\
          hover             {}\n\
          sole penetration  {}\n\
@@ -318,6 +326,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.orientation_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_max, "°"),
         number(figures.largest_turn_degrees_per_frame, "°"),
+        number(figures.jerk_metres_per_sec3_mean, " m/s³"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.foot_hover_metres_mean, " m"),

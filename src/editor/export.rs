@@ -186,7 +186,8 @@ impl Editor {
             None => format!("{}.glb", self.stem_with_clip(Some(clip))),
         };
         let bytes = bytes.map_err(|error| error.to_string())?;
-        Ok(ExportedFile { name, bytes, remark: baked.remark.or(remark) })
+        let remarks: Vec<String> = baked.remark.into_iter().chain(remark).collect();
+        Ok(ExportedFile { name, bytes, remark: (!remarks.is_empty()).then(|| remarks.join(" ")) })
     }
 
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {

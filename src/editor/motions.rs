@@ -338,7 +338,7 @@ impl Editor {
         let mut maps: Vec<MotionMap> = Vec::new();
         for motion in &refused {
             let checksum = names_checksum(&model.asset, &motion.asset);
-            let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() });
+            let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::with_proposed_options() });
             if !self.state.retarget.map.contains(&map) && !maps.contains(&map) {
                 maps.push(map);
             }

@@ -189,7 +189,7 @@ const KEYS: &[Key] = &[
         retarget.root,
         read_some(read_root),
         write_some(root_text),
-        "horizontal:, vertical: or yaw: with keep, in-place or freeze, and extract"
+        "horizontal:, vertical: or yaw: with keep, in-place or freeze, extract, and origin: with rest or feet"
     ),
     key!("feet", retarget.feet, read_some(read_feet), write_some(feet_text), "off or plant"),
     key!("contacts", retarget.contacts, read_some(read_contacts), write_some(contacts_text), "off or keep"),

@@ -1,16 +1,27 @@
-//! The text of a joint map in a link. A map by name is its file's JSON. A map by numbers is compact: `1.CHECKSUM.PAIRS`, or
-//! `1.CHECKSUM.PAIRS.REST`. The checksum is eight hex digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the
-//! hyphen: deliberately no source), pairs are joined by commas; the rest is everything else in the map, as JSON in base64url.
+//! The text of a joint map in a link. A map by name is its file's JSON. A map by numbers is compact: `2.CHECKSUM.PAIRS`, or
+//! `2.CHECKSUM.PAIRS.REST`. The checksum is eight hex digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the
+//! hyphen: deliberately no source), pairs are joined by commas; the rest is everything else in the map, as JSON in base64url. A
+//! code that begins with 1 is of a map whose path's origin is the rest; older versions knew no other.
 
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use serde_json::Value;
 
 use super::maps::{MotionMap, NumberedMap};
-use crate::retarget::{JointMap, JointMapFile, MapEntry};
+use crate::retarget::{JointMap, JointMapFile, MapEntry, PathOrigin, RootOptions};
 
-/// What every code of this form begins with.
-pub(super) const MARK: &str = "1.";
+/// What a code of this form begins with, by the origin of the map's path.
+const MARKS: [(&str, PathOrigin); 2] = [("1.", PathOrigin::Rest), ("2.", PathOrigin::Feet)];
+
+/// Whether a text may be a code of this form.
+pub(super) fn is_code(text: &str) -> bool {
+    MARKS.iter().any(|(mark, _)| text.starts_with(mark))
+}
+
+/// What a code leaves out.
+fn defaults(origin: PathOrigin) -> JointMap {
+    JointMap { root: RootOptions { origin, ..RootOptions::default() }, ..JointMap::default() }
+}
 
 impl MotionMap {
     /// Returns a map that was read from a file, as a link holds it.
@@ -33,8 +44,10 @@ pub(super) fn encode(numbered: &NumberedMap) -> String {
         }
         !is_plain
     });
-    let mut code = format!("{MARK}{:08x}.{}", numbered.checksum, pairs.join(","));
-    if rest != JointMap::default() {
+    let origin = rest.root.origin;
+    let mark = MARKS.iter().find(|(_, other)| *other == origin).map_or("", |(mark, _)| mark);
+    let mut code = format!("{mark}{:08x}.{}", numbered.checksum, pairs.join(","));
+    if rest != defaults(origin) {
         code.push('.');
         code.push_str(&URL_SAFE_NO_PAD.encode(without_defaults(&rest).to_string()));
     }
@@ -45,7 +58,7 @@ pub(super) fn encode(numbered: &NumberedMap) -> String {
 fn without_defaults(map: &JointMap) -> Value {
     // A map is plain data: serializing cannot fail.
     let form = |map: &JointMap| serde_json::to_value(map.to_numbered_file()).unwrap_or_default();
-    let (mut form, default) = (form(map), form(&JointMap::default()));
+    let (mut form, default) = (form(map), form(&defaults(map.root.origin)));
     if let (Some(form), Some(default)) = (form.as_object_mut(), default.as_object()) {
         form.retain(|key, value| key == "gaitway_map" || default.get(key) != Some(value));
         form.get_mut("joints").into_iter().for_each(shorten);
@@ -70,7 +83,8 @@ fn shorten(value: &mut Value) {
 
 /// Returns None for any other text.
 pub(super) fn decode(code: &str) -> Option<NumberedMap> {
-    let mut parts = code.strip_prefix(MARK)?.split('.');
+    let (code, origin) = MARKS.iter().find_map(|&(mark, origin)| Some((code.strip_prefix(mark)?, origin)))?;
+    let mut parts = code.split('.');
     let (checksum, pairs, rest) = (parts.next()?, parts.next()?, parts.next());
     if parts.next().is_some() || checksum.len() != 8 || checksum.starts_with('+') {
         return None;
@@ -83,6 +97,7 @@ pub(super) fn decode(code: &str) -> Option<NumberedMap> {
         }
         None => JointMap::default(),
     };
+    map.root.origin = origin;
     for pair in pairs.split(',').filter(|pair| !pair.is_empty()) {
         let (target, source) = pair.split_once('-')?;
         let target: usize = target.parse().ok()?;

@@ -1,8 +1,8 @@
 //! The file form of joint maps.
 
 use gaitway::retarget::{
-    ClipRef, Feet, JointMapFile, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
-    RootPart, SourceRef, Unmapped,
+    ClipRef, Feet, JointMapFile, Keep, MapEntry, MutedChannel, MutedProperty, PathOrigin, RestChoice, RestChoices,
+    RootOptions, RootPart, SourceRef, Unmapped,
 };
 use glam::Quat;
 
@@ -14,7 +14,7 @@ const EXAMPLE: &str = r##"{ "gaitway_map": 1,
     "middle": { "source": null, "unmapped": { "clip": 0, "hold": "first-key" } } },
   "unmapped": "rest",
   "rest": { "model": "auto", "motion": "auto" },
-  "root": { "horizontal": "keep", "vertical": "keep", "yaw": "keep", "extract": false },
+  "root": { "horizontal": "keep", "vertical": "keep", "yaw": "keep", "extract": false, "origin": "rest" },
   "translations": "auto", "scales": "auto",
   "muted_channels": [ { "source": "free3dmodel_skeleton", "property": "translation" } ],
   "feet": "off", "contacts": "off", "crossfade_secs": 0 }"##;
@@ -125,6 +125,7 @@ fn written_maps_read_back_the_same() {
             vertical: RootPart::Freeze,
             yaw: RootPart::InPlace,
             extract: true,
+            origin: PathOrigin::Feet,
         },
         translations: Keep::Drop,
         scales: Keep::Keep,

@@ -1,9 +1,11 @@
 //! The rotation law on figures whose exact answer is known.
 
 use gaitway::anim::{Clip, Interpolation, Keys};
-use gaitway::asset::Slot;
-use gaitway::retarget::{Body, Keep, Pair, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart};
-use glam::{DQuat, DVec3, Quat};
+use gaitway::asset::{Asset, AssetParts, Slot};
+use gaitway::retarget::{
+    Body, Keep, Pair, PathOrigin, ResolvedMap, RestChoice, Retargeted, Retargeting, RootOptions, RootPart,
+};
+use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::figure::{Figure, Rig, build};
 
@@ -251,6 +253,37 @@ fn root_options_edit_the_hips_path() {
     let travels =
         |channel: &&gaitway::anim::Channel| channel.joint == armature && matches!(channel.keys, Keys::Translation(_));
     assert!(done.clip.channels().iter().any(|channel| travels(&channel)), "the root joint carries the travel");
+}
+
+/// The same dance by a figure that rests elsewhere.
+#[test]
+fn feet_are_where_the_sources_are_wherever_it_rests() {
+    let motion = dancer(&Rig::default(), Interpolation::Linear);
+    let mut aside = dancer(&Rig::default(), Interpolation::Linear);
+    let hips = aside.joint(Slot::Hips);
+    let mut rest = aside.asset.skeleton.rest().clone();
+    let mut local = rest.local(hips);
+    local.translation += Vec3::new(2.0, 0.0, 3.0);
+    rest.set_local(hips, local);
+    let parts = aside.asset.into_parts();
+    let skeleton = parts.skeleton.with_rest(&rest);
+    aside.asset = Asset::new(AssetParts { skeleton, ..parts }).unwrap();
+    // Of the same proportions, so that its feet can be in the same places.
+    let model = build(&Rig { axes: 6, size: 3.0, ..Rig::default() });
+    let feet = |figure: &Figure, clip: &Clip, time: f32| {
+        let world = figure.world(clip, time);
+        [Slot::LeftFoot, Slot::RightFoot].map(|slot| world[figure.joint(slot).get()].1)
+    };
+    for (origin, shift) in [(PathOrigin::Feet, DVec3::ZERO), (PathOrigin::Rest, DVec3::new(-6.0, 0.0, -9.0))] {
+        let options = RootOptions { origin, ..RootOptions::default() };
+        let done = retarget(&model, &aside, &ResolvedMap { root: options, ..map(&model, &aside) });
+        for time in [0.0, 0.4, 1.1, 1.5] {
+            let wanted = feet(&motion, &motion.asset.clips[0], time).map(|at| 3.0 * at + shift);
+            for (wanted, found) in wanted.into_iter().zip(feet(&model, &done.clip, time)) {
+                assert!(wanted.distance(found) < 1e-3, "{origin:?}: {wanted} and {found} at {time}");
+            }
+        }
+    }
 }
 
 #[test]

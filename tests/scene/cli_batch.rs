@@ -132,3 +132,34 @@ fn outputs_never_replace_inputs_or_each_other() {
     assert_eq!(fs::read(&motion).expect("a file"), before);
     assert!(!folder.join("out").exists());
 }
+
+#[test]
+fn motions_are_retargeted_to_several_models() {
+    let (folder, motion) = folder("models");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let (model, out) = (path("model.glb"), path("out"));
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--out"];
+    assert!(run(&[&retarget[..], &[&model]].concat()).status.success());
+    let call = |models: &[&str], status| {
+        let rest = ["--motion", &motion, "--out-dir", &out, "--clip-only"];
+        lines(&[&["retarget", "--model"], models, &rest].concat(), status)
+    };
+    let mut made = call(&["sample:walker", &model], 0);
+    made.sort_by_key(|line| line["out"].to_string());
+    let [other, walker] = &made[..] else { panic!("a line for each model: {made:?}") };
+    assert_eq!([&walker["model"], &other["model"]], ["sample:walker", &model]);
+    assert_eq!([&walker["out"], &other["out"]], [&path("out/walker/walk.glb"), &path("out/model/walk.glb")]);
+    let alone = path("alone.glb");
+    assert!(run(&[&retarget[..], &[&alone]].concat()).status.success());
+    assert_eq!(fs::read(path("out/walker/walk.glb")).expect("a file"), fs::read(alone).expect("a file"));
+    check_fails(
+        &["retarget", "--model", &model, &model, "--motion", &motion, "--out-dir", &out],
+        1,
+        "would both become",
+    );
+    check_fails(
+        &["retarget", "--model", &model, "sample:walker", "--motion", &motion, "--out", &path("one.glb")],
+        1,
+        "--model: expected one model, found 2",
+    );
+}

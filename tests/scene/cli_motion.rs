@@ -1,9 +1,11 @@
 //! The subcommands that use motions, as scripts use them.
 
-use crate::cli::{check_fails, document, run};
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
+
+use crate::cli::{check_fails, document, run};
+use crate::data_folder::data_folder;
 
 /// A humanoid of nine joints in BVH, walking in place, in centimetres.
 const BVH: &str = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
@@ -137,6 +139,7 @@ fn retarget_reports_the_documented_keys() {
         "foot_hover_metres_mean",
         "sole_penetration_metres_max",
         "largest_turn_degrees_per_frame",
+        "jerk_metres_per_sec3_mean",
         "self_penetration_share",
         "contact_error_metres_mean",
         "coverage",
@@ -407,4 +410,26 @@ fn layers_are_posed_and_written() {
     check_fails(&["pose", "sample:walker", "--layer", "Wave:weight:NaN"], 2, "expected a clip");
     check_fails(&["pose", "sample:walker", "--layer", "Wave:weight:2"], 2, "a weight from 0 to 1");
     check_fails(&["pose", "sample:walker", "--layer", "Wave:mask:4000"], 1, "found 4000");
+}
+
+#[test]
+fn contacts_are_kept_by_the_option_or_by_the_map() {
+    let Some(data) = data_folder() else { return };
+    let (folder, _) = folder("contacts");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let [model, motion] = ["khronos/CesiumMan/glTF-Binary/CesiumMan.glb", "bvh/assimp_Boxing_Toes.bvh"]
+        .map(|name| data.join(name).to_str().expect("a plain path").to_owned());
+    let (map, out) = (path("map.json"), path("out.glb"));
+    assert!(run(&["map", "--model", &model, "--motion", &motion, "--out", &map]).status.success());
+    let mut written: Value = serde_json::from_slice(&std::fs::read(&map).expect("a map")).expect("JSON");
+    written["contacts"] = json!("keep");
+    std::fs::write(&map, written.to_string()).expect("a file");
+    let made = |options: &[&str]| {
+        let call = ["retarget", "--model", &model, "--motion", &motion, "--clip-only", "--out", &out, "--json"];
+        let figures = document(&[&call[..], options].concat())["figures"].take();
+        (figures["contact_error_metres_mean"].as_f64().expect("contacts"), std::fs::read(&out).expect("a file"))
+    };
+    let (plain, kept) = (made(&[]), made(&["--contacts", "keep"]));
+    assert!(kept.0 < 0.6 * plain.0, "{} and {} m", plain.0, kept.0);
+    assert!(made(&["--map", &map]) == kept && made(&["--map", &map, "--contacts", "off"]) == plain);
 }

@@ -6,7 +6,8 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
     BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
-    MutedChannel, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    MutedChannel, PathOrigin, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
+    Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
@@ -376,7 +377,18 @@ fn a_plain_map_is_short_and_readable() {
         ..ViewerState::default()
     };
     assert_eq!(to_link(&state), "v=1&map=1.ffffffff.0-5,1-");
-    check_read("map=1.ffffffff.1-,0-5", state);
+    check_read("map=1.ffffffff.1-,0-5", state.clone());
+    // So does one as Gaitway proposes it.
+    let with = |root: RootOptions| {
+        let mut other = state.clone();
+        let [MotionMap::Numbers(numbered)] = &mut other.retarget.map[..] else { panic!("a map by numbers") };
+        numbered.map.root = root;
+        other
+    };
+    let proposed = RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() };
+    assert_eq!(to_link(&with(proposed)), "v=1&map=2.ffffffff.0-5,1-");
+    let edited = with(RootOptions { yaw: RootPart::Freeze, ..proposed });
+    check_read(&to_link(&edited), edited);
 }
 
 #[test]
@@ -390,6 +402,8 @@ fn parts_of_a_map_are_easy_to_write_manually() {
     check_read("root=keep", root(RootOptions::default()));
     let both = RootOptions { yaw: RootPart::Freeze, extract: true, ..RootOptions::default() };
     check_read("root=yaw:freeze,extract", root(both));
+    let at_feet = RootOptions { horizontal: RootPart::InPlace, origin: PathOrigin::Feet, ..RootOptions::default() };
+    check_read("root=in-place,origin:feet", root(at_feet));
     let clip = |clip, frozen| ViewerState {
         retarget: RetargetEdits { unmapped: Some(Unmapped::Clip { clip, frozen }), ..default.retarget.clone() },
         ..default.clone()

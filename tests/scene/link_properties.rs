@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, LayerMask, LayerMode, MapEntry, Pin, PinGoal,
-    PinTimes, RootOptions, RootPart, Unmapped,
+    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, LayerMask, LayerMode, MapEntry, PathOrigin,
+    Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
@@ -76,7 +76,8 @@ impl Random {
     fn root(&mut self) -> RootOptions {
         let parts = [RootPart::Keep, RootPart::InPlace, RootPart::Freeze];
         let (horizontal, vertical, yaw) = (self.one(&parts), self.one(&parts), self.one(&parts));
-        RootOptions { horizontal, vertical, yaw, extract: self.often() }
+        let origin = self.one(&[PathOrigin::Rest, PathOrigin::Feet]);
+        RootOptions { horizontal, vertical, yaw, extract: self.often(), origin }
     }
 
     fn map(&mut self) -> MotionMap {

@@ -18,7 +18,7 @@ use gaitway::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_j
 use gaitway::asset::{MeshInstance, Slot};
 use gaitway::mesh::{DeformedVertices, Geometry, Skin, SkinningMode, deform, write_palette};
 use gaitway::retarget::{Contacts, Figures, ResolvedMap, Retargeting};
-use glam::{Affine3A, Vec3, Vec3A};
+use glam::{Affine3A, Vec3};
 use people::{Loaded, load_people, planted, proposed};
 
 /// Dances and gestures, by which the limits in `retarget/contacts` were chosen: files, and their clips unless they have only one.
@@ -60,7 +60,6 @@ const OTHERS: [(&str, &str); 14] = [
 /// Figures of one clip, and the time that it took to bake.
 struct Row {
     figures: Figures,
-    jerk: f64,
     /// Independent of the solids: by winding numbers of the skinned mesh.
     inside_mesh: Option<f64>,
     millis: f64,
@@ -154,6 +153,7 @@ fn values(row: &Row) -> [Option<f64>; 8] {
         limb_direction_error_degrees_mean,
         foot_slide_metres_per_sec,
         largest_turn_degrees_per_frame,
+        jerk_metres_per_sec3_mean,
         ..
     } = row.figures;
     [
@@ -162,7 +162,7 @@ fn values(row: &Row) -> [Option<f64>; 8] {
         contact_error_metres_mean,
         limb_direction_error_degrees_mean,
         foot_slide_metres_per_sec,
-        Some(row.jerk),
+        jerk_metres_per_sec3_mean,
         largest_turn_degrees_per_frame,
         Some(row.millis),
     ]
@@ -176,12 +176,16 @@ fn row(model: &Loaded, motion: &Loaded, clip: usize, map: &ResolvedMap) -> Resul
     let mut figures = pair.figures(&made);
     // Models come in metres and in centimetres.
     let height = height(&model.asset.skeleton);
-    for length in [&mut figures.contact_error_metres_mean, &mut figures.foot_slide_metres_per_sec] {
+    let lengths = [
+        &mut figures.contact_error_metres_mean,
+        &mut figures.foot_slide_metres_per_sec,
+        &mut figures.jerk_metres_per_sec3_mean,
+    ];
+    for length in lengths {
         *length = length.map(|length| 1.7 * length / height);
     }
-    let jerk = 1.7 * jerk(&model.asset.skeleton, &made.clip, map) / height;
     let inside_mesh = mesh_penetration(model, &made.clip);
-    Ok(Row { figures, jerk, inside_mesh, millis, secs: f64::from(made.clip.duration_secs()) })
+    Ok(Row { figures, inside_mesh, millis, secs: f64::from(made.clip.duration_secs()) })
 }
 
 fn height(skeleton: &Skeleton) -> f64 {
@@ -192,24 +196,6 @@ fn height(skeleton: &Skeleton) -> f64 {
         values.clone().fold(f32::MIN, f32::max) - values.fold(f32::MAX, f32::min)
     };
     f64::from(size(1).max(size(2)).max(1e-6))
-}
-
-/// Mean of the third derivative of the mapped joints' positions, at 60 frames per second.
-fn jerk(skeleton: &Skeleton, clip: &Clip, map: &ResolvedMap) -> f64 {
-    let (mut pose, mut cursor, mut world) = (Pose::default(), SampleCursor::default(), Vec::new());
-    let mut frames: Vec<Vec<Vec3A>> = Vec::new();
-    for frame in 0..=(clip.duration_secs() * 60.0) as usize {
-        pose.copy_from(skeleton.rest());
-        clip.sample(skeleton, frame as f32 / 60.0, &mut cursor, &mut pose);
-        model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
-        frames.push(map.pairs.iter().map(|pair| world[pair.target.get()].translation).collect());
-    }
-    let jerks = frames.windows(4).flat_map(|four| {
-        (0..four[0].len())
-            .map(|at| f64::from((four[3][at] - 3.0 * four[2][at] + 3.0 * four[1][at] - four[0][at]).length()))
-    });
-    let (sum, count) = jerks.fold((0.0, 0), |(sum, count), jerk| (sum + jerk, count + 1));
-    sum / f64::from(count.max(1)) * 60.0_f64.powi(3)
 }
 
 /// Regions of the body, and the slots in them that are limb ends.

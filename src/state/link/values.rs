@@ -11,7 +11,7 @@ use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipRef, Contacts, Feet, JointMapFile, RootOptions, RootPart, Unmapped};
+use crate::retarget::{ClipRef, Contacts, Feet, JointMapFile, PathOrigin, RootOptions, RootPart, Unmapped};
 use crate::state::{
     Background, CameraChoice, Channel, ClipChoice, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
     VertexChoice,
@@ -185,7 +185,7 @@ pub(super) fn map_text(map: &MotionMap) -> String {
 pub(super) fn read_map(text: &str) -> Option<MotionMap> {
     if text.starts_with('{') {
         JointMapFile::from_json(text).is_ok().then(|| MotionMap::Names(text.to_owned()))
-    } else if text.starts_with(map_code::MARK) {
+    } else if map_code::is_code(text) {
         map_code::decode(text).map(MotionMap::Numbers)
     } else {
         (!text.is_empty()).then(|| MotionMap::File(text.to_owned()))
@@ -222,12 +222,14 @@ pub(super) fn read_unmapped(text: &str) -> Option<Unmapped> {
     Some(Unmapped::Clip { clip, frozen })
 }
 
-/// Writes `horizontal:PART,vertical:PART,yaw:PART,extract`, leaving out defaults; `keep` if nothing is left.
+/// Writes `horizontal:PART,vertical:PART,yaw:PART,extract,origin:feet`, leaving out defaults; `keep` if nothing is left.
 pub(super) fn root_text(root: &RootOptions) -> String {
     let parts = [("horizontal", root.horizontal), ("vertical", root.vertical), ("yaw", root.yaw)];
     let parts = parts.into_iter().filter(|(_, part)| *part != RootPart::Keep);
     let words = parts.map(|(name, part)| format!("{name}:{}", word_of(&ROOT_PARTS, &part)));
-    let text = joined(words.chain(root.extract.then(|| "extract".to_owned())));
+    let extract = root.extract.then_some("extract");
+    let origin = (root.origin == PathOrigin::Feet).then_some("origin:feet");
+    let text = joined(words.chain(extract.into_iter().chain(origin).map(str::to_owned)));
     if text.is_empty() { "keep".to_owned() } else { text }
 }
 
@@ -236,19 +238,23 @@ pub(super) fn read_root(text: &str) -> Option<RootOptions> {
     let mut root = RootOptions::default();
     for word in text.split(',').map(str::trim) {
         let (name, part) = word.split_once(':').unwrap_or(("horizontal", word));
-        if word == "extract" {
-            root.extract = true;
-            continue;
+        match word {
+            "extract" => root.extract = true,
+            "origin:rest" => root.origin = PathOrigin::Rest,
+            "origin:feet" => root.origin = PathOrigin::Feet,
+            _ => *part_named(&mut root, name)? = from_word(&ROOT_PARTS, part)?,
         }
-        let slot = match name {
-            "horizontal" => &mut root.horizontal,
-            "vertical" => &mut root.vertical,
-            "yaw" => &mut root.yaw,
-            _ => return None,
-        };
-        *slot = from_word(&ROOT_PARTS, part)?;
     }
     Some(root)
+}
+
+fn part_named<'a>(root: &'a mut RootOptions, name: &str) -> Option<&'a mut RootPart> {
+    match name {
+        "horizontal" => Some(&mut root.horizontal),
+        "vertical" => Some(&mut root.vertical),
+        "yaw" => Some(&mut root.yaw),
+        _ => None,
+    }
 }
 
 pub(super) fn range_text(range: &TimeRange) -> String {

@@ -7,7 +7,7 @@ use egui::{RichText, Ui};
 use super::{Contents, Pairing};
 use crate::editor::{ClipFormat, Export, derived_clip};
 use crate::retarget::{
-    ClipRef, Contacts, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
+    ClipRef, Contacts, Feet, JointMap, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
 };
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::widgets::controls::{self, capitals};
@@ -15,6 +15,8 @@ use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
+
+const ORIGINS: [(PathOrigin, &str); 2] = [(PathOrigin::Feet, text::FEET), (PathOrigin::Rest, text::REST)];
 
 const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, text::AUTOMATIC), (Keep::Keep, text::KEEP), (Keep::Drop, text::DROP)];
 
@@ -102,6 +104,14 @@ fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
         out.commands.push(set(RootOptions { horizontal, ..root }));
     }
     controls::hint(ui, "In place: the character walks on the spot and still sways.");
+    controls::section(ui, capitals!(text::ROOT_ORIGIN));
+    if let Some(origin) = controls::segmented_about(ui, text::ROOT_ORIGIN, Some(root.origin), &ORIGINS) {
+        out.commands.push(set(RootOptions { origin, ..root }));
+    }
+    controls::hint(
+        ui,
+        "Feet: they are where the motion's are, at the model's size. Rest: the path starts at the model's rest.",
+    );
     controls::section(ui, capitals!(text::ROOT_VERTICAL));
     if let Some(vertical) = controls::segmented_about(ui, text::ROOT_VERTICAL, Some(root.vertical), &PARTS) {
         out.commands.push(set(RootOptions { vertical, ..root }));

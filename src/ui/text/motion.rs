@@ -212,6 +212,10 @@ pub const FREEZE: &str = "Freeze";
 pub const CROSSFADE: &str = "Crossfade";
 /// Choice of what happens to the root's horizontal travel.
 pub const ROOT_HORIZONTAL: &str = "Root motion: horizontal";
+/// Choice of where the root's path lies.
+pub const ROOT_ORIGIN: &str = "Root motion: origin";
+/// Option: the root's path lies where the motion's feet are.
+pub const FEET: &str = "Feet";
 /// Choice of what happens to the root's vertical travel.
 pub const ROOT_VERTICAL: &str = "Root motion: vertical";
 /// Choice of what happens to the root's yaw.

@@ -6,7 +6,7 @@ use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::Contents;
 use gaitway::files::{Role, read_paths};
 use gaitway::library::{Library, Motion};
-use gaitway::retarget::{ClipRef, Contacts, Feet, Keep, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway::retarget::{ClipRef, Contacts, Feet, Keep, PathOrigin, RestChoice, RootOptions, RootPart, Unmapped};
 use gaitway::samples;
 use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
@@ -20,13 +20,15 @@ use crate::skeletons;
 fn options_set_root_motion_foot_planting_and_rest_poses() {
     let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
-    let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
+    let mut root = RootOptions { horizontal: RootPart::InPlace, origin: PathOrigin::Feet, ..RootOptions::default() };
     assert_eq!(
         press(&mut harness, &text::labelled(text::ROOT_HORIZONTAL, text::IN_PLACE)),
         [Command::SetRoot(Some(root))]
     );
+    root.origin = PathOrigin::Rest;
+    assert_eq!(reach(&mut harness, &text::labelled(text::ROOT_ORIGIN, text::REST)), [Command::SetRoot(Some(root))]);
     root.yaw = RootPart::Freeze;
-    assert_eq!(press(&mut harness, &text::labelled(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
+    assert_eq!(reach(&mut harness, &text::labelled(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
     root.extract = true;
     assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));

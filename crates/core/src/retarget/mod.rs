@@ -52,8 +52,8 @@ pub use change::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 pub use feet::Planting;
 pub use map::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
-    Pair, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
-    opposite_joints, propose, propose_recognized,
+    Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
+    Unmapped, opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};

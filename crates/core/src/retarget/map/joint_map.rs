@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::Quat;
 use serde::{Deserialize, Serialize};
 
-use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
+use super::options::{Contacts, Feet, Keep, PathOrigin, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
 
 /// A joint map for one model and one motion. Joints without an entry have no source.
@@ -84,6 +84,12 @@ pub enum MutedProperty {
 }
 
 impl JointMap {
+    /// A map without joints, with the options that Gaitway proposes. Where files and links leave one out, [`Self::default`] holds,
+    /// which never changes.
+    pub fn with_proposed_options() -> Self {
+        Self { root: RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() }, ..Self::default() }
+    }
+
     /// The source of a target joint. None if the map does not mention the joint, `Some(None)` if it is deliberately without
     /// one.
     pub fn source_of(&self, target: usize) -> Option<Option<usize>> {

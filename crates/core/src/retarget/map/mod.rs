@@ -18,7 +18,7 @@ pub use error::MapError;
 pub use file::{JointMapFile, SourceRef};
 pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
 pub use opposite::opposite_joints;
-pub use options::{Contacts, Feet, Keep, RestChoice, RestChoices, RootOptions, RootPart};
+pub use options::{Contacts, Feet, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart};
 pub use propose::{Proposal, ProposedPair, propose, propose_recognized};
 pub use resolved::{Layer, Pair, ResolvedMap};
 pub(super) use shared_names::shared_names;

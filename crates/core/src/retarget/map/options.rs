@@ -46,6 +46,20 @@ pub struct RootOptions {
     /// Moves the horizontal travel and the turning that are kept from the hips to their parent. No effect if they have
     /// no parent or it has a source.
     pub extract: bool,
+    /// Where the path of the hips lies on the ground plane.
+    pub origin: PathOrigin,
+}
+
+/// Which points of the two skeletons coincide on the ground plane once the source is scaled about the origin, as `keep` leaves
+/// the path.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathOrigin {
+    /// The hips at rest, wherever the two rests are.
+    #[default]
+    Rest,
+    /// The feet, as they stand below the hips at rest. The same as `Rest` unless both skeletons have two feet that hang from legs.
+    Feet,
 }
 
 /// What happens to one component of the root motion.

@@ -262,6 +262,6 @@ impl Proposal {
         };
         let open = self.unmapped_targets.iter().filter(|_| self.pairs.is_empty());
         let open = open.map(|&joint| (model.skeleton.source_index(joint), MapEntry::following(None)));
-        JointMap { joints: self.pairs.iter().map(entry).chain(open).collect(), ..JointMap::default() }
+        JointMap { joints: self.pairs.iter().map(entry).chain(open).collect(), ..JointMap::with_proposed_options() }
     }
 }

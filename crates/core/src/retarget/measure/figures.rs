@@ -5,7 +5,7 @@ use glam::DQuat;
 use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
-use super::turn::largest_turn_degrees;
+use super::smoothness::smoothness;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
@@ -48,6 +48,9 @@ pub struct Figures {
     pub sole_penetration_metres_max: Option<f64>,
     /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
     pub largest_turn_degrees_per_frame: Option<f64>,
+    /// Mean length of the third derivative of the mapped joints' positions in model space, at 60 frames per second of the finished
+    /// clip.
+    pub jerk_metres_per_sec3_mean: Option<f64>,
     /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
     /// parts are solids fitted to the mesh; `None` without one.
     pub self_penetration_share: Option<f64>,
@@ -154,7 +157,7 @@ pub fn measure(
     }
     let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
     let sole_penetration = depths.reduce(f64::max);
-    let largest_turn = largest_turn_degrees(transfer.target_skeleton, pairs, measured.clip);
+    let smoothness = smoothness(transfer.target_skeleton, pairs, measured.clip);
     let (contacts, tracks) = foot_tracks(transfer, &times, feet);
     let figures = Figures {
         limb_direction_error_degrees_mean: direction.mean(),
@@ -168,7 +171,8 @@ pub fn measure(
         ground_penetration_metres_max: penetration,
         foot_hover_metres_mean: contacts.hover,
         sole_penetration_metres_max: sole_penetration,
-        largest_turn_degrees_per_frame: largest_turn,
+        largest_turn_degrees_per_frame: smoothness.largest_turn_degrees,
+        jerk_metres_per_sec3_mean: smoothness.jerk_mean,
         self_penetration_share: touches.self_penetration_share(),
         contact_error_metres_mean: touches.contact_error(),
         coverage: coverage(transfer.map, source_slots, target_slots),

@@ -2,8 +2,8 @@
 
 mod figures;
 mod foot_track;
+mod smoothness;
 mod stage;
-mod turn;
 mod verdict;
 
 pub use figures::{Figures, MeasuredClip, measure};

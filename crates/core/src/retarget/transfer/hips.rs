@@ -7,7 +7,7 @@ use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::Alignment;
 use crate::retarget::keys::resample::union;
 use crate::retarget::keys::tracks::SourceTracks;
-use crate::retarget::map::ResolvedMap;
+use crate::retarget::map::{PathOrigin, ResolvedMap};
 use crate::retarget::pose::ancestry;
 
 const LEGS: [Slot; 8] = [
@@ -31,9 +31,9 @@ pub struct Hips {
     pub pair: usize,
     /// Target units per source unit.
     pub scale: f64,
-    /// Origin of the source's path, in source units.
+    /// A point of the source's path, in source units: the hips at rest, on the ground plane relative to the feet if the map says so.
     pub source_rest: DVec3,
-    /// Where the target is when the source is at its origin, in target units.
+    /// Where the target is when the source is at `source_rest`, in target units.
     pub target_rest: DVec3,
     /// Height of the target's hips above the ground at the aligned rest, in target units.
     pub height: f64,
@@ -73,10 +73,10 @@ pub struct HipsInput<'a> {
 /// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
 /// ancestor and whose source travels stands in for them.
 pub fn match_hips(input: HipsInput) -> Option<Hips> {
-    let HipsInput { map, alignment, source_slots, target_slots, .. } = input;
+    let HipsInput { map, alignment, tracks, target_skeleton, source_slots, target_slots } = input;
     let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
     let mut source_rest = alignment.source.position(map.pairs[pair].source);
-    let target_rest = alignment.target.position(map.pairs[pair].target);
+    let mut target_rest = alignment.target.position(map.pairs[pair].target);
     // Compare the same joints on both sides: a rig without toes does not have shorter legs.
     let both = |slot: &Slot| Some((source_slots.joint(*slot)?, target_slots.joint(*slot)?));
     let legs: Vec<(JointIndex, JointIndex)> = LEGS.iter().filter_map(both).collect();
@@ -91,6 +91,13 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     if rests_in_the_ground(input, pair, &source_legs, source_ground) {
         source_rest.y -= source_ground;
     }
+    if map.root.origin == PathOrigin::Feet
+        && let Some(source_feet) = between_feet(tracks.skeleton, source_slots, |joint| alignment.source.position(joint))
+        && let Some(target_feet) = between_feet(target_skeleton, target_slots, |joint| alignment.target.position(joint))
+    {
+        source_rest -= source_feet.with_y(0.0);
+        target_rest -= target_feet.with_y(0.0);
+    }
     Some(Hips {
         pair,
         scale: if is_usable { height / source_height } else { 1.0 },
@@ -98,6 +105,16 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
         target_rest,
         height: height.max(1e-9),
     })
+}
+
+/// The point halfway between both feet. None if they don't hang from their legs, which the aligned rest turns.
+fn between_feet(skeleton: &Skeleton, slots: &Humanoid, position: impl Fn(JointIndex) -> DVec3) -> Option<DVec3> {
+    let sides = [(Slot::LeftUpperLeg, Slot::LeftFoot), (Slot::RightUpperLeg, Slot::RightFoot)];
+    let [left, right] = sides.map(|(leg, foot)| {
+        let (leg, foot) = (slots.joint(leg)?, slots.joint(foot)?);
+        ancestry(skeleton, foot).any(|joint| joint == leg).then(|| position(foot))
+    });
+    Some(left?.midpoint(right?))
 }
 
 fn travelling_pair(input: HipsInput) -> Option<usize> {
