@@ -33,24 +33,33 @@ struct Job {
     out: PathBuf,
 }
 
+struct BatchModel {
+    opened: Opened,
+    /// Its files, and that of the map.
+    files: Vec<PathBuf>,
+}
+
 /// Shared by all jobs.
 struct Batch<'a> {
     arguments: &'a RetargetArguments,
     /// One for each path in the arguments.
-    models: Vec<Opened>,
+    models: Vec<BatchModel>,
     map: Option<OpenedMap>,
     format: ClipFormat,
-    /// The files of the models and the map.
-    shared_files: Vec<PathBuf>,
 }
 
 pub(super) fn run(arguments: &RetargetArguments, folder: &Path, disk: &Disk) -> Outcome {
-    let models = arguments.model.chunks(1).map(|path| open(path, disk)).collect::<Outcome<_>>()?;
     let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
+    let opened = |path| {
+        let own = Disk::default();
+        let opened = open(std::slice::from_ref(path), &own)?;
+        Ok(BatchModel { opened, files: [own.files_read(), disk.files_read()].concat() })
+    };
+    let models = arguments.model.iter().map(opened).collect::<Outcome<Vec<BatchModel>>>()?;
     let format = arguments.format.map_or(ClipFormat::Glb, Into::into);
     let jobs = jobs(arguments, folder, format)?;
-    refuse_inputs(&jobs, disk)?;
-    let batch = Batch { arguments, models, map, format, shared_files: disk.files_read() };
+    refuse_inputs(&jobs, models.iter().flat_map(|model| model.files.iter().cloned()))?;
+    let batch = Batch { arguments, models, map, format };
     let workers = arguments.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let progress = Progress::new(jobs.len());
     let next = AtomicUsize::new(0);
@@ -82,7 +91,7 @@ impl Batch<'_> {
         let model = name(&self.arguments.model[job.model]);
         let mut line = json!({ "model": model, "motion": name(&job.motion), "out": name(&job.out) });
         if self.is_up_to_date(job) {
-            line["skipped"] = json!("the output is newer than the motion, the models and the map");
+            line["skipped"] = json!("the output is newer than the motion, the model and the map");
             return (line, Ended::Skipped);
         }
         match self.write(job) {
@@ -103,13 +112,13 @@ impl Batch<'_> {
     /// archive, may have changed.
     fn is_up_to_date(&self, job: &Job) -> bool {
         let Some(written) = modified(&job.out) else { return false };
-        let mut inputs = self.shared_files.iter().chain([&job.motion]);
+        let mut inputs = self.models[job.model].files.iter().chain([&job.motion]);
         inputs.all(|path| modified(path).is_some_and(|changed| changed < written))
     }
 
     fn write(&self, job: &Job) -> Outcome<Made> {
         let motion = read_motion(&job.motion, &Disk::default())?;
-        let opened = &self.models[job.model];
+        let opened = &self.models[job.model].opened;
         let made = make(&self.arguments.choices, &opened.model, &motion, self.map.as_ref())?;
         let bytes = clip_file(opened, &made, self.arguments.clip_only, self.format)?;
         if let Some(folder) = job.out.parent() {
@@ -157,7 +166,7 @@ fn jobs(arguments: &RetargetArguments, folder: &Path, format: ClipFormat) -> Out
             if other == file {
                 continue;
             }
-            return Err(same_output(&other, &file, &folder.join(relative)));
+            return Err(same_output(&other, &file, &folders[0].join(relative)));
         }
         let of_model =
             |(model, folder): (usize, &PathBuf)| Job { model, motion: file.clone(), out: folder.join(&relative) };
@@ -174,8 +183,10 @@ fn model_folders(models: &[PathBuf], folder: &Path) -> Outcome<Vec<PathBuf>> {
     let mut folders: Vec<PathBuf> = Vec::new();
     for model in models {
         let name = model.file_stem().unwrap_or_default().to_string_lossy();
-        let own = folder.join(name.trim_start_matches("sample:"));
-        if let Some(other) = folders.iter().position(|folder| *folder == own) {
+        let own = folder.join(name.strip_prefix("sample:").unwrap_or(&name));
+        // Some file systems don't tell capitals apart.
+        let lower = |path: &Path| path.to_string_lossy().to_lowercase();
+        if let Some(other) = folders.iter().position(|folder| lower(folder) == lower(&own)) {
             return Err(same_output(&models[other], model, &own));
         }
         folders.push(own);
@@ -188,11 +199,10 @@ fn same_output(one: &Path, other: &Path, out: &Path) -> Failure {
     Failure::new(problem).with_hint("retarget them to different folders")
 }
 
-/// Refuses outputs that are inputs, before anything is written.
-fn refuse_inputs(jobs: &[Job], disk: &Disk) -> Outcome {
+/// Refuses outputs that are inputs, before anything is written. `files` are those of the models and the map.
+fn refuse_inputs(jobs: &[Job], files: impl Iterator<Item = PathBuf>) -> Outcome {
     let motions = jobs.iter().map(|job| job.motion.clone());
-    let inputs: BTreeSet<PathBuf> =
-        disk.files_read().into_iter().chain(motions).filter_map(|path| fs::canonicalize(path).ok()).collect();
+    let inputs: BTreeSet<PathBuf> = files.chain(motions).filter_map(|path| fs::canonicalize(path).ok()).collect();
     let is_input = |job: &&Job| fs::canonicalize(&job.out).is_ok_and(|path| inputs.contains(&path));
     match jobs.iter().find(is_input) {
         Some(job) => Err(Failure::new("this output is one of the inputs").in_file(job.out.display())),
@@ -257,7 +267,7 @@ impl Progress {
             return Err(failure);
         }
         if failed > 0 {
-            return Err(Failure::new(format!("{failed} of {} motions failed; their lines say why", self.total)));
+            return Err(Failure::new(format!("{failed} of {} results failed; their lines say why", self.total)));
         }
         Ok(())
     }

@@ -142,7 +142,7 @@ struct MapArguments {
 
 #[derive(Debug, Args)]
 struct RetargetArguments {
-    /// The model to animate. With --out-dir, any number of models, each with a folder of its own there.
+    /// The model to animate. With --out-dir, any number of models; each one's results are in a folder of its name there.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     model: Vec<PathBuf>,
     /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz. With --out-dir, any number of files, folders
@@ -204,7 +204,8 @@ struct RetargetOptions {
     /// Extracts root motion to the joint above the hips.
     #[arg(long)]
     extract_root: bool,
-    /// What the path is scaled from on the ground: the hips at rest, or the feet [default: as the map says; feet without one].
+    /// How the path is placed on the ground: `feet` puts the model's feet where the motion's are, scaled about the origin; `rest`
+    /// measures the path from both rest poses [default: as the map says; feet without one].
     #[arg(long, value_enum)]
     origin: Option<OriginArgument>,
     /// Foot planting.

@@ -22,8 +22,18 @@ pub struct Contents {
     pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
-    /// What was not understood of the link whose view is opened.
-    pub link_errors: Vec<LinkError>,
+    /// About the link whose view is opened.
+    pub link: AboutLink,
+}
+
+/// What is known of a link besides the view that it describes.
+#[derive(Debug, Default)]
+pub struct AboutLink {
+    /// What was not understood of it.
+    pub errors: Vec<LinkError>,
+    /// It still waits for some of its files. Until they are there, nothing is said about what it names and the model lacks, and
+    /// the first clip stands in for an unknown one.
+    pub is_partial: bool,
 }
 
 /// A joint map that was just read.

@@ -18,7 +18,7 @@ mod suit;
 mod validation;
 
 pub use clip_file::{ClipFormat, write_clip};
-pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
+pub use contents::{AboutLink, Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
 #[cfg(feature = "viewer")]
 pub(crate) use export::AWAITS_IMAGES;
@@ -33,8 +33,8 @@ use serde_json::Value;
 
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
-    Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
-    view_problems,
+    ClipChoice, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
+    unknown_clip, view_problems,
 };
 use motions::ClipIdentity;
 use open::Shelved;
@@ -57,7 +57,7 @@ pub struct Editor {
     /// Name of the joint map's file while it is being opened.
     opened_map: Option<String>,
     /// What was not understood of a link while its view is being opened.
-    link_errors: Vec<LinkError>,
+    link: AboutLink,
     /// A joint map was opened from the user's local files.
     has_private_map: bool,
     /// Errors about retargeted clips that have been reported.
@@ -91,7 +91,7 @@ impl Editor {
             refused: Vec::new(),
             waiting_clip: None,
             opened_map: None,
-            link_errors: Vec::new(),
+            link: AboutLink::default(),
             has_private_map: false,
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
@@ -241,7 +241,13 @@ impl Editor {
 
     /// Tells all that is wrong with a view that was just applied, and `problems` of retargeting.
     pub(super) fn report_view(&mut self, view: &ViewerState, problems: Vec<String>) {
-        let mut errors = std::mem::take(&mut self.link_errors);
+        let AboutLink { mut errors, is_partial } = std::mem::take(&mut self.link);
+        if is_partial {
+            if self.library.active().is_some_and(|model| unknown_clip(model, &self.state).is_some()) {
+                self.state.playhead.clip = ClipChoice::First;
+            }
+            return;
+        }
         errors.extend(view_problems(view, self.library.active()));
         self.tell(&errors, problems);
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::motions::{ClipIdentity, without_still};
 use super::names::is_obj;
-use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
+use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::asset::{Asset, Warning};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::state::{
@@ -57,15 +57,14 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, link_errors } =
-            contents;
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, link } = contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
         self.opened_map = map.as_ref().map(|opened| opened.name.clone());
         self.has_private_map |= is_map_private;
         self.refused.clear();
-        self.link_errors = link_errors;
+        self.link = link;
         let opened = match motions {
             motions if has_models => {
                 // A view's motions stay as it names them.
@@ -95,7 +94,7 @@ impl Editor {
             },
         };
         self.opened_map = None;
-        self.link_errors.clear();
+        self.link = AboutLink::default();
         if opened.is_ok()
             && let Some(environment) = environment
         {

@@ -11,11 +11,19 @@ use super::maps::{MotionMap, NumberedMap};
 use crate::retarget::{JointMap, JointMapFile, MapEntry, PathOrigin, RootOptions};
 
 /// What a code of this form begins with, by the origin of the map's path.
-const MARKS: [(&str, PathOrigin); 2] = [("1.", PathOrigin::Rest), ("2.", PathOrigin::Feet)];
+const fn mark(origin: PathOrigin) -> &'static str {
+    match origin {
+        PathOrigin::Rest => "1.",
+        PathOrigin::Feet => "2.",
+    }
+}
 
-/// Whether a text may be a code of this form.
+/// Whether a text is meant as a code. Otherwise it is a URL, in older links also if it begins with 2.
 pub(super) fn is_code(text: &str) -> bool {
-    MARKS.iter().any(|(mark, _)| text.starts_with(mark))
+    let has_checksum = |rest: &str| {
+        rest.bytes().take(9).filter(u8::is_ascii_hexdigit).count() == 8 && rest.as_bytes().get(8) == Some(&b'.')
+    };
+    text.starts_with(mark(PathOrigin::Rest)) || text.strip_prefix(mark(PathOrigin::Feet)).is_some_and(has_checksum)
 }
 
 /// What a code leaves out.
@@ -45,8 +53,7 @@ pub(super) fn encode(numbered: &NumberedMap) -> String {
         !is_plain
     });
     let origin = rest.root.origin;
-    let mark = MARKS.iter().find(|(_, other)| *other == origin).map_or("", |(mark, _)| mark);
-    let mut code = format!("{mark}{:08x}.{}", numbered.checksum, pairs.join(","));
+    let mut code = format!("{}{:08x}.{}", mark(origin), numbered.checksum, pairs.join(","));
     if rest != defaults(origin) {
         code.push('.');
         code.push_str(&URL_SAFE_NO_PAD.encode(without_defaults(&rest).to_string()));
@@ -83,7 +90,8 @@ fn shorten(value: &mut Value) {
 
 /// Returns None for any other text.
 pub(super) fn decode(code: &str) -> Option<NumberedMap> {
-    let (code, origin) = MARKS.iter().find_map(|&(mark, origin)| Some((code.strip_prefix(mark)?, origin)))?;
+    let marked = |origin| Some((code.strip_prefix(mark(origin))?, origin));
+    let (code, origin) = marked(PathOrigin::Rest).or_else(|| marked(PathOrigin::Feet))?;
     let mut parts = code.split('.');
     let (checksum, pairs, rest) = (parts.next()?, parts.next()?, parts.next());
     if parts.next().is_some() || checksum.len() != 8 || checksum.starts_with('+') {

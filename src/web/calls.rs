@@ -13,14 +13,14 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::page::{Cancel, Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
-use crate::editor::{Contents, short_name};
+use crate::editor::{AboutLink, Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
 use crate::samples;
 use crate::state::{
-    EnvironmentChoice, LinkError, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
+    EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
 };
 use crate::ui::{Progress, text, title_and_hint};
 
@@ -43,13 +43,13 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
     Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
 }
 
-/// Opens a link, given the part after `#`. Loads its files if they differ from the loaded ones, or all of them with `reload`.
+/// Opens a link, given the part after `#`, as far as it can be shown without the files that it waits for. Loads its files if they differ from the loaded ones, or all of them with `reload`.
 /// Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
 #[wasm_bindgen]
 pub async fn follow_link(link: String, reload: bool) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
-    let (state, errors) = state_of_link(&link);
-    Ok(open_state(&page, state, reload, Some(errors)).await?)
+    let (state, about_link) = state_of_link(&link);
+    Ok(open_state(&page, state, reload, Some(about_link)).await?)
 }
 
 /// Sets some keys of the link; resolves like [`follow_link`], after the frame that shows the result.
@@ -260,11 +260,11 @@ async fn open_state(
     page: &Rc<Page>,
     state: ViewerState,
     reload: bool,
-    link_errors: Option<Vec<LinkError>>,
+    link: Option<AboutLink>,
 ) -> Result<String, Refusal> {
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
-        let contents = Contents { link_errors: link_errors.unwrap_or_default(), ..Contents::default() };
+        let contents = Contents { link: link.unwrap_or_default(), ..Contents::default() };
         let (contents, state) = (Box::new(contents), Some(Box::new(state)));
         page.inbox.send(Message::Opened { contents, state, is_change: false, reply: None });
         return Ok(report(&[], &[]));
@@ -276,7 +276,7 @@ async fn open_state(
     let motions =
         state.sources.motion.iter().filter(|source| !current_motions.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
-    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, link_errors };
+    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, link };
     let opened = load(page, request).await?;
     Ok(report(&loaded, &opened.problems))
 }
@@ -289,14 +289,14 @@ fn report(loaded: &[String], problems: &[String]) -> String {
 enum Request {
     /// Files; as much of the current state as fits is kept.
     Items { items: Vec<Item>, role: Role, is_private: bool, is_by_hand: bool },
-    /// A whole view, with its model or on the active one. For a link, given with what was not understood of it, the shell reports
-    /// what is missing.
+    /// A whole view, with its model or on the active one. For a link, given with what is known of it, the shell reports what
+    /// is missing.
     View {
         state: Box<ViewerState>,
         with_model: bool,
         current_motions: Vec<Motion>,
         environments: Vec<Environment>,
-        link_errors: Option<Vec<LinkError>>,
+        link: Option<AboutLink>,
     },
 }
 
@@ -321,7 +321,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
         }
         latest.replace(progress_of(name, received_bytes, total_bytes));
     };
-    let shell_reports = matches!(request, Request::View { link_errors: Some(_), .. });
+    let shell_reports = matches!(request, Request::View { link: Some(_), .. });
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
@@ -329,11 +329,11 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
                 let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
                 contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
             }
-            Request::View { state, with_model, current_motions, environments, link_errors } => {
+            Request::View { state, with_model, current_motions, environments, link } => {
                 let held = Held { motions: &current_motions, environments: &environments };
                 let opened = open_view(*state, with_model, held, &progress, None).await;
-                let link_errors = link_errors.unwrap_or_default();
-                opened.map(|(contents, state)| (Contents { link_errors, ..contents }, Some(Box::new(state))))
+                let link = link.unwrap_or_default();
+                opened.map(|(contents, state)| (Contents { link, ..contents }, Some(Box::new(state))))
             }
         }
     };

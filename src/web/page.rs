@@ -16,11 +16,11 @@ use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
-use crate::editor::{Contents, ExportedFile, short_name};
+use crate::editor::{AboutLink, Contents, ExportedFile, short_name};
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Model, ModelId};
 use crate::samples;
-use crate::state::{EnvironmentChoice, LinkError, ViewerState, from_link, to_link};
+use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missing, to_link};
 
 /// A running instance on its canvas.
 pub(super) struct Page {
@@ -79,7 +79,7 @@ pub async fn run(
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
     let first: Rc<RefCell<Option<First>>> = Rc::default();
-    let (wanted, link_errors) = state_of_link(&link);
+    let (wanted, about_link) = state_of_link(&link);
     let all = {
         let (shell, early) = (shell.clone(), first.clone());
         Box::pin(async move { first_contents(wanted, items, motion_items, is_private, &shell, &early).await })
@@ -104,7 +104,7 @@ pub async fn run(
         let page = page()?;
         let name = contents.models.first().map(|opened| short_name(&opened.model.source));
         let shown = with_app(&page, |app| {
-            let contents = Contents { problems: missing, link_errors, ..contents };
+            let contents = Contents { problems: missing, link: about_link, ..contents };
             let problems = app.open_link(contents, state)?;
             Ok::<_, String>((app.library().active().map(|model| model.id), problems))
         });
@@ -240,9 +240,11 @@ async fn open_fallback(
 }
 
 /// Reads a link, and what is not understood of it.
-pub(super) fn state_of_link(link: &str) -> (ViewerState, Vec<LinkError>) {
-    let (state, errors) = from_link(link);
-    (state.or_sample(samples::WALKER), errors)
+/// Reads as much of a link as can be shown without the files that it waits for.
+pub(super) fn state_of_link(link: &str) -> (ViewerState, AboutLink) {
+    let shown = link_without_missing(link);
+    let (state, errors) = from_link(&shown);
+    (state.or_sample(samples::WALKER), AboutLink { errors, is_partial: shown != link })
 }
 
 pub(super) fn page() -> Result<Rc<Page>, String> {

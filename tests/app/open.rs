@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use gaitway::app::Message;
-use gaitway::editor::{ClipFormat, Contents};
+use gaitway::editor::{AboutLink, ClipFormat, Contents};
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, from_link, to_link};
 use gaitway::ui::{Tab, text};
@@ -241,7 +241,11 @@ fn a_link_tells_all_that_is_wrong_with_it_once() {
     let mut told = |missing: &[&str]| {
         let (view, link_errors) = from_link(link);
         let problems = missing.iter().map(|problem| (*problem).to_owned()).collect();
-        let contents = Box::new(Contents { problems, link_errors, ..Contents::default() });
+        let contents = Box::new(Contents {
+            problems,
+            link: AboutLink { errors: link_errors, is_partial: false },
+            ..Contents::default()
+        });
         let opened = Rc::new(RefCell::new(None));
         let slot = opened.clone();
         let reply = Some(

@@ -24,7 +24,8 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {Backend} [renderer]
  * @property {string} [link] Empty for a first visit; without it, the walker.
  * @property {{ width: number, height: number }} [viewport]
- * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device.
+ * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Otherwise half a pixel, in
+ *   the context that the pages of a test file share.
  * @property {() => void} [before] Runs in the page before its scripts.
  * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
  * @property {boolean} [ready] False: don't wait for the first image.
@@ -93,7 +94,7 @@ export async function startSite() {
 async function sharedContext(browser) {
   // Service workers would store megabytes for each fresh profile; offline.test.mjs tests them.
   const context = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block" });
-  /** Renderers whose program a page holds. @type {Set<string>} */
+  /** Addresses whose program a page keeps alive. @type {Set<string>} */
   const held = new Set();
   return {
     context,
@@ -103,11 +104,11 @@ async function sharedContext(browser) {
      */
     hold: async (address) => {
       if (held.has(address)) return;
-      held.add(address);
       const keeper = await context.newPage();
       await keeper.setViewportSize({ width: 40, height: 30 });
       await keeper.goto(`${address}#model=sample:walker&play=0`);
       await whenReady(keeper);
+      held.add(address);
     },
   };
 }
@@ -128,9 +129,12 @@ export function watched(page, isShared = false) {
   page.on("request", (request) => requests.push(request.url()));
   const finish = async () => {
     if (!isShared) return await page.context().close();
-    // The next page is a fresh one.
-    await page.evaluate(() => localStorage.clear());
-    await page.close();
+    try {
+      // The next page is a fresh one.
+      await page.evaluate(() => localStorage.clear());
+    } finally {
+      await page.close();
+    }
   };
   return Object.assign(page, { troubles, requests, finish });
 }

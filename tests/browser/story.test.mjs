@@ -183,8 +183,9 @@ for (const renderer of BACK_ENDS)
       await whenAsked(page);
       assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)", "cmu_01_01.bvh (motion)"]);
       await page.locator("#bring-later").click();
-      const { t, joint } = await state(page);
-      assert.deepEqual([t, joint], [1, 5]);
+      // Its clip stands in for that of the motion.
+      const { t, joint, clip } = await state(page);
+      assert.deepEqual([t, joint, clip], [1, 5, null]);
       await drop(page, [{ name: "cmu_01_01.bvh", url: site.data(WALK) }]);
       await whenAsked(page);
       assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)"]);
@@ -192,7 +193,15 @@ for (const renderer of BACK_ENDS)
       await whenBorrowed(page, 1);
       assert.equal((await pose(page)).clip, "cmu_01_01");
       assert.equal((await state(page)).t, 1);
-      assert.deepEqual(await page.evaluate(() => [history.length, location.hash.match(/file(:|%3A)/g)?.length]), [entries, 3], "the address has the whole link");
+      // The files that have arrived are still there after something else.
+      await apply(page, { model: "sample:walker", motion: null });
+      await whenModel(page, "sample:walker");
+      await page.goBack();
+      await whenAsked(page);
+      assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)"]);
+      await page.locator("#bring-later").click();
+      await whenBorrowed(page, 1);
+      assert.deepEqual(await page.evaluate(() => [history.length - 1, location.hash.match(/file(:|%3A)/g)?.length]), [entries, 3], "the address has the whole link");
     });
 
     onPage("somebody who opens something else is told what the link asks for, but isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {

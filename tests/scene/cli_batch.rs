@@ -152,6 +152,13 @@ fn motions_are_retargeted_to_several_models() {
     let alone = path("alone.glb");
     assert!(run(&[&retarget[..], &[&alone]].concat()).status.success());
     assert_eq!(fs::read(path("out/walker/walk.glb")).expect("a file"), fs::read(alone).expect("a file"));
+    // Another model later doesn't touch the results of those that are there.
+    let second = path("second.glb");
+    fs::copy(&model, &second).expect("a copy");
+    let again = call(&[&model, &second], 0);
+    let written: Vec<&Value> =
+        again.iter().filter(|line| line["skipped"].is_null()).map(|line| &line["model"]).collect();
+    assert_eq!(written, [&second], "{again:?}");
     check_fails(
         &["retarget", "--model", &model, &model, "--motion", &motion, "--out-dir", &out],
         1,

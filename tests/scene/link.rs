@@ -378,6 +378,12 @@ fn a_plain_map_is_short_and_readable() {
     };
     assert_eq!(to_link(&state), "v=1&map=1.ffffffff.0-5,1-");
     check_read("map=1.ffffffff.1-,0-5", state.clone());
+    // Any other text is the URL of a file.
+    let of_file = |url: &str| ViewerState {
+        retarget: RetargetEdits { map: vec![MotionMap::File(url.to_owned())], ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
+    check_read("map=2.json", of_file("2.json"));
     // So does one as Gaitway proposes it.
     let with = |root: RootOptions| {
         let mut other = state.clone();

@@ -97,17 +97,11 @@ fn only_keys_that_apply_without_the_missing_files_are_kept() {
     // An empty stage stands for the model, and keeps the rest.
     let awaited = "v=1&model=file:a.glb&motion=file:b.bvh&t=1&exposure=1&embed=1&show=skeleton,weights";
     check(awaited, awaited);
-    check("v=1&model=a.glb&motion=file:b.bvh&map=x.json&clip=run&t=1", "v=1&model=a.glb&t=1");
+    check("v=1&model=a.glb&motion=file:b.bvh&map=x.json&clip=run&t=1", "v=1&model=a.glb&map=x.json&clip=run&t=1");
     check("model=a.glb&motion=b.bvh&motion=file:c.bvh&play=0", "model=a.glb&motion=b.bvh&play=0");
-    // The clip may be one of a motion that is there, and motions with the same joints share a map.
-    check(
-        "model=a.glb&motion=file:b.bvh&motion=c.bvh&map=x.json&map=y.json&clip=run&t=1",
-        "model=a.glb&motion=c.bvh&map=y.json&clip=run&t=1",
-    );
-    check(
-        "model=a.glb&motion=file:b.bvh&motion=c.bvh&map=x.json&clip=1&t=1",
-        "model=a.glb&motion=c.bvh&map=x.json&t=1",
-    );
+    // An index counts the clips of all motions.
+    check("model=a.glb&motion=file:b.bvh&motion=c.bvh&clip=1&t=1", "model=a.glb&motion=c.bvh&t=1");
+    check("model=a.glb&light=file:c.hdr&clip=1", "model=a.glb&clip=1");
 }
 
 #[test]

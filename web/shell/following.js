@@ -59,7 +59,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     const meansOthers = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
     if (again || meansOthers || linkForNow !== session.link) {
       const readAll = again || (meansOthers && items.length + motionItems.length === 0);
-      report(takeNews(await unlessStopped(app, app.follow_link(linkForNow, readAll))).problems);
+      report(takeNews(await unlessStopped(app, app.follow_link(heldLink, readAll))).problems);
     }
     if (number === lastFollow) showAwaited();
   } catch (error) {

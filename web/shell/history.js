@@ -46,9 +46,11 @@ export function endFollowing() {
 /** Writes the current view to the address bar. */
 export function recordView() {
   const files = shownFiles(session.link);
-  // While files are asked for, the address stays as it was until something else is shown.
-  const isAsking = (awaited()?.missing.length ?? 0) > 0;
-  if (followingCount > 0 || session.link === entry.typed || (isAsking && files === entry.files)) return;
+  if (followingCount > 0) return;
+  const asking = askingLink();
+  // The address stays as it was until something else is shown.
+  if (asking !== null) return remember(asking);
+  if (session.link === entry.typed) return;
   entry.typed = null;
   const address = `#${shareableLink(session.link)}`;
   if (files === entry.files) {
@@ -58,7 +60,13 @@ export function recordView() {
     [entry.number, entry.files] = [lastNumber, files];
     history.pushState({ gaitway: entry.number, own: isPrivate() }, "", address);
   }
-  remember();
+  remember(session.link);
+}
+
+/** The link of the current entry if files are asked for that it needs, with the names of those that have arrived. */
+function askingLink() {
+  const asking = awaited();
+  return asking !== null && asking.missing.length > 0 && shownFiles(session.link) === entry.files ? asking.link : null;
 }
 
 /** Keeps the address as it is until something is set. */
@@ -79,11 +87,12 @@ export function showInEntry(link) {
   [entry.files, entry.typed] = [shownFiles(link), null];
 }
 
-function remember() {
+/** @param {string} link */
+function remember(link) {
   visits.delete(entry.number);
-  const [items, motionItems] = [heldItems(session.link), heldMotionsAndLight(session.link)];
+  const [items, motionItems] = [heldItems(link), heldMotionsAndLight(link)];
   if (items.length + motionItems.length === 0) return;
-  visits.set(entry.number, { link: session.link, items, motionItems });
+  visits.set(entry.number, { link, items, motionItems });
   const [oldest] = visits.keys();
   if (visits.size > MAX_VISITS) visits.delete(oldest);
 }
@@ -95,7 +104,7 @@ function remember() {
 export function moveToEntry(state) {
   // The entry's link lags behind the latest changes.
   const left = visits.get(entry.number);
-  if (followingCount === 0 && left !== undefined) left.link = session.link;
+  if (followingCount === 0 && left !== undefined) left.link = askingLink() ?? session.link;
   if (state?.gaitway === undefined) {
     lastNumber += 1;
     entry.number = lastNumber;

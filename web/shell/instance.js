@@ -134,7 +134,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   let missing;
   try {
     const isPrivate = arePrivate([...heldItems(link), ...heldMotionsAndLight(link)]);
-    const run = bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings));
+    const run = bindings.run(canvas, session.link, items, motionItems, isPrivate, callsFor(bindings));
     missing = JSON.parse(await Promise.race([run, aborted]));
   } catch (error) {
     if (panel() === "stopped") throw error;

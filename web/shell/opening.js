@@ -1,7 +1,7 @@
 // Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
 // complete it.
 import { askForRest, awaited, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
-import { forgetProblem, summarize } from "./changes.js";
+import { forgetProblem, summarize, summarizeSoon } from "./changes.js";
 import { withCompanions } from "./companions.js";
 import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
@@ -50,7 +50,10 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
     else if (code !== "cancelled") await completeLink(wanted);
     throw error;
   } finally {
-    if (isInEntry) endFollowing();
+    if (isInEntry) {
+      endFollowing();
+      summarizeSoon();
+    }
   }
 }
 
@@ -163,6 +166,8 @@ async function completeLink(items, shown) {
     askForRest(waiting, link, rest);
     return void showAwaited();
   }
+  // They are still awaited: one of them is damaged.
+  if (shown === undefined) return void showAwaited(namesOf(items));
   forgetAwaited();
   await follow(link, { link, items: heldItems(link), motionItems: heldMotionsAndLight(link), isOwn: waiting.isOwn });
 }

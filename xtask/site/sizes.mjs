@@ -1,7 +1,7 @@
 // Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor
 // downloads: the shell and one of the two programs. Fails if that, or a part that some files need, exceeds its budget.
-// Samples and images are counted apart, since each is loaded when it is shown. Arguments: the folder, one that keeps the copies
-// for the next time, since compressing takes a minute, then `NAME=BYTES` for each program and part.
+// Samples and images are counted apart, since each is loaded when it is shown. Arguments: the folder, a cache folder for the copies,
+// since compressing takes a minute, and `NAME=BYTES` for each program and part.
 import crypto from "node:crypto";
 import fs from "node:fs";
 import path from "node:path";
@@ -24,15 +24,17 @@ const COMPRESSIONS = {
   br: (bytes) => zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }),
 };
 
+const { brotli, zlib: deflate } = process.versions;
 fs.mkdirSync(kept, { recursive: true });
 const unused = new Set(fs.readdirSync(kept));
 /**
- * Returns a compressed copy: the kept one, if there was one of the same content.
+ * Returns a compressed copy: the kept one, if there is one of the same content, compressed in the same way.
  * @param {Buffer} bytes
  * @param {string} extension
  */
 function compressed(bytes, extension) {
-  const name = `${crypto.createHash("sha256").update(bytes).digest("hex")}.${extension}`;
+  const hash = crypto.createHash("sha256").update(`${brotli} ${deflate} ${COMPRESSIONS[extension]}`).update(bytes).digest("hex");
+  const name = `${hash}.${extension}`;
   const copy = path.join(kept, name);
   if (unused.delete(name) || fs.existsSync(copy)) return fs.readFileSync(copy);
   const content = COMPRESSIONS[extension](bytes);

@@ -67,7 +67,7 @@ fn node_tests(cli: &str) -> anyhow::Result<()> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let concurrency = format!("--test-concurrency={}", cores.min(MAX_FILES));
     let mut arguments = vec!["--test", &concurrency, "--test-timeout=1200000"];
-    let python = python::interpreter()?;
+    let python = std::env::var("GAITWAY_PYTHON").or_else(|_| python::interpreter())?;
     let mut variables = vec![("GAITWAY_CLI", cli), ("CHROMIUM", text(&chromium)?), ("GAITWAY_PYTHON", &python)];
     // Node sees a pipe and would choose the form for programs.
     if std::io::stdout().is_terminal() {

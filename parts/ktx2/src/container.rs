@@ -38,7 +38,7 @@ pub enum Codec {
 }
 
 impl Codec {
-    /// Of Vulkan's formats without Basis: whether they are sRGB is up to the material.
+    /// Vulkan's `R8`, `R8G8`, `R8G8B8` and `R8G8B8A8`, each `_UNORM` and `_SRGB`: the material decides which colour space applies.
     fn plain(format: u32) -> Option<Self> {
         let channels = match format {
             9 | 15 => 1,
@@ -106,7 +106,7 @@ impl<'a> Container<'a> {
     pub fn read(file: &'a [u8]) -> Result<Self, String> {
         let size = size(file)?;
         let plain = Codec::plain(word(file, 12)?);
-        // Without levels, they are to be generated from the one that is there.
+        // 0 asks the reader to generate mip levels from the one that is there.
         let count = (word(file, 40)? as usize).max(usize::from(plain.is_some()));
         let max_levels = size[0].max(size[1]).ilog2() as usize + 1;
         if count == 0 || count > max_levels {
@@ -120,7 +120,7 @@ impl<'a> Container<'a> {
             (None, ETC1S, BASIS_LZ) => Codec::Etc1s,
             (None, UASTC, NONE | ZSTANDARD) => Codec::Uastc,
             _ => {
-                let expected = "expected ETC1S with BasisLZ, or others with Zstandard or nothing";
+                let expected = "expected BasisLZ for ETC1S, Zstandard or nothing for others";
                 return Err(format!("its texels are of model {model}, compressed with scheme {scheme}; {expected}"));
             }
         };
@@ -136,7 +136,7 @@ impl<'a> Container<'a> {
         })
     }
 
-    /// Returns the first `length` bytes of a level, without Zstandard. `None` if it has fewer.
+    /// Returns the first `length` bytes of a level, decompressed. `None` if it has fewer.
     pub fn unpacked(&self, level: usize, length: usize) -> Option<Cow<'a, [u8]>> {
         let bytes = self.levels[level];
         if !self.is_packed {

@@ -93,21 +93,27 @@ mod tests {
         Texture::read(&decode(&request(formats, largest_edge, file)).unwrap().bytes).unwrap()
     }
 
-    /// 3 × 2 texels of this format, with one level.
-    fn plain(format: u32, level_count: u32, scheme: u32, texels: &[u8]) -> Vec<u8> {
+    /// Texels of this format, in levels from the largest.
+    fn plain(format: u32, size: [u32; 2], level_count: u32, scheme: u32, levels: &[&[u8]]) -> Vec<u8> {
         let descriptor = [28, 0, 2 | 24 << 16, 1];
-        let start = (80 + 24 + 4 * descriptor.len()) as u32;
-        let header = [format, 1, 3, 2, 0, 0, 1, level_count, scheme, 104, 28, 0, 0, 0, 0, 0, 0];
-        let level = [start, 0, texels.len() as u32, 0, texels.len() as u32, 0];
-        let words = header.into_iter().chain(level).chain(descriptor);
-        [&MAGIC[..], &words.flat_map(u32::to_le_bytes).collect::<Vec<u8>>(), texels].concat()
+        let index_end = (80 + 24 * levels.len()) as u32;
+        let header = [format, 1, size[0], size[1], 0, 0, 1, level_count, scheme, index_end, 28, 0, 0, 0, 0, 0, 0];
+        let mut start = index_end + 4 * descriptor.len() as u32;
+        let index = levels.iter().flat_map(|level| {
+            let (offset, length) = (start, level.len() as u32);
+            start += length;
+            [offset, 0, length, 0, length, 0]
+        });
+        let words: Vec<u32> = header.into_iter().chain(index).chain(descriptor).collect();
+        let bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+        [&MAGIC[..], &bytes, &levels.concat()].concat()
     }
 
     #[test]
     fn plain_texels_become_rgba() {
         let texels: Vec<u8> = (1..=24).collect();
         let check = |format: u32, channels: usize, second: [u8; 4]| {
-            let texture = decoded(&plain(format, 1, 0, &texels[..6 * channels]), ALL, 4096);
+            let texture = decoded(&plain(format, [3, 2], 1, 0, &[&texels[..6 * channels]]), ALL, 4096);
             assert_eq!((texture.format, texture.width, texture.height, texture.levels), (Format::Rgba8, 3, 2, 1));
             assert_eq!((texture.data.len(), &texture.data[4..8]), (24, &second[..]), "format {format}");
         };
@@ -117,10 +123,16 @@ mod tests {
         check(43, 4, [5, 6, 7, 8]);
         // A frame of Zstandard with a single block, which isn't compressed.
         let frame = [&[0x28, 0xB5, 0x2F, 0xFD, 0x20, 18, 18 << 3 | 1, 0, 0], &texels[..18]].concat();
-        let packed = decoded(&plain(23, 0, 2, &frame), ALL, 4096);
-        assert_eq!(packed, decoded(&plain(23, 1, 0, &texels[..18]), ALL, 4096));
-        let short = decode(&request(ALL, 4096, &plain(23, 1, 0, &texels[..17])));
+        let packed = decoded(&plain(23, [3, 2], 0, 2, &[&frame]), ALL, 4096);
+        assert_eq!(packed, decoded(&plain(23, [3, 2], 1, 0, &[&texels[..18]]), ALL, 4096));
+        let short = decode(&request(ALL, 4096, &plain(23, [3, 2], 1, 0, &[&texels[..17]])));
         assert_eq!(short.unwrap_err(), "mip level 0 is damaged");
+        // The levels that fit: 2 × 2 and 1 × 1 of 4 × 4.
+        let levels: [&[u8]; 3] = [&[1; 16], &[2, 3, 4, 5], &[6]];
+        let texture = decoded(&plain(9, [4, 4], 3, 0, &levels), ALL, 2);
+        assert_eq!((texture.width, texture.height, texture.levels), (2, 2, 2));
+        let expected: Vec<u8> = (2..=6).flat_map(|red| [red, 0, 0, 255]).collect();
+        assert_eq!(texture.data, expected);
     }
 
     /// As zip and PNG have it.
@@ -204,7 +216,7 @@ mod tests {
     fn damaged_files_never_panic() {
         let mut damage = Damage::new();
         let (mut decoded, mut failed) = (0, 0);
-        let plain = plain(23, 1, 0, &[7; 18]);
+        let plain = plain(23, [3, 2], 1, 0, &[&[7; 18]]);
         for file in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_SINGLE, &plain] {
             for case in 0..cases() {
                 let damaged = damage.of(file);

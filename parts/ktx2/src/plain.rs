@@ -3,7 +3,7 @@
 use crate::container::Container;
 use crate::texture::{Format, Texture};
 
-/// Expands texels to RGBA: as in Vulkan, colour channels that are missing are 0, and alpha is 1.
+/// Expands texels to RGBA: as in Vulkan, colour channels that are missing are 0, and alpha is 1. `KTXswizzle` is ignored.
 pub fn expand(container: &Container, channels: usize, first: usize) -> Result<Texture, String> {
     let [width, height] = container.level_size(first);
     let mut texture = Texture { format: Format::Rgba8, width, height, levels: 0, data: Vec::new() };

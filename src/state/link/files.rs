@@ -111,27 +111,18 @@ pub fn embedded_link(link: &str) -> String {
 }
 
 /// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing, or if its
-/// model is: an empty stage stands for it. Maps are dropped with their motions. So is the clip, unless it may be one of another
-/// motion.
+/// model is: an empty stage stands for it.
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
-    let mut missing = files.iter().filter(|file| file.is_to_bring).peekable();
-    if missing.peek().is_none() || missing.any(|file| file.role == LinkRole::Model) {
+    let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
+    if is_missing(LinkRole::Model) || !files.iter().any(|file| file.is_to_bring) {
         return link.to_owned();
     }
-    let motions: Vec<&LinkedFile> = files.iter().filter(|file| file.role == LinkRole::Motion).collect();
-    let lacks_motion = motions.iter().any(|motion| motion.is_to_bring);
-    let has_motion = motions.iter().any(|motion| !motion.is_to_bring);
-    // Motions with the same joints share a map.
-    let is_map_per_motion = pairs(link).filter(|pair| key_of(pair) == "map").count() == motions.len();
-    let mut of_maps = motions.iter().filter(|_| is_map_per_motion);
+    let lacks_motion = is_missing(LinkRole::Motion);
     rewrite(link, &mut |pair| {
-        let is_kept = match key_of(pair) {
-            // An index counts the clips of all motions.
-            "clip" => !lacks_motion || (has_motion && value_of(pair).parse::<usize>().is_err()),
-            "map" => of_maps.next().map_or(has_motion || !lacks_motion, |motion| !motion.is_to_bring),
-            _ => linked_file(pair).is_none_or(|file| !file.is_to_bring),
-        };
+        // An index counts the clips of all motions.
+        let is_index = key_of(pair) == "clip" && value_of(pair).parse::<usize>().is_ok();
+        let is_kept = linked_file(pair).is_none_or(|file| !file.is_to_bring) && !(is_index && lacks_motion);
         is_kept.then(|| pair.to_owned())
     })
 }

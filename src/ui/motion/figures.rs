@@ -117,7 +117,7 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
     ));
     lines.push(figure("Largest turn in 1/60 s", degrees(figures.largest_turn_degrees_per_frame), None));
     let jerk = figures.jerk_metres_per_sec3_mean.map(|jerk| format!("{jerk:.0} m/s³"));
-    lines.push(figure("Jerk of the joints", jerk, None));
+    lines.push(figure("Mean jerk of the joints", jerk, None));
     let hint = "Measured while the source's foot is on the ground, next to the source's own slide.";
     lines.extend([
         group("FEET", hint),

@@ -110,7 +110,7 @@ fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
     }
     controls::hint(
         ui,
-        "Feet: they are where the motion's are, at the model's size. Rest: the path starts at the model's rest.",
+        "Feet: they are where the motion's are, scaled to the model. Rest: the path is measured from both rest poses.",
     );
     controls::section(ui, capitals!(text::ROOT_VERTICAL));
     if let Some(vertical) = controls::segmented_about(ui, text::ROOT_VERTICAL, Some(root.vertical), &PARTS) {

@@ -143,7 +143,7 @@ impl Messages {
 
     fn show_error_text(&mut self, ui: &mut Ui, error: &str, out: &mut Output) {
         match self.error_title() {
-            Some(title) => drop(ui.label(RichText::new(title).strong().color(style::palette(ui).error))),
+            Some(title) => _ = ui.label(RichText::new(title).strong().color(style::palette(ui).error)),
             // Beside the middle of the button.
             None => ui.add_space(4.0),
         }
@@ -153,7 +153,7 @@ impl Messages {
         }
     }
 
-    /// None for messages that say themselves what they are about.
+    /// `None` if the message itself names what failed.
     fn error_title(&self) -> Option<String> {
         let refused = self.motion_refused.then(|| text::REFUSED_TITLE.to_owned());
         self.failed_to_open.as_deref().map(text::couldnt_open).or(refused)

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
 use gaitway::asset::{Asset, Warning};
-use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export, ModelFiles, OpenedModel};
+use gaitway::editor::{AboutLink, ClipFormat, Contents, Editor, Event, Export, ModelFiles, OpenedModel};
 use gaitway::files::{Held, open_view};
 use gaitway::formats::FileSet;
 use gaitway::frame::{Frame, evaluate};
@@ -178,7 +178,8 @@ fn all_that_is_wrong_with_a_link_is_told_at_once() {
         assert!(lines.iter().all(|line| line.ends_with('.') && !line.ends_with("..")), "{text}");
     };
     let mut editor = Editor::default();
-    let with_errors = |contents| Contents { link_errors: link_errors.clone(), ..contents };
+    let with_errors =
+        |contents| Contents { link: AboutLink { errors: link_errors.clone(), is_partial: false }, ..contents };
     editor.open(with_errors(contents(&["sample:walker"])), Some(view.clone()), &mut any).expect("fits");
     let events = editor.take_events();
     is_complete(notices(&events)[0]);
@@ -198,7 +199,11 @@ fn all_that_is_wrong_with_a_link_is_told_at_once() {
 #[test]
 fn what_is_wrong_with_a_link_is_told_with_the_problems_of_its_maps() {
     let (view, link_errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=noon&clip=Fly");
-    let contents = Contents { motions: Some(vec![motion("walk.bvh")]), link_errors, ..contents(&["sample:walker"]) };
+    let contents = Contents {
+        motions: Some(vec![motion("walk.bvh")]),
+        link: AboutLink { errors: link_errors, is_partial: false },
+        ..contents(&["sample:walker"])
+    };
     let mut editor = Editor::default();
     editor.open(contents, Some(view), &mut any).expect("fits");
     let events = editor.take_events();

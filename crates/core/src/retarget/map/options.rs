@@ -50,15 +50,15 @@ pub struct RootOptions {
     pub origin: PathOrigin,
 }
 
-/// Which points of the two skeletons coincide on the ground plane once the source is scaled about the origin, as `keep` leaves
-/// the path.
+/// How the path of the hips is placed on the ground plane, before [`RootPart`] applies.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PathOrigin {
-    /// The hips at rest, wherever the two rests are.
+    /// The hips of the source at rest correspond to those of the target at rest.
     #[default]
     Rest,
-    /// The feet, as they stand below the hips at rest. The same as `Rest` unless both skeletons have two feet that hang from legs.
+    /// The midpoint of the target's feet, as they stand at rest, is where the source's is, scaled about the origin. The same as
+    /// `Rest` unless both skeletons have two feet below upper legs.
     Feet,
 }
 

@@ -49,7 +49,7 @@ pub struct Figures {
     /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
     pub largest_turn_degrees_per_frame: Option<f64>,
     /// Mean length of the third derivative of the mapped joints' positions in model space, at 60 frames per second of the finished
-    /// clip.
+    /// clip: high where joints jitter.
     pub jerk_metres_per_sec3_mean: Option<f64>,
     /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
     /// parts are solids fitted to the mesh; `None` without one.

@@ -8,7 +8,7 @@ use crate::retarget::pose::with_ancestors;
 
 const FRAMES_PER_SEC: f32 = 60.0;
 
-/// `None` for a clip that is too short.
+/// Fields are `None` if the clip is too short.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Smoothness {
     /// The largest angle by which a joint turns in model space within 1/60 s: one that snaps.

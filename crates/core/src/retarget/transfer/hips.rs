@@ -31,7 +31,8 @@ pub struct Hips {
     pub pair: usize,
     /// Target units per source unit.
     pub scale: f64,
-    /// A point of the source's path, in source units: the hips at rest, on the ground plane relative to the feet if the map says so.
+    /// Reference point of the source's path, in source units: the hips at rest; on the ground plane, with [`PathOrigin::Feet`], their
+    /// offset from the midpoint of the feet.
     pub source_rest: DVec3,
     /// Where the target is when the source is at `source_rest`, in target units.
     pub target_rest: DVec3,
@@ -107,7 +108,8 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     })
 }
 
-/// The point halfway between both feet. None if they don't hang from their legs, which the aligned rest turns.
+/// The midpoint of the feet at the aligned rest. None unless each foot is a descendant of its upper leg: the others don't turn with
+/// the legs.
 fn between_feet(skeleton: &Skeleton, slots: &Humanoid, position: impl Fn(JointIndex) -> DVec3) -> Option<DVec3> {
     let sides = [(Slot::LeftUpperLeg, Slot::LeftFoot), (Slot::RightUpperLeg, Slot::RightFoot)];
     let [left, right] = sides.map(|(leg, foot)| {
