@@ -246,7 +246,7 @@ impl Editor {
             if self.library.active().is_some_and(|model| unknown_clip(model, &self.state).is_some()) {
                 self.state.playhead.clip = ClipChoice::First;
             }
-            return;
+            return self.tell(&errors, Vec::new());
         }
         errors.extend(view_problems(view, self.library.active()));
         self.tell(&errors, problems);

@@ -197,6 +197,24 @@ fn all_that_is_wrong_with_a_link_is_told_at_once() {
 }
 
 #[test]
+fn nothing_is_said_of_what_a_link_names_before_its_files_are_there() {
+    let (view, errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=1&clip=Fly");
+    let contents = |is_partial| Contents {
+        motions: Some(vec![motion("walk.bvh")]),
+        link: AboutLink { errors: errors.clone(), is_partial },
+        ..contents(&["sample:walker"])
+    };
+    let mut editor = Editor::default();
+    editor.open(contents(true), Some(view.clone()), &mut any).expect("fits");
+    let told = |events: &[Event]| events.iter().any(|event| matches!(event, Event::Problem(_) | Event::AboutView(_)));
+    assert!(!told(&editor.take_events()));
+    assert_eq!((&editor.state().playhead.clip, editor.state().playhead.time_secs), (&ClipChoice::First, 1.0));
+    editor.open(contents(false), Some(view), &mut any).expect("fits");
+    assert!(told(&editor.take_events()));
+    assert_eq!(editor.state().playhead.clip, ClipChoice::Named("Fly".to_owned()));
+}
+
+#[test]
 fn what_is_wrong_with_a_link_is_told_with_the_problems_of_its_maps() {
     let (view, link_errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=noon&clip=Fly");
     let contents = Contents {
