@@ -195,7 +195,7 @@ for (const renderer of BACK_ENDS)
       assert.equal((await state(page)).t, 1);
       // The files that have arrived are still there after something else.
       await apply(page, { model: "sample:walker", motion: null });
-      await whenModel(page, "sample:walker");
+      await until(page, () => location.hash.includes("walker"));
       await page.goBack();
       await whenAsked(page);
       assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["gone.bvh (motion)"]);

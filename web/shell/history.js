@@ -48,8 +48,11 @@ export function recordView() {
   const files = shownFiles(session.link);
   if (followingCount > 0) return;
   const asking = askingLink();
-  // The address stays as it was until something else is shown.
-  if (asking !== null) return remember(asking);
+  if (asking !== null) {
+    // The address stays as it was until something else is shown, but the entry needs its number to be found again.
+    if (history.state?.gaitway !== entry.number) history.replaceState({ gaitway: entry.number, own: history.state?.own }, "");
+    return remember(asking);
+  }
   if (session.link === entry.typed) return;
   entry.typed = null;
   const address = `#${shareableLink(session.link)}`;
