@@ -1,6 +1,6 @@
-//! `gaitway retarget` with `--out-dir`: many motions for one or more models in one process, on all cores. Each result is a line of JSON on
-//! standard output, printed as soon as it is written. A motion that fails doesn't end the run, and one whose output is newer than
-//! what it is made from is skipped.
+//! `gaitway retarget` with `--out-dir`: many motions for one or more models in one process, on all cores. Each result is a line of
+//! JSON on standard output, printed as soon as it is written. A motion that fails doesn't end the run, and one whose output is newer
+//! than what it is made from is skipped.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -247,7 +247,7 @@ impl Progress {
         if self.is_shown && state.drawn.is_none_or(|drawn| drawn.elapsed() >= PROGRESS_INTERVAL) {
             state.drawn = Some(Instant::now());
             let secs = self.start.elapsed().as_secs_f64();
-            let _ = write!(stderr(), "\r\x1b[K{}", progress_text(&state, self.total, secs));
+            let _ = write!(stderr(), "{}", progress_text(&state, self.total, secs));
         }
     }
 

@@ -26,8 +26,8 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
         (Some(out), None) => out,
         (None, None) => return Err(Failure::new("neither --out nor --out-dir was given")),
     };
-    only(&arguments.model, "one model").map_err(|failure| failure.at("--model"))?;
-    let motion = only(&arguments.motion, "one motion").map_err(|failure| failure.at("--motion"))?;
+    only("model", &arguments.model)?;
+    let motion = only("motion", &arguments.motion)?;
     let opened = open(&arguments.model, disk)?;
     let motion = open_motion(motion, disk)?;
     let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
@@ -44,12 +44,13 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     print_bytes(made.text.as_bytes())
 }
 
-/// Returns the only file; `expected` describes it.
-fn only<'a>(files: &'a [PathBuf], expected: &str) -> Outcome<&'a Path> {
-    match files {
-        [file] => Ok(file),
-        files => Err(Failure::expected(expected, files.len().to_string()).with_hint("--out-dir takes any number")),
-    }
+/// Returns the only file of an argument, which also has other uses for several.
+fn only<'a>(name: &str, files: &'a [PathBuf]) -> Outcome<&'a Path> {
+    let [file] = files else {
+        let failure = Failure::expected(format!("one {name}"), files.len().to_string()).at(&format!("--{name}"));
+        return Err(failure.with_hint("--out-dir takes any number"));
+    };
+    Ok(file)
 }
 
 /// A retargeted clip and what is reported about it.

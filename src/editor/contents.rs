@@ -22,8 +22,8 @@ pub struct Contents {
     pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
-    /// About the link whose view is opened.
-    pub link: AboutLink,
+    /// Of the link whose view is opened.
+    pub about_link: AboutLink,
 }
 
 /// What is known of a link besides the view that it describes.

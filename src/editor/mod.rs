@@ -56,8 +56,8 @@ pub struct Editor {
     waiting_clip: Option<ClipIdentity>,
     /// Name of the joint map's file while it is being opened.
     opened_map: Option<String>,
-    /// What was not understood of a link while its view is being opened.
-    link: AboutLink,
+    /// What is known of a link while its view is being opened.
+    about_link: AboutLink,
     /// A joint map was opened from the user's local files.
     has_private_map: bool,
     /// Errors about retargeted clips that have been reported.
@@ -91,7 +91,7 @@ impl Editor {
             refused: Vec::new(),
             waiting_clip: None,
             opened_map: None,
-            link: AboutLink::default(),
+            about_link: AboutLink::default(),
             has_private_map: false,
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
@@ -167,7 +167,7 @@ impl Editor {
         if affects_retargeting {
             let problems = self.retarget();
             match view {
-                Some(view) => self.report_view(&view, problems),
+                Some(view) => self.settle_view(&view, problems),
                 None => self.report(problems),
             }
         }
@@ -239,9 +239,10 @@ impl Editor {
         new.model == now.model && new.motion == now.motion
     }
 
-    /// Tells all that is wrong with a view that was just applied, and `problems` of retargeting.
-    pub(super) fn report_view(&mut self, view: &ViewerState, problems: Vec<String>) {
-        let AboutLink { mut errors, is_partial } = std::mem::take(&mut self.link);
+    /// Tells all that is wrong with a view that was just applied, and `problems` of retargeting. If its link still waits for files,
+    /// replaces an unknown clip, and tells only what is not understood.
+    pub(super) fn settle_view(&mut self, view: &ViewerState, problems: Vec<String>) {
+        let AboutLink { mut errors, is_partial } = std::mem::take(&mut self.about_link);
         if is_partial {
             if self.library.active().is_some_and(|model| unknown_clip(model, &self.state).is_some()) {
                 self.state.playhead.clip = ClipChoice::First;

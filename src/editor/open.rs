@@ -57,14 +57,15 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, link } = contents;
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, about_link } =
+            contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
         self.opened_map = map.as_ref().map(|opened| opened.name.clone());
         self.has_private_map |= is_map_private;
         self.refused.clear();
-        self.link = link;
+        self.about_link = about_link;
         let opened = match motions {
             motions if has_models => {
                 // A view's motions stay as it names them.
@@ -94,7 +95,7 @@ impl Editor {
             },
         };
         self.opened_map = None;
-        self.link = AboutLink::default();
+        self.about_link = AboutLink::default();
         if opened.is_ok()
             && let Some(environment) = environment
         {
@@ -380,7 +381,7 @@ impl Editor {
     fn finish_view(&mut self, view: Option<&ViewerState>) {
         let problems = self.retarget();
         match view {
-            Some(view) => self.report_view(view, problems),
+            Some(view) => self.settle_view(view, problems),
             None => self.report(problems),
         }
     }

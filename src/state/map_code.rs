@@ -20,9 +20,8 @@ const fn mark(origin: PathOrigin) -> &'static str {
 
 /// Whether a text is meant as a code. Otherwise it is a URL, in older links also if it begins with 2.
 pub(super) fn is_code(text: &str) -> bool {
-    let has_checksum = |rest: &str| {
-        rest.bytes().take(9).filter(u8::is_ascii_hexdigit).count() == 8 && rest.as_bytes().get(8) == Some(&b'.')
-    };
+    let is_checksum = |text: &str| text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let has_checksum = |rest: &str| rest.split_once('.').is_some_and(|(checksum, _)| is_checksum(checksum));
     text.starts_with(mark(PathOrigin::Rest)) || text.strip_prefix(mark(PathOrigin::Feet)).is_some_and(has_checksum)
 }
 

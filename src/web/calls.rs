@@ -43,8 +43,8 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
     Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
 }
 
-/// Opens a link, given the part after `#`, as far as it can be shown without the files that it waits for. Loads its files if they differ from the loaded ones, or all of them with `reload`.
-/// Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
+/// Opens a link, given the part after `#`, as far as it can be shown without the files that it waits for. Loads its files if they
+/// differ from the loaded ones, or all of them with `reload`. Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
 #[wasm_bindgen]
 pub async fn follow_link(link: String, reload: bool) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
@@ -260,11 +260,11 @@ async fn open_state(
     page: &Rc<Page>,
     state: ViewerState,
     reload: bool,
-    link: Option<AboutLink>,
+    about_link: Option<AboutLink>,
 ) -> Result<String, Refusal> {
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
-        let contents = Contents { link: link.unwrap_or_default(), ..Contents::default() };
+        let contents = Contents { about_link: about_link.unwrap_or_default(), ..Contents::default() };
         let (contents, state) = (Box::new(contents), Some(Box::new(state)));
         page.inbox.send(Message::Opened { contents, state, is_change: false, reply: None });
         return Ok(report(&[], &[]));
@@ -276,7 +276,7 @@ async fn open_state(
     let motions =
         state.sources.motion.iter().filter(|source| !current_motions.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
-    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, link };
+    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, about_link };
     let opened = load(page, request).await?;
     Ok(report(&loaded, &opened.problems))
 }
@@ -296,7 +296,7 @@ enum Request {
         with_model: bool,
         current_motions: Vec<Motion>,
         environments: Vec<Environment>,
-        link: Option<AboutLink>,
+        about_link: Option<AboutLink>,
     },
 }
 
@@ -321,7 +321,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
         }
         latest.replace(progress_of(name, received_bytes, total_bytes));
     };
-    let shell_reports = matches!(request, Request::View { link: Some(_), .. });
+    let shell_reports = matches!(request, Request::View { about_link: Some(_), .. });
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
@@ -329,11 +329,11 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
                 let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
                 contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
             }
-            Request::View { state, with_model, current_motions, environments, link } => {
+            Request::View { state, with_model, current_motions, environments, about_link } => {
                 let held = Held { motions: &current_motions, environments: &environments };
                 let opened = open_view(*state, with_model, held, &progress, None).await;
-                let link = link.unwrap_or_default();
-                opened.map(|(contents, state)| (Contents { link, ..contents }, Some(Box::new(state))))
+                let about_link = about_link.unwrap_or_default();
+                opened.map(|(contents, state)| (Contents { about_link, ..contents }, Some(Box::new(state))))
             }
         }
     };

@@ -104,7 +104,7 @@ pub async fn run(
         let page = page()?;
         let name = contents.models.first().map(|opened| short_name(&opened.model.source));
         let shown = with_app(&page, |app| {
-            let contents = Contents { problems: missing, link: about_link, ..contents };
+            let contents = Contents { problems: missing, about_link, ..contents };
             let problems = app.open_link(contents, state)?;
             Ok::<_, String>((app.library().active().map(|model| model.id), problems))
         });
@@ -239,8 +239,7 @@ async fn open_fallback(
     Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
 }
 
-/// Reads a link, and what is not understood of it.
-/// Reads as much of a link as can be shown without the files that it waits for.
+/// Reads as much of a link as can be shown without the files that it waits for, and what is known of it besides.
 pub(super) fn state_of_link(link: &str) -> (ViewerState, AboutLink) {
     let shown = link_without_missing(link);
     let (state, errors) = from_link(&shown);

@@ -243,7 +243,7 @@ fn a_link_tells_all_that_is_wrong_with_it_once() {
         let problems = missing.iter().map(|problem| (*problem).to_owned()).collect();
         let contents = Box::new(Contents {
             problems,
-            link: AboutLink { errors: link_errors, is_partial: false },
+            about_link: AboutLink { errors: link_errors, is_partial: false },
             ..Contents::default()
         });
         let opened = Rc::new(RefCell::new(None));

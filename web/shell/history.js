@@ -45,16 +45,13 @@ export function endFollowing() {
 
 /** Writes the current view to the address bar. */
 export function recordView() {
-  const files = shownFiles(session.link);
   if (followingCount > 0) return;
   const asking = askingLink();
-  if (asking !== null) {
-    // The address stays as it was until something else is shown, but the entry needs its number to be found again.
-    if (history.state?.gaitway !== entry.number) history.replaceState({ gaitway: entry.number, own: history.state?.own }, "");
-    return remember(asking);
-  }
+  // The address stays as it was until something else is shown.
+  if (asking !== null) return remember(asking);
   if (session.link === entry.typed) return;
   entry.typed = null;
+  const files = shownFiles(session.link);
   const address = `#${shareableLink(session.link)}`;
   if (files === entry.files) {
     history.replaceState({ gaitway: entry.number, own: isPrivate() }, "", address);
@@ -95,6 +92,8 @@ function remember(link) {
   visits.delete(entry.number);
   const [items, motionItems] = [heldItems(link), heldMotionsAndLight(link)];
   if (items.length + motionItems.length === 0) return;
+  // A typed address has no number yet.
+  if (history.state?.gaitway !== entry.number) history.replaceState({ ...history.state, gaitway: entry.number }, "");
   visits.set(entry.number, { link, items, motionItems });
   const [oldest] = visits.keys();
   if (visits.size > MAX_VISITS) visits.delete(oldest);

@@ -179,7 +179,7 @@ fn all_that_is_wrong_with_a_link_is_told_at_once() {
     };
     let mut editor = Editor::default();
     let with_errors =
-        |contents| Contents { link: AboutLink { errors: link_errors.clone(), is_partial: false }, ..contents };
+        |contents| Contents { about_link: AboutLink { errors: link_errors.clone(), is_partial: false }, ..contents };
     editor.open(with_errors(contents(&["sample:walker"])), Some(view.clone()), &mut any).expect("fits");
     let events = editor.take_events();
     is_complete(notices(&events)[0]);
@@ -201,7 +201,7 @@ fn nothing_is_said_of_what_a_link_names_before_its_files_are_there() {
     let (view, errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=1&clip=Fly");
     let contents = |is_partial| Contents {
         motions: Some(vec![motion("walk.bvh")]),
-        link: AboutLink { errors: errors.clone(), is_partial },
+        about_link: AboutLink { errors: errors.clone(), is_partial },
         ..contents(&["sample:walker"])
     };
     let mut editor = Editor::default();
@@ -219,7 +219,7 @@ fn what_is_wrong_with_a_link_is_told_with_the_problems_of_its_maps() {
     let (view, link_errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=noon&clip=Fly");
     let contents = Contents {
         motions: Some(vec![motion("walk.bvh")]),
-        link: AboutLink { errors: link_errors, is_partial: false },
+        about_link: AboutLink { errors: link_errors, is_partial: false },
         ..contents(&["sample:walker"])
     };
     let mut editor = Editor::default();

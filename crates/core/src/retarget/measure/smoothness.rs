@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Quat, Vec3A};
 
-use crate::anim::{Clip, Pose, SampleCursor, Skeleton};
+use crate::anim::{Clip, Pose, SampleCursor, Skeleton, model_from_joint};
 use crate::retarget::map::Pair;
 use crate::retarget::pose::with_ancestors;
 
@@ -21,7 +21,7 @@ pub struct Smoothness {
 pub fn smoothness(skeleton: &Skeleton, pairs: &[Pair], clip: &Clip) -> Smoothness {
     let (mut pose, mut cursor) = (Pose::default(), SampleCursor::default());
     let joints = with_ancestors(skeleton, pairs.iter().map(|pair| pair.target));
-    let mut world = vec![Affine3A::IDENTITY; skeleton.len()];
+    let mut world = Vec::new();
     let [mut before, mut now] = [(); 2].map(|()| vec![Quat::IDENTITY; skeleton.len()]);
     // Of each pair, in the last four frames, from the oldest.
     let mut positions = vec![[Vec3A::ZERO; 4]; pairs.len()];
@@ -33,13 +33,10 @@ pub fn smoothness(skeleton: &Skeleton, pairs: &[Pair], clip: &Clip) -> Smoothnes
         clip.sample(skeleton, frame as f32 / FRAMES_PER_SEC, &mut cursor, &mut pose);
         std::mem::swap(&mut before, &mut now);
         for &joint in &joints {
-            let (local, parent) = (pose.local(joint), skeleton.parent(joint));
-            let turned = parent.map_or(Quat::IDENTITY, |parent| now[parent.get()]);
-            now[joint.get()] = (turned * local.rotation).normalize();
-            let placed = parent.map_or(Affine3A::IDENTITY, |parent| world[parent.get()]);
-            world[joint.get()] =
-                placed * Affine3A::from_scale_rotation_translation(local.scale, local.rotation, local.translation);
+            let parent = skeleton.parent(joint).map_or(Quat::IDENTITY, |parent| now[parent.get()]);
+            now[joint.get()] = (parent * pose.local(joint).rotation).normalize();
         }
+        model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
         for (pair, positions) in pairs.iter().zip(&mut positions) {
             positions.rotate_left(1);
             positions[3] = world[pair.target.get()].translation;

@@ -31,8 +31,8 @@ pub struct Hips {
     pub pair: usize,
     /// Target units per source unit.
     pub scale: f64,
-    /// Reference point of the source's path, in source units: the hips at rest; on the ground plane, with [`PathOrigin::Feet`], their
-    /// offset from the midpoint of the feet.
+    /// Reference point of the source's path, in source units: the hips at rest; on the ground plane, with [`PathOrigin::Feet`],
+    /// their offset from the midpoint of the feet.
     pub source_rest: DVec3,
     /// Where the target is when the source is at `source_rest`, in target units.
     pub target_rest: DVec3,

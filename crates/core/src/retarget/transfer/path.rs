@@ -1,5 +1,5 @@
-//! The path of the target's hips: the source's in the common frame, measured from the rest or the feet and scaled by the ratio of the
-//! hips' heights above the ground; edited as the root options ask and written relative to the hips' parent.
+//! The path of the target's hips: the source's in the common frame, measured from the rest or the feet and scaled by the ratio of
+//! the hips' heights above the ground; edited as the root options ask and written relative to the hips' parent.
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
