@@ -294,6 +294,38 @@ fn hands_rest_on_the_ground_whatever_the_proportions() {
 }
 
 #[test]
+fn a_trunk_leans_as_far_as_arms_are_too_short() {
+    let motion = hands_to_the_ground(with_boxes(&Rig::default(), 0.1));
+    let source = fingertips(&motion, &motion.asset.clips[0], 1.7);
+    for size in [1.0, 2.5] {
+        let model = with_boxes(&Rig { size, leg_length: 1.25, ..Rig::default() }, 0.1);
+        let [off, keep] = [Contacts::Off, Contacts::Keep].map(|contacts| retarget(&model, &motion, contacts).0.clip);
+        // The motion bends at its hips, so only leaning needs the spine.
+        let mut stiff = ResolvedMap { contacts: Contacts::Keep, ..map(&model, &motion) };
+        stiff.pairs.retain(|pair| ![Slot::Spine, Slot::Chest].map(|slot| model.joint(slot)).contains(&pair.target));
+        let stiff = Retargeting::new(body(&model), body(&motion), 0, &stiff).unwrap().bake().unwrap().clip;
+        let heights = [&off, &stiff, &keep].map(|clip| fingertips(&model, clip, 1.7) - source);
+        assert!(heights[0] > 0.08 && heights[1] > 0.045 && heights[2] < 0.7 * heights[1], "{heights:?}");
+        let turn = |slot: Slot, time: f32| {
+            let joint = model.joint(slot).get();
+            degrees(model.world(&off, time)[joint].0, model.world(&keep, time)[joint].0)
+        };
+        let chest = turn(Slot::Chest, 1.7);
+        assert!((5.0..15.01).contains(&chest), "{chest}");
+        // Spine and chest share the turn.
+        assert!((turn(Slot::Spine, 1.7) - 0.5 * chest).abs() < 0.01);
+        for time in [0.0, 0.4, 1.7, 3.1, 3.5] {
+            assert!(turn(Slot::Neck, time) < 0.01 && turn(Slot::Head, time) < 0.01);
+        }
+        assert!([0.0, 0.4, 3.1, 3.5].iter().all(|&time| turn(Slot::Chest, time) < 0.01), "it leans with its hands up");
+        for slot in [Slot::Hips, Slot::LeftUpperLeg, Slot::RightLowerLeg, Slot::LeftFoot] {
+            let joint = model.joint(slot);
+            assert!(keys_of(&off, joint) == keys_of(&keep, joint), "{slot:?}");
+        }
+    }
+}
+
+#[test]
 fn arms_stay_out_of_the_ground() {
     let motion = bend_down(with_boxes(&Rig::default(), 0.1), 120.0);
     let source = fingertips(&motion, &motion.asset.clips[0], 1.7);

@@ -1,6 +1,6 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs};
+use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
@@ -70,20 +70,23 @@ pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>
     Ok(Retargeted { unplanted: planted.unplanted.or(Some(planted.clip)), planting: planted.planting, ..built })
 }
 
-/// Brings knees to the ground, then hands to where they rest and limbs out of the body; `None` if there is nothing to do.
+/// Brings knees to the ground, leans the trunk, then moves hands to where they rest and limbs out of the body; `None` if there is
+/// nothing to do.
 fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Result<Option<Retargeted>, RetargetError> {
     let rebuilt = |channels: Option<Vec<NewChannel>>| {
         channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
     };
-    let scene = Scene::new(transfer, bodies, &planted.clip);
-    let knelt = rebuilt(grounded_knees(&scene, &planted.clip, &planted.resampled))?;
-    let scene = match &knelt {
-        Some(knelt) => scene.playing(&knelt.clip),
-        None => scene,
-    };
-    let before = knelt.as_ref().unwrap_or(planted);
-    let kept = rebuilt(kept_limbs(scene, &before.clip, &before.resampled))?;
-    Ok(kept.or(knelt))
+    let mut scene = Scene::new(transfer, bodies, &planted.clip);
+    let mut kept: Option<Retargeted> = None;
+    for corrected in [grounded_knees, leaning_trunk] {
+        let Retargeted { clip, resampled, .. } = kept.as_ref().unwrap_or(planted);
+        if let Some(next) = rebuilt(corrected(&scene, clip, resampled))? {
+            scene = scene.playing(&next.clip);
+            kept = Some(next);
+        }
+    }
+    let Retargeted { clip, resampled, .. } = kept.as_ref().unwrap_or(planted);
+    Ok(rebuilt(kept_limbs(scene, clip, resampled))?.or(kept))
 }
 
 fn bake_planted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {

@@ -1,6 +1,6 @@
 //! Moves hands to where the source's touch, arms out of other parts of the body and the ground, and legs out of each other: how far
 //! each wrist and ankle moves, smooth over time, and the turns of the limb's bones that follow in closed form. The trunk and feet that
-//! stand stay as `knees` leaves them.
+//! stand stay as `knees` and `trunk` leave them.
 
 use glam::{DQuat, DVec3};
 
@@ -10,6 +10,7 @@ use super::limb::{ARMS, LIMBS, Limb};
 use super::scene::Scene;
 use super::smooth::eased;
 use super::touch::Touches;
+use super::wish::Wish;
 use super::{MAX_MOVE, MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC, MIN_MOVE};
 use crate::anim::{Clip, JointIndex};
 use crate::retarget::feet::ranges;
@@ -17,7 +18,6 @@ use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
 use crate::retarget::math::{HORIZONTAL, smooth};
 use crate::retarget::pose::WorldPose;
-use crate::retarget::transfer::{removed_travel, rotation_laws};
 use crate::retarget::two_bones::limb_rotations;
 
 /// Touching and pushing out in turns, since each disturbs the other, and then both at once.
@@ -44,15 +44,6 @@ struct Moment {
     touches: Touches,
     /// Turn and scale.
     target_from_source: (DQuat, f64),
-}
-
-/// What the points of one limb want its end to do: a weighted least-squares fit.
-#[derive(Clone, Copy, Default)]
-struct Wish {
-    sum: DVec3,
-    squares: f64,
-    /// How much the most urgent point wants it.
-    share: f64,
 }
 
 /// A point of a limb that is deeper inside another part, or in the ground, than it may be.
@@ -108,12 +99,11 @@ pub fn kept_limbs(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option
 impl<'a> Solver<'a> {
     fn new(scene: Scene<'a>) -> Self {
         let scale = scene.transfer.scale();
-        let Scene { transfer, bodies, times, source, poses, target, ground } = scene;
-        let (laws, _) = rotation_laws(transfer);
-        let removed = removed_travel(transfer, &laws, &times);
+        let targets: Vec<_> = (0..scene.times.len()).map(|at| scene.target_from_source(at)).collect();
+        let Scene { transfer, bodies, times, source, touches, removed, poses, target, ground } = scene;
         let mut moments = Vec::with_capacity(times.len());
-        for ((&time, frames), touches) in times.iter().zip(target.frames).zip(bodies.touches(&times, &source.frames)) {
-            moments.push(Moment { frames, touches, target_from_source: (removed.turn(time), scale) });
+        for ((target_from_source, frames), touches) in targets.into_iter().zip(target.frames).zip(touches) {
+            moments.push(Moment { frames, touches, target_from_source });
         }
         let limbs = Limb::mapped(transfer, bodies);
         let freedom = [0, 1].map(|side| match &ground {
@@ -175,9 +165,7 @@ impl<'a> Solver<'a> {
         let (mut wishes, pushes) = (self.touch(at), self.push_out(at));
         let weight = PUSH_WEIGHT / self.bodies.target.height;
         for (wish, push) in wishes.iter_mut().zip(pushes) {
-            wish.sum += weight * push.sum;
-            wish.squares += weight * push.squares;
-            wish.share = wish.share.max(push.share);
+            wish.join(push, weight);
         }
         wishes
     }
@@ -235,9 +223,7 @@ impl<'a> Solver<'a> {
         let total: f64 = limbs.iter().flatten().map(|(.., freedom)| freedom).sum();
         for (moved, by) in limbs.into_iter().zip([by, -by]) {
             if let Some((limb, lever, freedom)) = moved.filter(|_| total > 0.0) {
-                wishes[limb].sum += weight * lever * freedom / total * by;
-                wishes[limb].squares += weight * lever * lever;
-                wishes[limb].share = share.max(wishes[limb].share);
+                wishes[limb].add(freedom / total * by, lever, weight, share);
             }
         }
     }
@@ -251,10 +237,7 @@ impl<'a> Solver<'a> {
         let wishes: Vec<Wishes> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
         let limit = MAX_MOVE * self.bodies.target.height;
         for limb in 0..LIMBS {
-            let fit = |wish: Wish| {
-                if wish.squares > 0.0 { (wish.sum / wish.squares, wish.share) } else { (DVec3::ZERO, 0.0) }
-            };
-            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| fit(wishes[limb])).collect();
+            let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| wishes[limb].fit()).collect();
             for (at, more) in eased(&self.times, &wanted).into_iter().enumerate() {
                 let freedom = self.freedom(limb, at);
                 let by = &mut self.moves[limb][at];

@@ -14,6 +14,8 @@ mod shape;
 mod smooth;
 mod solid;
 mod touch;
+mod trunk;
+mod wish;
 
 pub use body::{Bodies, BodyMotion};
 pub use ground::Ground;
@@ -21,6 +23,7 @@ pub use knees::grounded_knees;
 pub use limbs::kept_limbs;
 pub use scene::Scene;
 pub use touch::TouchFigures;
+pub use trunk::leaning_trunk;
 
 /// Shares of the body's height: a wrist, an ankle, a knee or the hips are never moved further than the first, and moves below the second are
 /// none.

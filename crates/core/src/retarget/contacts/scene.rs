@@ -1,11 +1,14 @@
 //! A clip of the target and its source at the same times: what corrections of contacts look at.
 
+use glam::DQuat;
+
 use super::body::{Bodies, BodyMotion};
 use super::ground::Ground;
+use super::touch::Touches;
 use crate::anim::Clip;
 use crate::retarget::pose::{Scratch, WorldPose};
 use crate::retarget::times::dense_times;
-use crate::retarget::transfer::Transfer;
+use crate::retarget::transfer::{RemovedTravel, Transfer, removed_travel, rotation_laws};
 
 /// Source and target over time.
 pub struct Scene<'a> {
@@ -13,6 +16,10 @@ pub struct Scene<'a> {
     pub bodies: &'a Bodies,
     pub times: Vec<f32>,
     pub source: BodyMotion,
+    /// What the source touches.
+    pub touches: Vec<Touches>,
+    /// What the options take away from the source's path.
+    pub removed: RemovedTravel,
     pub poses: Vec<WorldPose>,
     pub target: BodyMotion,
     /// `None` without feet.
@@ -23,8 +30,15 @@ impl<'a> Scene<'a> {
     pub fn new(transfer: &'a Transfer<'a>, bodies: &'a Bodies, clip: &Clip) -> Self {
         let times = dense_times(transfer.tracks.clip);
         let source = bodies.source_motion(transfer, &times);
+        let touches = bodies.touches(&times, &source.frames);
+        let removed = removed_travel(transfer, &rotation_laws(transfer).0, &times);
         let (poses, target) = (Vec::new(), BodyMotion::default());
-        Self { transfer, bodies, times, source, poses, target, ground: None }.playing(clip)
+        Self { transfer, bodies, times, source, touches, removed, poses, target, ground: None }.playing(clip)
+    }
+
+    /// Turn and scale at one of the times.
+    pub fn target_from_source(&self, at: usize) -> (DQuat, f64) {
+        (self.removed.turn(self.times[at]), self.transfer.scale())
     }
 
     /// The same with another clip of the target.

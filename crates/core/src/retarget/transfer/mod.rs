@@ -14,7 +14,7 @@ pub use detached::{detached_channels, detached_ends};
 pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
 pub use path::hips_channels;
-pub use root_motion::{RootPolicy, extraction_joint, keeps_everything, removed_travel};
+pub use root_motion::{RemovedTravel, RootPolicy, extraction_joint, keeps_everything, removed_travel};
 pub use rotation::{RotationLaw, rotation_laws};
 
 use glam::DVec3;
