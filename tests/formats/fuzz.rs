@@ -35,12 +35,19 @@ const X: &str =
     AnimationKey { 2; 2; 0;3;0,0,0;;,9;3;1,2,3;;; } } }";
 const MAP: &[u8] = br##"{"gaitway_map":1,"joints":{"spine":{"source":"neck"},"#3":{"source":5,"correction":[0,0,0,1]},
     "middle":{"source":null,"unmapped":{"clip":0,"hold":"first-key"}}},"unmapped":"rest","rest":{"model":"auto","motion":"bind"},
-    "root":{"horizontal":"keep","vertical":"in-place","yaw":"freeze","extract":true},"translations":"auto","scales":"drop",
-    "muted_channels":[{"source":"hips","property":"translation"}],"feet":"plant","contacts":"keep",
-    "crossfade_secs":0.5}"##;
+    "root":{"horizontal":"keep","vertical":"in-place","yaw":"freeze","extract":true,"origin":"feet"},
+    "translations":"auto","scales":"drop","muted_channels":[{"source":"hips","property":"translation"}],"feet":"plant",
+    "contacts":"keep","crossfade_secs":0.5}"##;
 const LINK: &[u8] = b"v=1&model=sample:pilot&motion=https://example.org/walk.bvh&clip=Run&t=0.5&play=0&speed=2&loop=once&\
     range=0.1,0.9&skinning=rigid&morph=0:1&pose=3:10,20,30&show=skeleton,grid&camera=90,10,4,0,1,0&fov=35&map=1.ffffffff.0-5,1-&\
     zoo=1%262&up=z&exposure=1.5&background=ff8800";
+
+/// The links whose meaning tests/scene fixes, which together have most keys, and one with invalid parts.
+fn links() -> Vec<Vec<u8>> {
+    let fixtures: serde_json::Value = serde_json::from_str(include_str!("../scene/links.json")).expect("JSON");
+    let links = fixtures["links"].as_array().expect("a list").iter().map(|fixture| &fixture["link"]);
+    links.map(|link| link.as_str().expect("a text").as_bytes().to_vec()).chain([LINK.to_vec()]).collect()
+}
 
 /// Two rows of eight pixels, component by component, and one in the old encoding.
 const HDR: &[u8] = b"#?RADIANCE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 8\n\
@@ -87,7 +94,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
         "exercise" => vec![EXERCISE.to_vec()],
         "archive" => vec![zipped()],
         "map" => vec![MAP.to_vec()],
-        "link" => vec![LINK.to_vec()],
+        "link" => links(),
         "hdr" => vec![HDR.to_vec()],
         other => panic!("no seeds for {other}"),
     }
