@@ -51,15 +51,8 @@ thread_local! {
     static PAGE: RefCell<Option<Rc<Page>>> = const { RefCell::new(None) };
 }
 
-/// Installs the panic and device hooks. Nothing is drawn before the shell calls [`run`].
+/// Installs the device hook. Nothing is drawn before the shell calls [`run`].
 pub fn start() {
-    let before = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        before(info);
-        let message = info.payload_as_str().unwrap_or("unknown error");
-        // The page is compiled without the places of panics (`xtask/src/page.rs`). The trap that follows is logged with its stack.
-        shell::stopped(&format!("An error inside Gaitway: {message}"));
-    }));
     set_fatal_hook(shell::stopped);
 }
 

@@ -102,7 +102,6 @@ pub(super) fn set_shell(shell: Shell) {
     SHELL.with_borrow_mut(|slot| *slot = Some(shell));
 }
 
-/// If a panic happened while the slot was borrowed, it cannot be reported.
 fn shell() -> Option<Shell> {
     SHELL.with(|slot| slot.try_borrow().ok().and_then(|slot| slot.clone()))
 }

@@ -37,6 +37,19 @@ function hasFontFor(text) {
   return pixels(text) !== pixels("\u0378".repeat(text.length));
 }
 
+/** Runs in the page: the first instance of the program traps when it is asked for a pose. */
+function trapOnce() {
+  const { instantiate } = WebAssembly;
+  /** @type {any} */ (WebAssembly).instantiate = async (/** @type {WebAssembly.Module} */ module, /** @type {WebAssembly.Imports} */ imports) => {
+    WebAssembly.instantiate = instantiate;
+    const { exports } = await instantiate(module, imports);
+    const pose = () => {
+      throw new WebAssembly.RuntimeError("unreachable");
+    };
+    return { instance: { exports: { ...exports, pose } }, module };
+  };
+}
+
 /**
  * Programs that the page has requested.
  * @param {import("./browser.mjs").TestPage} page
@@ -418,6 +431,19 @@ for (const renderer of BACK_ENDS) {
       } finally {
         await own.close();
       }
+    });
+
+    test("stops at an error inside the program, also where a script catches it, and restarts with the same view", async () => {
+      const page = await site.page({ renderer, link: "model=sample:walker&play=0&t=0.5", before: trapOnce });
+      await assert.rejects(pose(page), /unreachable/);
+      const again = page.locator("#stopped-again");
+      await again.waitFor({ state: "visible" });
+      assert.match((await page.locator("#stopped-why").textContent()) ?? "", /An error inside Gaitway: unreachable/);
+      await again.click();
+      await whenReady(page);
+      assert.equal((await pose(page)).time_secs, 0.5);
+      assert.ok(colorsOf(await picture(page)) > 16, "something should be drawn");
+      await page.finish();
     });
 
     test("switches to the other back end when the graphics process dies", async () => {

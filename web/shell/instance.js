@@ -268,7 +268,7 @@ function end(instance) {
   try {
     instance?.destroy();
   } catch {
-    // After a panic nothing in the instance answers any more.
+    // After a trap nothing in the instance answers any more.
   }
 }
 
@@ -279,7 +279,7 @@ session.restart = () => {
 
 /** @param {unknown} error */
 function stopOnTrap(error) {
-  // An instance that runs out of memory or stack can't report it.
+  // An instance can't report errors inside itself: they trap.
   if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`);
 }
 

@@ -45,14 +45,32 @@ export async function loadProgram(backend) {
     const { compiled } = download(backend);
     instanceCount += 1;
     // A URL of its own makes an instance of its own.
-    const [bindings, module] = await Promise.all([import(instanceCount === 1 ? script : `${script}?instance=${instanceCount}`), compiled]);
-    await bindings.default({ module_or_path: module });
-    return bindings;
+    const [{ default: instantiate, ...bindings }, module] = await Promise.all([import(instanceCount === 1 ? script : `${script}?instance=${instanceCount}`), compiled]);
+    await instantiate({ module_or_path: module });
+    return reportingTraps(bindings);
   } catch (error) {
     // The next attempt downloads it again.
     delete downloads[backend];
     throw error;
   }
+}
+
+/**
+ * Errors inside the program trap, and end it. Callers catch errors for other reasons, so traps are reported to the window as well.
+ * @param {Bindings} bindings
+ * @returns {Bindings}
+ */
+function reportingTraps(bindings) {
+  /** @type {(call: (...given: any[]) => unknown) => (...given: any[]) => unknown} */
+  const reporting = (call) => (...given) => {
+    try {
+      return call(...given);
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError) reportError(error);
+      throw error;
+    }
+  };
+  return /** @type {any} */ (Object.fromEntries(Object.entries(bindings).map(([name, call]) => [name, reporting(call)])));
 }
 
 /**

@@ -84,7 +84,6 @@ export interface MirrorEntry {
 
 /** The program's exports as wasm-bindgen writes them; see src/web. Documents are JSON text. */
 export interface Bindings {
-  default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
   run(
     canvas: HTMLCanvasElement,
     link: string,

@@ -19,8 +19,8 @@ const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-/// Compiles the standard library with the program, for minimum size, and keeps nothing of the places that can panic: there are
-/// thousands. ARCHITECTURE.md says what that saves.
+/// Compiles the standard library with the program, for minimum size. A panic traps at once, without a message: thousands of places can
+/// panic. ARCHITECTURE.md says what that saves.
 const FOR_THE_PAGE: [&str; 9] = [
     "--locked",
     "--target",
@@ -30,7 +30,7 @@ const FOR_THE_PAGE: [&str; 9] = [
     "-Zbuild-std=std,panic_abort",
     "-Zbuild-std-features=optimize_for_size",
     "--config",
-    "target.wasm32-unknown-unknown.rustflags=['-Zlocation-detail=none']",
+    "target.wasm32-unknown-unknown.rustflags=['-Zunstable-options','-Cpanic=immediate-abort']",
 ];
 
 /// Makes a released Rust accept unstable options. They can change with every version; `rust-toolchain.toml` pins ours.

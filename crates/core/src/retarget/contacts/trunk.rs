@@ -107,7 +107,7 @@ fn wanted_lean(scene: &Scene, trunk: &Trunk, at: usize) -> (DVec3, f64) {
             wanted = wanted.max(share);
         }
     }
-    // The limit comes before the smoothing, which would be undone by it.
+    // Limited before it is smoothed: the other way round, a lean at its limit would begin and end with a kink.
     ((matrix.inverse() * right).clamp_length_max(MAX_LEAN_DEGREES.to_radians()), wanted)
 }
 
