@@ -63,7 +63,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         light,
         key: state.lighting.key,
         background: state.display.background,
-        channel: state.display.channel,
+        channel: state.channel(),
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,
         boxes: state.display.show.boxes,

@@ -9,7 +9,7 @@ use super::maps;
 use super::pins;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, Selection,
+    CameraChoice, Channel, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, Selection,
     VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
@@ -50,7 +50,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
         Command::SetLayers(layers) => set_layers(state, layers),
         Command::SetShow(show) => state.display.show = show,
-        Command::SetChannel(channel) => state.display.channel = channel,
+        Command::SetChannel(channel) => set_channel(state, channel),
         Command::SetInspect(inspect) => state.inspect = inspect,
         Command::SelectJoint(joint) => select_joint(state, model, joint),
         Command::SelectVertex(vertex) => select_vertex(state, model, vertex),
@@ -503,6 +503,12 @@ fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
     } else {
         state.edits.clips.insert(name, changes);
     }
+}
+
+/// Whatever replaces the channel goes.
+fn set_channel(state: &mut ViewerState, channel: Channel) {
+    state.display.channel = channel;
+    state.inspect.weights &= channel == Channel::Shaded;
 }
 
 fn set_layers(state: &mut ViewerState, layers: Vec<ClipLayer>) {

@@ -71,6 +71,16 @@ impl ViewerState {
         self
     }
 
+    /// Whether surfaces show the weights of the selected joint.
+    pub fn shows_weights(&self) -> bool {
+        self.inspect.weights && self.selection.joint.is_some()
+    }
+
+    /// The channel that surfaces show: weights take its place.
+    pub fn channel(&self) -> Channel {
+        if self.shows_weights() { Channel::Shaded } else { self.display.channel }
+    }
+
     /// Whether the turntable moves the camera. A file's own camera stays where it is.
     pub fn is_turning(&self) -> bool {
         self.camera_options.turntable != 0.0 && !matches!(self.camera, CameraChoice::File(_))

@@ -125,7 +125,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: text::CYCLE_CHANNELS,
         pressed: &[Key::V],
         act: |shown, _, press, out| {
-            let channel = shown.state.display.channel.cycled(if press.has_shift { -1 } else { 1 });
+            let channel = shown.state.channel().cycled(if press.has_shift { -1 } else { 1 });
             out.commands.push(Command::SetChannel(channel));
         },
     },

@@ -310,16 +310,25 @@ struct Opened {
     problems: Vec<String>,
 }
 
+/// What takes longer to arrive is shown as being loaded.
+const PATIENCE_MILLIS: i32 = 400;
+
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
-    let latest = RefCell::new(progress_of("", 0, 0));
+    let latest = RefCell::new(Progress::default());
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
+        latest.replace(Progress { name: name.to_owned(), received_bytes, total_bytes });
         // What is in memory is read at once: a frame that shows it would only delay it.
         if received_bytes > 0 && page.loads.is_latest(number) {
-            page.inbox.send(progress_of(name, received_bytes, total_bytes));
+            page.inbox.send(Message::OpenProgress(latest.borrow().clone()));
         }
-        latest.replace(progress_of(name, received_bytes, total_bytes));
+    };
+    // A server may take long to answer.
+    let show_waiting = || {
+        if page.loads.is_latest(number) && !latest.borrow().name.is_empty() {
+            page.inbox.send(Message::OpenProgress(latest.borrow().clone()));
+        }
     };
     let shell_reports = matches!(request, Request::View { about_link: Some(_), .. });
     let read = async {
@@ -337,16 +346,19 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             }
         }
     };
-    let Some(opened) = unless_cancelled(&page.cancel_load, read).await else {
+    let Some(opened) = unless_cancelled(&page.cancel_load, with_timer(read, PATIENCE_MILLIS, show_waiting)).await
+    else {
         // The last bytes may have arrived together with the click.
         page.inbox.send(Message::OpenFailedSilently);
         return Err(Refusal::cancelled("Opening was cancelled."));
     };
     if !page.loads.is_latest(number) {
-        return Err(Refusal::cancelled("something else was opened in the meantime"));
+        let Progress { name, .. } = latest.into_inner();
+        let what = if name.is_empty() { name } else { format!("{name}: ") };
+        return Err(Refusal::cancelled(&format!("{what}something else was opened in the meantime")));
     }
     // Names what is opened or has failed, in the frame that shows it.
-    page.inbox.send(latest.into_inner());
+    page.inbox.send(Message::OpenProgress(latest.into_inner()));
     match opened {
         Ok((contents, state)) => {
             let shown = show(page, contents, state, shell_reports).await;
@@ -357,6 +369,21 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(message.clone()) };
             page.inbox.send(failed);
             Err(Refusal { code, message })
+        }
+    }
+}
+
+/// Awaits a future, and calls a function if that takes longer than some time.
+async fn with_timer<T>(task: impl Future<Output = T>, millis: i32, on_late: impl FnOnce()) -> T {
+    let timer = Promise::new(&mut |resolve, _| {
+        let window = web_sys::window();
+        window.and_then(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, millis).ok());
+    });
+    match select(pin!(task), JsFuture::from(timer)).await {
+        Either::Left((done, _)) => done,
+        Either::Right((_, task)) => {
+            on_late();
+            task.await
         }
     }
 }

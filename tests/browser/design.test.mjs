@@ -79,6 +79,25 @@ for (const renderer of BACK_ENDS)
       await page.finish();
     });
 
+    test("a load that the server doesn't answer yet is shown and can be cancelled", async () => {
+      let isAsked = false;
+      const silent = http.createServer(() => (isAsked = true));
+      await new Promise((resolve) => silent.listen(0, "127.0.0.1", () => resolve(undefined)));
+      const address = silent.address();
+      assert.ok(typeof address === "object" && address !== null);
+      const page = await site.page({ renderer });
+      const opened = page.evaluate((url) => window.gaitway.open(url).then(() => "opened", ({ message }) => message), `http://127.0.0.1:${address.port}/silent.glb`);
+      await page.locator("#mirror").getByText("Opening silent.glb").first().waitFor({ state: "attached" });
+      assert.ok(isAsked);
+      await control(page, "button", "Cancel").press("Enter");
+      assert.equal(await opened, "Opening was cancelled.");
+      await until(page, () => document.querySelector("#mirror")?.textContent?.includes("silent.glb") === false);
+      assert.deepEqual(page.troubles, []);
+      silent.closeAllConnections();
+      silent.close();
+      await page.finish();
+    });
+
     test("a long load says how far it is and can be cancelled", async () => {
       let isClosed = false;
       const slow = http.createServer((_, response) => {

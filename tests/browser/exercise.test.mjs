@@ -131,7 +131,7 @@ for (const renderer of BACK_ENDS) {
         const files = { "Model1.obj": await bytes(obj), "Model1.skel": await bytes(skel) };
         return await window.gaitway.open(files).then(() => "", (error) => error.message);
       }, ["obj", "skel"].map((kind) => site.data(`mit6837/Model1.${kind}`)));
-      assert.match(problem, /Model1\.attach.*open it with the model/);
+      assert.match(problem, /Model1\.attach.*open them together/);
       assert.equal((await pose(page)).meshes.length, before);
     });
   });

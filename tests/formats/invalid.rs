@@ -345,7 +345,7 @@ fn primitives_with_different_numbers_of_morph_targets() {
 #[test]
 fn unavailable_buffers() {
     let missing = Build::triangle().gltf("mesh%20data.bin");
-    check_bytes("model.gltf", missing, &["buffers[0].uri", "“mesh data.bin”", "open it with the model"]);
+    check_bytes("model.gltf", missing, &["buffers[0].uri", "“mesh data.bin”", "open them together"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:text/plain;base64,%%%"), &["buffers[0].uri", "base64"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:"), &["buffers[0].uri", "comma"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:;base64,AAAA"), &["buffers[0]", "36 bytes", "found 3"]);
@@ -366,6 +366,8 @@ fn sets_without_a_model_or_with_several() {
     let mut files = one("readme.txt", b"hello".to_vec());
     let none = load(&files).unwrap_err().to_string();
     assert!(none.contains("readme.txt") && none.contains(".glb"), "{none}");
+    let buffer = load(&one("a/Fox.bin", vec![0; 4])).unwrap_err();
+    assert!(matches!(&buffer, LoadError::MissingFile { uri, .. } if uri == "Fox.gltf"), "{buffer}");
     files.insert("a.glb", Build::triangle().glb());
     load(&files).expect("other files do no harm");
     files.insert("b/c.gltf", Build::triangle().gltf("x.bin"));

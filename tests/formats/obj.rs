@@ -138,7 +138,7 @@ fn invalid_weights_are_rejected_with_place_and_reason() {
 fn an_incomplete_set_says_what_to_drop() {
     let check = |files: &[(&str, &str)], wanted: &str, missing: &[&str]| {
         let problem = load(&set(files)).expect_err("not complete").to_string();
-        assert!(problem.contains(wanted) && problem.contains("open it with the model"), "{problem}");
+        assert!(problem.contains(wanted) && problem.contains("open them together"), "{problem}");
         assert_eq!(missing_files(&set(files)), missing);
     };
     check(&[("m.obj", SQUARE), ("m.skel", TWO_JOINTS)], "“m.attach”", &["m.attach"]);
@@ -156,6 +156,10 @@ fn companions_are_found_by_stem_or_as_the_only_ones() {
     assert_eq!(joints(&[("M.OBJ", SQUARE), ("m.Skel", TWO_JOINTS), ("M.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("mesh.obj", SQUARE), ("bones.skel", TWO_JOINTS), ("w.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("m.obj", SQUARE)]), Ok(None), "a static model");
+    let asset = load(&set(&[("f/m.obj", SQUARE), ("f/M.skel", TWO_JOINTS), ("f/w.attach", ROWS)])).unwrap();
+    let told: Vec<String> =
+        asset.warnings.iter().map(ToString::to_string).filter(|told| told.contains("differs")).collect();
+    assert_eq!(told, ["f/w.attach: used for m.obj, though its name differs: it is the only file of its kind"]);
     // Between two candidates, it doesn't guess.
     assert_eq!(joints(&[("m.obj", SQUARE), ("a.skel", TWO_JOINTS), ("b.skel", "0 0 0 -1")]), Ok(None));
     assert_eq!(missing_files(&set(&[("m.obj", SQUARE)])), ["m.skel", "m.attach"]);

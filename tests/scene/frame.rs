@@ -2,10 +2,12 @@
 
 use gaitway::anim::{Joint, Pose, Skeleton, Transform, model_from_joint};
 use gaitway::asset::{Asset, AssetParts, Light, LightKind, MAX_LIGHTS, MeshInstance};
-use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
+use gaitway::frame::{Bone, Frame, PickedJoint, evaluate, pick_joint};
 use gaitway::library::{Library, Model};
 use gaitway::mesh::{Geometry, Mesh, SkinningMode};
-use gaitway::state::{Background, ClipChoice, Display, Inspect, Playhead, Selection, Show, ViewerState};
+use gaitway::state::{
+    Background, Channel, ClipChoice, Command, Display, Inspect, Playhead, Selection, Show, ViewerState, apply,
+};
 use glam::{Affine3A, Vec2, Vec3, Vec4Swizzles};
 
 use crate::data::{library_of, moving_box, walker};
@@ -191,6 +193,45 @@ fn picking_finds_the_nearest_bone() {
     let point = middle.xy() / middle.w;
     assert_eq!(pick_joint(&frame, point, 0.02), Some(PickedJoint::Model(15)));
     assert_eq!(pick_joint(&frame, Vec2::new(0.95, 0.95), 0.02), None);
+}
+
+/// Half of the places on a ball are on the parent's bone, too, which ends there.
+#[test]
+fn picking_a_joints_ball_finds_that_joint() {
+    let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
+    let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
+    let head = |bone: &Bone| {
+        let at = projection_from_world * bone.head.extend(1.0);
+        at.xy() / at.w
+    };
+    let mut alone = 0;
+    for bone in &frame.bones {
+        let others = frame.bones.iter().filter(|other| other.joint != bone.joint);
+        if others.map(head).any(|other| other.distance(head(bone)) < 0.05) {
+            continue;
+        }
+        alone += 1;
+        for offset in [Vec2::ZERO, Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y] {
+            let picked = pick_joint(&frame, head(bone) + 0.004 * offset, 0.03);
+            assert_eq!(picked, Some(PickedJoint::Model(bone.joint as usize)), "{offset}");
+        }
+    }
+    assert!(alone > 10, "{alone}");
+}
+
+#[test]
+fn weights_take_the_place_of_a_channel_until_one_is_chosen() {
+    let (library, mut state) = (walker(), ViewerState::default());
+    apply(&mut state, &library, Command::SetChannel(Channel::BaseColor));
+    apply(&mut state, &library, Command::SelectJoint(Some(HEAD)));
+    assert_eq!(frame_of(&library, &state).look.channel, Channel::BaseColor);
+    apply(&mut state, &library, Command::SetInspect(Inspect { weights: true, ..Inspect::default() }));
+    assert_eq!((frame_of(&library, &state).look.channel, state.shows_weights()), (Channel::Shaded, true));
+    apply(&mut state, &library, Command::SelectJoint(None));
+    assert_eq!(frame_of(&library, &state).look.channel, Channel::BaseColor, "there are no weights to show");
+    apply(&mut state, &library, Command::SelectJoint(Some(HEAD)));
+    apply(&mut state, &library, Command::SetChannel(Channel::Normal));
+    assert_eq!((frame_of(&library, &state).look.channel, state.shows_weights()), (Channel::Normal, false));
 }
 
 #[test]

@@ -90,8 +90,8 @@ fn overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
     let show = state.display.show;
     controls::section(ui, "SHOW");
-    channel(ui, state.display.channel, out);
-    if let Some(absent) = shown.library.active().and_then(|model| text::absent(state.display.channel, model)) {
+    channel(ui, state.channel(), out);
+    if let Some(absent) = shown.library.active().and_then(|model| text::absent(state.channel(), model)) {
         controls::hint(ui, absent);
     }
     let mut flip = |ui: &mut Ui, label: &str, on: bool, flipped: Show| {

@@ -8,8 +8,8 @@ use crate::ui::{Shown, style, text};
 
 pub fn show(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
     let state = shown.state;
-    match state.display.channel {
-        Channel::Shaded if state.inspect.weights && state.selection.joint.is_some() => {
+    match state.channel() {
+        Channel::Shaded if state.shows_weights() => {
             let colors = HEAT_COLORS.map(|[red, green, blue]| Rgba::from_rgb(red, green, blue).into());
             scale(ui, painter, rect, &colors, ["0", "1"], text::WEIGHT_LEGEND);
         }

@@ -3,9 +3,12 @@
 use egui::accesskit::{Action, ActionData};
 use egui::{EventFilter, Key, Response, Ui};
 
-/// Describes a slider from 0 to `max`; returns the value that assistive technology requests, if any.
-pub fn slider(ui: &Ui, response: &Response, value: f64, max: f64, step: f64) -> Option<f64> {
+use crate::ui::text;
+
+/// Describes a slider from 0 to `max` seconds; returns the value that assistive technology requests, if any.
+pub fn time_slider(ui: &Ui, response: &Response, value: f64, max: f64, step: f64) -> Option<f64> {
     ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_value(text::seconds(value, max));
         node.set_min_numeric_value(0.0);
         node.set_max_numeric_value(max);
         node.set_numeric_value_step(step);

@@ -142,7 +142,7 @@ pub fn show(
     seek.widget_info(|| WidgetInfo::slider(true, scrub.time_secs, text::TIME));
     let is_held = seek.is_pointer_button_down_on();
     let step_secs = 1.0 / scrub.frames_per_sec;
-    let requested = accessible::slider(ui, &seek, scrub.time_secs, duration_secs, step_secs);
+    let requested = accessible::time_slider(ui, &seek, scrub.time_secs, duration_secs, step_secs);
     let mut scrubbed = requested.map(Scrubbed::Seek);
     if is_held && let Some(pointer) = seek.interact_pointer_pos() {
         // No request while the pointer rests, so that nothing is redrawn.
@@ -173,7 +173,7 @@ fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'
     let grab = grab.expand2(vec2(bar.above, 0.0)).with_min_y(grab.top() - bar.above);
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
     handle.widget_info(|| WidgetInfo::slider(true, secs, label));
-    let requested = accessible::slider(ui, &handle, secs, bar.duration_secs, 1.0 / scrub.frames_per_sec);
+    let requested = accessible::time_slider(ui, &handle, secs, bar.duration_secs, 1.0 / scrub.frames_per_sec);
     let pointer = handle.interact_pointer_pos().filter(|_| handle.dragged());
     let color = match (handle.hovered() || handle.dragged(), scrub.range.is_some()) {
         (true, _) => palette.accent,

@@ -95,7 +95,7 @@ pub enum LoadError {
         found: String,
     },
     /// A file that the model needs is not in the set.
-    #[error("{file}: {place} is “{uri}”, which {}; open it with the model", where_missing(uri))]
+    #[error("{file}: {place} is “{uri}”, which {}; open them together", where_missing(uri))]
     MissingFile {
         /// Name of the file that needs it.
         file: String,

@@ -236,8 +236,16 @@ fn find_model(files: &FileSet) -> Result<(&str, &SharedBytes), LoadError> {
                 let (format, advice) = foreign_format(name)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format, advice })
             })
+            .or_else(|| files.names().find_map(without_gltf))
             .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
     }
+}
+
+/// The error for a glTF's buffer without its .gltf.
+fn without_gltf(file: &str) -> Option<LoadError> {
+    let stem = bare_name(without_query(file)).strip_suffix(".bin")?;
+    let place = "the model it belongs to".to_owned();
+    Some(LoadError::MissingFile { file: file.to_owned(), place, uri: format!("{stem}.gltf") })
 }
 
 fn is_model(name: &str, bytes: &[u8]) -> bool {

@@ -162,6 +162,13 @@ fn rig(
             (Some(_), None) => return Err(missing("the file with its weights", "attach")),
             (None, Some(_)) => return Err(missing("the file with its skeleton", "skel")),
         };
+    for other in [skel_file, attach_file] {
+        if !bare_name(other).to_lowercase().starts_with(&format!("{}.", stem.to_lowercase())) {
+            let problem =
+                format!("used for {}, though its name differs: it is the only file of its kind", bare_name(file));
+            warnings.push(Warning::Other { code: "obj-companion", place: other.to_owned(), problem });
+        }
+    }
     let skeleton = skel::read(skel, budget).map_err(|problem| problem.in_file(skel_file))?;
     let skin = skin(stem, &skeleton).map_err(|problem| problem.in_file(skel_file))?;
     let influences = attach::read(attach_file, attach, vertices, skeleton.len(), budget, warnings)
