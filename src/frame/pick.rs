@@ -13,9 +13,11 @@ pub enum PickedJoint {
     Source(usize),
 }
 
-/// How much of a bone belongs to the joint at its end: bones are short or thin.
-const BALL_TOLERANCES: f32 = 0.5;
-const MAX_BALL_SHARE: f32 = 0.3;
+/// A ball smaller than this share of the tolerance is hit as if it were as large.
+const MIN_BALL: f32 = 0.5;
+
+/// A ball is at most this share of its bone, so that the middle of a short one still belongs to it.
+const MAX_BALL: f32 = 0.3;
 
 /// Returns the joint whose ball is at a point of the viewport, otherwise the head joint of the nearest bone. x and y are from −1 (left,
 /// bottom) to 1; `tolerance` is the maximum distance in the units of y. Hidden bones count too.
@@ -34,8 +36,8 @@ pub fn pick_joint(frame: &Frame, point: Vec2, tolerance: f32) -> Option<PickedJo
         let along = tail - head;
         let share = ((point - head).dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
         let projected = |metres: f32| (projection.y_axis.y / depth).abs() * metres;
-        let ball = projected(bone.radius).max(BALL_TOLERANCES * tolerance);
-        let ball = ball.min(MAX_BALL_SHARE * projected(bone.head.distance(bone.tail)));
+        let ball = projected(bone.radius).max(MIN_BALL * tolerance);
+        let ball = ball.min(MAX_BALL * projected(bone.head.distance(bone.tail)));
         // Bones of the parent and of children meet in a ball, which is the joint's. The tiny bias prefers it for the rest, too.
         let from_head = point.distance(head);
         let to_bone = point.distance(head + share * along) + 1e-5 * share;

@@ -59,29 +59,33 @@ describe("written VRM animations play in three-vrm", { skip: skipWithoutData }, 
     for (const motion of MOTIONS) test(`${avatar} ← ${path.basename(motion)}`, () => compareInThreeVrm(dataFile(`vrm/${avatar}.vrm`), dataFile(motion)));
 });
 
-test("written VRM animations have the expressions and gazes of their motion", { skip: skipWithoutData }, async () => {
-  const motion = dataFile("vrm/three-vrm_test.vrma");
-  const out = path.join(folder, "face.vrma");
-  const { status, stderr } = await run("retarget", "--model", dataFile(`vrm/${AVATARS[1]}.vrm`), "--motion", motion, "--out", out);
-  assert.equal(status, 0, stderr);
-  const [expected, found] = await Promise.all(
-    [motion, out].map(async (file) => {
-      const { gltf } = await load(file, (parser) => new VRMAnimationLoaderPlugin(parser));
-      /** @type {import("@pixiv/three-vrm-animation").VRMAnimation} */
-      const { duration, expressionTracks, lookAtTrack } = gltf.userData.vrmAnimations[0];
-      assert.deepEqual([...expressionTracks.preset.keys()], ["happy"]);
-      const happy = expressionTracks.preset.get("happy");
-      assert.ok(happy && lookAtTrack, file);
-      const tracks = [happy, lookAtTrack].map((track) => /** @type {any} */ (track).createInterpolant());
-      return Array.from({ length: 50 }, (_, at) => tracks.map((track) => [...track.evaluate((duration * at) / 49)]));
-    }),
-  );
-  assert.ok(new Set(expected.map(([happy]) => happy[0])).size > 5, "the motion's face doesn't move");
-  expected.flat(2).forEach((value, at) => {
-    const written = found.flat(2)[at];
-    assert.ok(Math.abs(value - written) < 1e-5, `${value}, written as ${written}`);
-  });
+describe("written VRM animations have the expressions of their motion in three-vrm", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  for (const avatar of ["vrm0_EmissionMigration_v0.107.0", "vrm1_VRMC_vrm_expressions_isBinary_Overridden"])
+    test(avatar, async () => {
+      const motion = dataFile("vrm/three-vrm_test.vrma");
+      const out = path.join(folder, `${avatar}.vrma`);
+      const { status, stderr } = await run("retarget", "--model", dataFile(`vrm/${avatar}.vrm`), "--motion", motion, "--out", out);
+      assert.equal(status, 0, stderr);
+      const [expected, found] = await Promise.all([motion, out].map(happiness));
+      assert.ok(new Set(expected).size > 5, "the motion's face doesn't move");
+      expected.forEach((weight, at) => assert.ok(Math.abs(weight - found[at]) < 1e-5, `${weight}, written as ${found[at]}`));
+    });
 });
+
+/**
+ * Returns the weights of the only expression at fifty moments, as three-vrm reads them.
+ * @param {string} file
+ * @returns {Promise<number[]>}
+ */
+async function happiness(file) {
+  const { gltf } = await load(file, (parser) => new VRMAnimationLoaderPlugin(parser));
+  /** @type {import("@pixiv/three-vrm-animation").VRMAnimation} */
+  const { duration, expressionTracks } = gltf.userData.vrmAnimations[0];
+  assert.deepEqual([...expressionTracks.preset.keys()], ["happy"]);
+  const track = /** @type {any} */ (expressionTracks.preset.get("happy")).createInterpolant();
+  return Array.from({ length: 50 }, (_, at) => track.evaluate((duration * at) / 49)[0]);
+}
 
 /**
  * @param {string} model
