@@ -505,7 +505,7 @@ fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
     }
 }
 
-/// Whatever replaces the channel goes.
+/// Weights would be shown in its place, so they go.
 fn set_channel(state: &mut ViewerState, channel: Channel) {
     state.display.channel = channel;
     state.inspect.weights &= channel == Channel::Shaded;

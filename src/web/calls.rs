@@ -14,7 +14,7 @@ use wasm_bindgen_futures::JsFuture;
 use super::page::{Cancel, Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{AboutLink, Contents, short_name};
-use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view};
+use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view, within};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelId, Motion};
@@ -211,7 +211,7 @@ pub async fn complete_again() -> String {
 /// Shows how much of a model's complete file has arrived, while no other load shows its own progress.
 pub(super) fn rest_progress(page: &Page, name: &str, received_bytes: u64, total_bytes: u64) {
     if page.cancel_load.borrow().is_none() {
-        page.inbox.send(progress_of(name, received_bytes, total_bytes));
+        page.inbox.send(Message::OpenProgress(progress_of(name, received_bytes, total_bytes)));
     }
 }
 
@@ -310,24 +310,23 @@ struct Opened {
     problems: Vec<String>,
 }
 
-/// What takes longer to arrive is shown as being loaded.
+/// A server that takes longer to answer is shown as being waited for.
 const PATIENCE_MILLIS: i32 = 400;
 
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
     let latest = RefCell::new(Progress::default());
-    let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        latest.replace(Progress { name: name.to_owned(), received_bytes, total_bytes });
-        // What is in memory is read at once: a frame that shows it would only delay it.
-        if received_bytes > 0 && page.loads.is_latest(number) {
+    let show_progress = || {
+        if page.loads.is_latest(number) && !latest.borrow().name.is_empty() {
             page.inbox.send(Message::OpenProgress(latest.borrow().clone()));
         }
     };
-    // A server may take long to answer.
-    let show_waiting = || {
-        if page.loads.is_latest(number) && !latest.borrow().name.is_empty() {
-            page.inbox.send(Message::OpenProgress(latest.borrow().clone()));
+    let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
+        latest.replace(progress_of(name, received_bytes, total_bytes));
+        // What is in memory is read at once: a frame that shows it would only delay it.
+        if received_bytes > 0 {
+            show_progress();
         }
     };
     let shell_reports = matches!(request, Request::View { about_link: Some(_), .. });
@@ -346,8 +345,8 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
             }
         }
     };
-    let Some(opened) = unless_cancelled(&page.cancel_load, with_timer(read, PATIENCE_MILLIS, show_waiting)).await
-    else {
+    let read = with_patience(read, show_progress);
+    let Some(opened) = unless_cancelled(&page.cancel_load, read).await else {
         // The last bytes may have arrived together with the click.
         page.inbox.send(Message::OpenFailedSilently);
         return Err(Refusal::cancelled("Opening was cancelled."));
@@ -373,17 +372,13 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     }
 }
 
-/// Awaits a future, and calls a function if that takes longer than some time.
-async fn with_timer<T>(task: impl Future<Output = T>, millis: i32, on_late: impl FnOnce()) -> T {
-    let timer = Promise::new(&mut |resolve, _| {
-        let window = web_sys::window();
-        window.and_then(|window| window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, millis).ok());
-    });
-    match select(pin!(task), JsFuture::from(timer)).await {
-        Either::Left((done, _)) => done,
-        Either::Right((_, task)) => {
-            on_late();
-            task.await
+/// Awaits a load, and shows its progress if that takes long.
+async fn with_patience<T>(load: impl Future<Output = T>, show_progress: impl FnOnce()) -> T {
+    match within(pin!(load), PATIENCE_MILLIS).await {
+        Ok(loaded) => loaded,
+        Err(load) => {
+            show_progress();
+            load.await
         }
     }
 }
@@ -402,8 +397,8 @@ async fn unless_cancelled<T>(slot: &Cancel, load: impl Future<Output = T>) -> Op
     loaded
 }
 
-pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> Message {
-    Message::OpenProgress(Progress { name: name.to_owned(), received_bytes, total_bytes })
+pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> Progress {
+    Progress { name: name.to_owned(), received_bytes, total_bytes }
 }
 
 /// Hands opened files to the app; resolves once they are on screen. The shell reports missing files of links, and only

@@ -104,7 +104,7 @@ pub async fn run(
         let (model, problems) = shown??;
         if let (Some(model), Some(rest), Some(name)) = (model, rest, name) {
             page.rest.replace(Some((model, rest)));
-            page.inbox.send(progress_of(&name, 0, 0));
+            page.inbox.send(Message::OpenProgress(progress_of(&name, 0, 0)));
         }
         page.inbox.wake();
         Ok::<_, String>(problems)

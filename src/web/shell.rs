@@ -103,7 +103,7 @@ pub(super) fn set_shell(shell: Shell) {
 }
 
 fn shell() -> Option<Shell> {
-    SHELL.with(|slot| slot.try_borrow().ok().and_then(|slot| slot.clone()))
+    SHELL.with_borrow(Clone::clone)
 }
 
 pub(super) fn stopped(message: &str) {

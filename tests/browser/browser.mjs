@@ -1,6 +1,7 @@
 // Runs both back ends in Chromium on a software renderer, and wraps the page for tests. Tests find the shell's controls
 // by their ids.
 import fs from "node:fs";
+import http from "node:http";
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { serve } from "../../xtask/site/server.mjs";
@@ -160,6 +161,23 @@ async function openPage(browser, shared, address, { renderer, link = "model=samp
   await page.goto(`${program}${link === "" ? "" : `#${link}`}`);
   if (ready) await whenReady(page);
   return page;
+}
+
+/**
+ * Starts another server, which answers as a test wants.
+ * @param {http.RequestListener} answer
+ */
+export async function startServer(answer) {
+  const server = http.createServer(answer);
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(undefined)));
+  const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+  return {
+    address: `http://127.0.0.1:${port}`,
+    close: () => {
+      server.closeAllConnections();
+      server.close();
+    },
+  };
 }
 
 // Conditions that scripts simulate in a page.

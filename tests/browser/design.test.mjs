@@ -1,10 +1,9 @@
 // One design: what surrounds the canvas has the font, colours and text sizes of the panels in it.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import http from "node:http";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
-import { BACK_ENDS, control, eventually, startSite, state, until, whenModel } from "./browser.mjs";
+import { BACK_ENDS, control, eventually, startServer, startSite, state, until, whenModel } from "./browser.mjs";
 
 const THEME = fs.readFileSync("web/theme.css", "utf8");
 const SIZES = ["small", "body", "heading"].map((name) => value(name));
@@ -81,36 +80,29 @@ for (const renderer of BACK_ENDS)
 
     test("a load that the server doesn't answer yet is shown and can be cancelled", async () => {
       let isAsked = false;
-      const silent = http.createServer(() => (isAsked = true));
-      await new Promise((resolve) => silent.listen(0, "127.0.0.1", () => resolve(undefined)));
-      const address = silent.address();
-      assert.ok(typeof address === "object" && address !== null);
+      const silent = await startServer(() => (isAsked = true));
       const page = await site.page({ renderer });
-      const opened = page.evaluate((url) => window.gaitway.open(url).then(() => "opened", ({ message }) => message), `http://127.0.0.1:${address.port}/silent.glb`);
+      const opened = page.evaluate((url) => window.gaitway.open(url).then(() => "opened", ({ message }) => message), `${silent.address}/silent.glb`);
       await page.locator("#mirror").getByText("Opening silent.glb").first().waitFor({ state: "attached" });
       assert.ok(isAsked);
       await control(page, "button", "Cancel").press("Enter");
       assert.equal(await opened, "Opening was cancelled.");
       await until(page, () => document.querySelector("#mirror")?.textContent?.includes("silent.glb") === false);
       assert.deepEqual(page.troubles, []);
-      silent.closeAllConnections();
       silent.close();
       await page.finish();
     });
 
     test("a long load says how far it is and can be cancelled", async () => {
       let isClosed = false;
-      const slow = http.createServer((_, response) => {
+      const slow = await startServer((_, response) => {
         response.writeHead(200, { "access-control-allow-origin": "*", "content-length": 4_000_000 });
         response.write(Buffer.alloc(1_000_000));
         response.on("close", () => (isClosed = true));
       });
-      await new Promise((resolve) => slow.listen(0, "127.0.0.1", () => resolve(undefined)));
-      const address = slow.address();
-      assert.ok(typeof address === "object" && address !== null);
       const page = await site.page({ renderer });
       const before = await state(page);
-      const opened = page.evaluate((url) => window.gaitway.open(url).then(() => "opened", ({ message }) => message), `http://127.0.0.1:${address.port}/large.glb`);
+      const opened = page.evaluate((url) => window.gaitway.open(url).then(() => "opened", ({ message }) => message), `${slow.address}/large.glb`);
       await page.locator("#mirror").getByText("1.0 of 4.0 MB", { exact: true }).waitFor({ state: "attached" });
       await control(page, "button", "Cancel").press("Enter");
       assert.equal(await opened, "Opening was cancelled.");
@@ -120,7 +112,6 @@ for (const renderer of BACK_ENDS)
       await page.evaluate(() => window.gaitway.open("sample:creature"));
       await whenModel(page, "sample:creature");
       assert.deepEqual(page.troubles, []);
-      slow.closeAllConnections();
       slow.close();
       await page.finish();
     });

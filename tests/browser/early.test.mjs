@@ -1,9 +1,8 @@
 // A link's model is shown as soon as nothing but its images is missing, from a server that sends them only when told to.
 import assert from "node:assert/strict";
-import http from "node:http";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
-import { BACK_ENDS, apply, control, drop, eventually, open, picture, startSite, state, toggleInspector, until } from "./browser.mjs";
+import { BACK_ENDS, apply, control, drop, eventually, open, picture, startServer, startSite, state, toggleInspector, until } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
@@ -67,31 +66,25 @@ async function cube() {
  * @param {Buffer} file
  */
 async function serveSlowly(file) {
-  /** @type {http.ServerResponse[]} */
+  /** @type {import("node:http").ServerResponse[]} */
   const waiting = [];
   let requests = 0;
-  const server = http.createServer((_, response) => {
+  const { address, close } = await startServer((_, response) => {
     requests += 1;
     response.writeHead(200, { "access-control-allow-origin": "*", "cache-control": "no-store", "content-length": file.length });
     if (requests > 1) return void response.end(file);
     response.write(file.subarray(0, file.length - IMAGE_BYTES + 100));
     waiting.push(response);
   });
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(undefined)));
-  const address = server.address();
-  assert.ok(typeof address === "object" && address !== null);
   return {
-    url: `http://127.0.0.1:${address.port}/cube.glb`,
+    url: `${address}/cube.glb`,
     requests: () => requests,
     /** Sends some more. */
     more: () => waiting.forEach((response) => response.write(file.subarray(file.length - IMAGE_BYTES + 100, file.length - IMAGE_BYTES + 200))),
     finish: () => waiting.forEach((response) => response.end(file.subarray(file.length - IMAGE_BYTES + 100))),
     cut: () => waiting.forEach((response) => response.destroy()),
     isClosed: () => waiting.every((response) => response.closed),
-    close: () => {
-      server.closeAllConnections();
-      server.close();
-    },
+    close,
   };
 }
 

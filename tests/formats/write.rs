@@ -15,7 +15,7 @@ use crate::data_folder::data_folder;
 use crate::sweep::{GLTF, file_set, models_under};
 
 /// Returns JSON and binary chunk of a GLB, after checking the container.
-fn chunks_of(file: &[u8]) -> (String, &[u8]) {
+pub fn chunks_of(file: &[u8]) -> (String, &[u8]) {
     let word = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().expect("four bytes")) as usize;
     assert_eq!((&file[..4], word(4), word(8)), (&b"glTF"[..], 2, file.len()));
     let json = 20..20 + word(12);
@@ -24,7 +24,7 @@ fn chunks_of(file: &[u8]) -> (String, &[u8]) {
     (String::from_utf8(file[json].to_vec()).expect("UTF-8"), binary)
 }
 
-fn json_of(file: &[u8]) -> Value {
+pub fn json_of(file: &[u8]) -> Value {
     serde_json::from_str(&chunks_of(file).0).expect("JSON")
 }
 

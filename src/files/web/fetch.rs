@@ -1,9 +1,10 @@
 //! Fetches files with progress, a budget and errors that say what to do.
 
-use js_sys::{Array, Promise, Reflect, Uint8Array};
+use js_sys::{Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
+use super::within;
 use crate::files::OpenError;
 use crate::files::source::Reading;
 
@@ -21,7 +22,7 @@ pub async fn fetch(
     let unreachable = || OpenError::Unreachable { url: url.to_owned() };
     let window = web_sys::window().ok_or_else(unreachable)?;
     let silent = || OpenError::Silent { url: url.to_owned(), secs: MAX_SILENT_SECS };
-    let response = match unless_silent(&window, window.fetch_with_str(url)).await.ok_or_else(silent)? {
+    let response = match unless_silent(window.fetch_with_str(url)).await.ok_or_else(silent)? {
         Ok(response) => response,
         Err(_) => return Err(why_not_fetched(&window, url).await),
     };
@@ -41,7 +42,7 @@ pub async fn fetch(
     let mut download = Download { reader: body.get_reader().unchecked_into(), is_over: false };
     loop {
         let broke_off = |received: usize| OpenError::BrokeOff { url: url.to_owned(), received: received as u64 };
-        let chunk = unless_silent(&window, download.reader.read()).await.ok_or_else(silent)?;
+        let chunk = unless_silent(download.reader.read()).await.ok_or_else(silent)?;
         download.is_over = chunk.is_err();
         let chunk = chunk.map_err(|_| broke_off(bytes.len()))?;
         if Reflect::get(&chunk, &"done".into()).is_ok_and(|done| done.is_truthy()) {
@@ -75,17 +76,9 @@ impl Drop for Download {
     }
 }
 
-/// Awaits a promise that resolves to an object; `None` if it takes too long.
-async fn unless_silent(window: &web_sys::Window, promise: Promise) -> Option<Result<JsValue, JsValue>> {
-    let mut timer = None;
-    let limit = Promise::new(&mut |resolve, _| {
-        let millis = 1000 * MAX_SILENT_SECS as i32;
-        timer = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, millis).ok();
-    });
-    let answer = JsFuture::from(Promise::race(&Array::of2(&promise, &limit))).await;
-    timer.inspect(|&timer| window.clear_timeout_with_handle(timer));
-    let is_late = answer.as_ref().is_ok_and(JsValue::is_undefined);
-    (!is_late).then_some(answer)
+/// Awaits a promise; `None` if it takes too long.
+async fn unless_silent(promise: Promise) -> Option<Result<JsValue, JsValue>> {
+    within(JsFuture::from(promise), 1000 * MAX_SILENT_SECS as i32).await.ok()
 }
 
 /// Finds out why a request failed, which browsers do not say: an opaque request still tells whether the site answers.

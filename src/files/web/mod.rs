@@ -3,6 +3,7 @@
 mod fetch;
 mod images;
 mod parts;
+mod timer;
 
 use std::cell::RefCell;
 use std::ffi::OsStr;
@@ -10,6 +11,8 @@ use std::ffi::OsStr;
 use gaitway_part::Answer;
 use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
+
+pub use timer::within;
 
 use super::source::{Content, Located, Progress, Reading, Source};
 use super::{EarlyWatch, Held, Item, OpenError, Role, open, raw_address, view};

@@ -236,16 +236,16 @@ fn find_model(files: &FileSet) -> Result<(&str, &SharedBytes), LoadError> {
                 let (format, advice) = foreign_format(name)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format, advice })
             })
-            .or_else(|| files.names().find_map(without_gltf))
+            .or_else(|| files.names().find(|name| extension(name) == "bin").map(without_gltf))
             .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
     }
 }
 
 /// The error for a glTF's buffer without its .gltf.
-fn without_gltf(file: &str) -> Option<LoadError> {
-    let stem = bare_name(without_query(file)).strip_suffix(".bin")?;
+fn without_gltf(file: &str) -> LoadError {
+    let (stem, _) = split_extension(file);
     let place = "the model it belongs to".to_owned();
-    Some(LoadError::MissingFile { file: file.to_owned(), place, uri: format!("{stem}.gltf") })
+    LoadError::MissingFile { file: file.to_owned(), place, uri: format!("{stem}.gltf") }
 }
 
 fn is_model(name: &str, bytes: &[u8]) -> bool {
@@ -315,6 +315,11 @@ fn foreign_format(name: &str) -> Option<(&'static str, &'static str)> {
 
 /// The file extension in lower case, even if a URL has a query.
 fn extension(name: &str) -> String {
+    split_extension(name).1.to_lowercase()
+}
+
+/// The bare name without its extension, and the extension.
+fn split_extension(name: &str) -> (&str, &str) {
     let bare = bare_name(without_query(name));
-    bare.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_lowercase())
+    bare.rsplit_once('.').unwrap_or((bare, ""))
 }

@@ -162,8 +162,8 @@ fn rig(
             (Some(_), None) => return Err(missing("the file with its weights", "attach")),
             (None, Some(_)) => return Err(missing("the file with its skeleton", "skel")),
         };
-    for other in [skel_file, attach_file] {
-        if !bare_name(other).to_lowercase().starts_with(&format!("{}.", stem.to_lowercase())) {
+    for (other, kind) in [(skel_file, "skel"), (attach_file, "attach")] {
+        if sibling_name(file, kind).is_none_or(|name| name.to_lowercase() != bare_name(other).to_lowercase()) {
             let problem =
                 format!("used for {}, though its name differs: it is the only file of its kind", bare_name(file));
             warnings.push(Warning::Other { code: "obj-companion", place: other.to_owned(), problem });

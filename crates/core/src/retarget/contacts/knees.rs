@@ -28,7 +28,8 @@ struct Wish {
 /// Returns all channels of the clip with its knees on the ground, or `None` if none rest there. `resampled` lists the joints whose
 /// keys in `clip` are not the source's own.
 pub fn grounded_knees(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
-    let Scene { transfer, times, poses, .. } = scene;
+    let Scene { transfer, poses, .. } = scene;
+    let times = &scene.source.times;
     let legs: Vec<(Leg, Vec<Option<Wish>>)> = (0..2).filter_map(|side| wishes(scene, side)).collect();
     if legs.iter().all(|(_, wishes)| wishes.iter().all(Option::is_none)) {
         return None;
@@ -77,7 +78,7 @@ fn wishes(scene: &Scene, side: usize) -> Option<(Leg, Vec<Option<Wish>>)> {
     let (leg, _) = Leg::mapped(scene.transfer)[side]?;
     let shin = bodies.target.joints.iter().position(|&joint| joint == leg.knee)?;
     let sole = bodies.target.soles.index(side);
-    let (source, soles) = (source.soles.get(sole)?, target.soles.get(sole)?);
+    let (source, soles) = (source.motion.soles.get(sole)?, target.soles.get(sole)?);
     let low = LOW * bodies.target.height;
     let plants = scene.transfer.map.feet == Feet::Plant;
     let wish = |at: usize| {

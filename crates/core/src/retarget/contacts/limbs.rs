@@ -7,9 +7,8 @@ use glam::{DQuat, DVec3};
 use super::body::{Bodies, Frames, place_of};
 use super::ground::{Ground, Sunken};
 use super::limb::{ARMS, LIMBS, Limb};
-use super::scene::Scene;
+use super::scene::{Scene, SourceScene};
 use super::smooth::eased;
-use super::touch::Touches;
 use super::wish::Wish;
 use super::{MAX_MOVE, MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC, MIN_MOVE};
 use crate::anim::{Clip, JointIndex};
@@ -37,15 +36,6 @@ const CLEARLY_INSIDE: f64 = 0.003;
 /// stands. Other times are sampled when slide is measured: the first is more than a frame.
 const LANDING_SECS: [f64; 2] = [0.05, 0.2];
 
-/// One moment of the clip.
-struct Moment {
-    /// With the limbs moved so far.
-    frames: Frames,
-    touches: Touches,
-    /// Turn and scale.
-    target_from_source: (DQuat, f64),
-}
-
 /// A point of a limb that is deeper inside another part, or in the ground, than it may be.
 struct Overlap {
     limb: usize,
@@ -57,10 +47,11 @@ struct Overlap {
 
 struct Solver<'a> {
     bodies: &'a Bodies,
-    times: Vec<f32>,
+    source: SourceScene,
     /// The clip without corrections.
     poses: Vec<WorldPose>,
-    moments: Vec<Moment>,
+    /// The parts of the target at each time, with the limbs moved so far.
+    frames: Vec<Frames>,
     limbs: [Option<Limb>; LIMBS],
     /// How freely each ankle moves at each time: from 0, where the leg stands or kneels, to 1.
     freedom: [Vec<f64>; LIMBS - ARMS],
@@ -93,21 +84,16 @@ pub fn kept_limbs(scene: Scene, clip: &Clip, resampled: &[JointIndex]) -> Option
         let turns = turns.each_ref().map(Vec::as_slice);
         rotations.extend(limb_rotations(skeleton, limb.joints(), &solver.poses, turns));
     }
-    (!rotations.is_empty()).then(|| NewChannel::corrected(clip, resampled, &solver.times, None, rotations))
+    (!rotations.is_empty()).then(|| NewChannel::corrected(clip, resampled, &solver.source.times, None, rotations))
 }
 
 impl<'a> Solver<'a> {
     fn new(scene: Scene<'a>) -> Self {
-        let scale = scene.transfer.scale();
-        let targets: Vec<_> = (0..scene.times.len()).map(|at| scene.target_from_source(at)).collect();
-        let Scene { transfer, bodies, times, source, touches, removed, poses, target, ground } = scene;
-        let mut moments = Vec::with_capacity(times.len());
-        for ((target_from_source, frames), touches) in targets.into_iter().zip(target.frames).zip(touches) {
-            moments.push(Moment { frames, touches, target_from_source });
-        }
+        let Scene { transfer, bodies, source, poses, target, ground } = scene;
+        let times = &source.times;
         let limbs = Limb::mapped(transfer, bodies);
         let freedom = [0, 1].map(|side| match &ground {
-            Some(ground) => freedom(&times, &ground.standing(bodies, side)),
+            Some(ground) => freedom(times, &ground.standing(bodies, side)),
             None => vec![0.0; times.len()],
         });
         let moves = std::array::from_fn(|_| vec![DVec3::ZERO; times.len()]);
@@ -116,31 +102,31 @@ impl<'a> Solver<'a> {
             let Some(arm) = bodies.regions[part.part].arm().filter(|&arm| limbs[arm].is_some()) else { continue };
             // How far the wrist is from where the source's is: constant if it goes over the ground like that.
             let offset = |at: usize| {
-                let turn_back = moments[at].target_from_source.0.conjugate();
+                let (turn, scale) = source.target_from_source(at);
                 let wrist = bodies.target.joints[part.part];
-                let wrist = removed.restored(transfer, &poses[at], wrist, at, turn_back);
-                (wrist - scale * source.frames[at][part.part].0) * HORIZONTAL
+                let wrist = source.removed.restored(transfer, &poses[at], wrist, at, turn.conjugate());
+                (wrist - scale * source.motion.frames[at][part.part].0) * HORIZONTAL
             };
             for contact in ranges(touching) {
                 let offsets: Vec<DVec3> = contact.clone().map(offset).collect();
                 let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
                 for (at, offset) in contact.zip(offsets) {
-                    holds[arm][at] = moments[at].target_from_source.0 * (mean - offset);
+                    holds[arm][at] = source.target_from_source(at).0 * (mean - offset);
                 }
             }
         }
-        Self { bodies, times, poses, moments, limbs, freedom, ground, holds, moves }
+        Self { bodies, source, poses, frames: target.frames, limbs, freedom, ground, holds, moves }
     }
 
     /// What touches on the source should touch on the target.
     fn touch(&self, at: usize) -> Wishes {
-        let moment = &self.moments[at];
+        let frames = &self.frames[at];
         let mut wishes = [Wish::default(); LIMBS];
-        for miss in self.bodies.misses(&moment.touches, &moment.frames, moment.target_from_source) {
+        for miss in self.bodies.misses(&self.source.touches[at], frames, self.source.target_from_source(at)) {
             let pair = &self.bodies.pairs[miss.pair];
             self.wish(&mut wishes, at, (pair.limb, 1.0), Some(pair.other), miss.by, [miss.weight; 2]);
         }
-        for (part, by) in self.ground.iter().flat_map(|ground| ground.misses(self.bodies, at, &moment.frames)) {
+        for (part, by) in self.ground.iter().flat_map(|ground| ground.misses(self.bodies, at, frames)) {
             if let Some(arm) = self.bodies.regions[part].arm() {
                 let over = (self.holds[arm][at] - self.moves[arm][at]) * HORIZONTAL;
                 self.wish(&mut wishes, at, (part, 1.0), None, over + by * DVec3::Y, [1.0; 2]);
@@ -172,8 +158,8 @@ impl<'a> Solver<'a> {
 
     fn overlaps(&self, at: usize) -> Vec<Overlap> {
         let target = &self.bodies.target;
-        let moment = &self.moments[at];
-        let frames = &moment.frames;
+        let frames = &self.frames[at];
+        let touches = &self.source.touches[at];
         let tolerated = TOLERATED * target.height;
         let sunken = self.ground.iter().flat_map(|ground| ground.sunken(self.bodies, at, frames, tolerated));
         let mut overlaps: Vec<Overlap> = sunken
@@ -187,7 +173,7 @@ impl<'a> Solver<'a> {
             .collect();
         for meeting in self.bodies.meetings(target, frames, 0.0) {
             let pair = &self.bodies.pairs[meeting.pair];
-            let of_source = moment.target_from_source.1 * moment.touches.depth(meeting.pair, meeting.point);
+            let of_source = self.source.scale * touches.depth(meeting.pair, meeting.point);
             let allowed = pair.at_rest[meeting.point].max(of_source) + tolerated;
             let excess = -meeting.distance - allowed;
             if excess > 0.0 {
@@ -234,19 +220,19 @@ impl<'a> Solver<'a> {
 
     /// Moves the ends of the limbs further, smoothly over time.
     fn add(&mut self, wishes: fn(&Self, usize) -> Wishes) {
-        let wishes: Vec<Wishes> = (0..self.times.len()).map(|at| wishes(self, at)).collect();
+        let wishes: Vec<Wishes> = (0..self.frames.len()).map(|at| wishes(self, at)).collect();
         let limit = MAX_MOVE * self.bodies.target.height;
         for limb in 0..LIMBS {
             let wanted: Vec<(DVec3, f64)> = wishes.iter().map(|wishes| wishes[limb].fit()).collect();
-            for (at, more) in eased(&self.times, &wanted).into_iter().enumerate() {
+            for (at, more) in eased(&self.source.times, &wanted).into_iter().enumerate() {
                 let freedom = self.freedom(limb, at);
                 let by = &mut self.moves[limb][at];
                 *by = (*by + freedom * more).clamp_length_max(limit);
             }
         }
-        for at in 0..self.times.len() {
+        for at in 0..self.frames.len() {
             let turns = std::array::from_fn(|limb| self.reach(limb, at));
-            self.moments[at].frames = self.turned_frames(at, turns);
+            self.frames[at] = self.turned_frames(at, turns);
         }
     }
 
@@ -281,13 +267,13 @@ impl<'a> Solver<'a> {
     fn turns(&self, limb: usize) -> [Vec<DQuat>; 2] {
         let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
         let mut turns = [Vec::new(), Vec::new()];
-        for at in 0..self.times.len() {
+        for at in 0..self.frames.len() {
             let [upper, lower] = self.reach(limb, at);
             turns[0].push(upper);
             turns[1].push(lower);
         }
         for turns in &mut turns {
-            limit_turns(&self.times, turns, max_turn, max_rate);
+            limit_turns(&self.source.times, turns, max_turn, max_rate);
         }
         turns
     }

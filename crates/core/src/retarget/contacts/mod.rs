@@ -18,10 +18,9 @@ mod trunk;
 mod wish;
 
 pub use body::{Bodies, BodyMotion};
-pub use ground::Ground;
 pub use knees::grounded_knees;
 pub use limbs::kept_limbs;
-pub use scene::Scene;
+pub use scene::{Scene, SourceScene};
 pub use touch::TouchFigures;
 pub use trunk::leaning_trunk;
 

@@ -29,6 +29,8 @@ struct Trunk {
     spine: Vec<JointIndex>,
     /// Upper arms and neck, which keep their directions.
     ends: Vec<JointIndex>,
+    /// Whether each part of the body goes along.
+    carries: Vec<bool>,
 }
 
 impl Trunk {
@@ -42,7 +44,8 @@ impl Trunk {
         let ends: Vec<JointIndex> = shoulders.chain(joint(Slot::Neck).or_else(|| joint(Slot::Head))).collect();
         let top = *spine.last()?;
         let is_chain = spine.windows(2).all(|pair| is_within(skeleton, pair[1], pair[0]));
-        (is_chain && ends.iter().all(|&end| is_within(skeleton, end, top))).then_some(Self { spine, ends })
+        let carries = scene.bodies.target.joints.iter().map(|&joint| is_within(skeleton, joint, spine[0])).collect();
+        (is_chain && ends.iter().all(|&end| is_within(skeleton, end, top))).then_some(Self { spine, ends, carries })
     }
 
     /// The point about which what is above the spine turns, to first order: each of its joints turns by an equal part.
@@ -73,16 +76,17 @@ impl Trunk {
 /// in `clip` are not the source's own.
 pub fn leaning_trunk(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
     let trunk = Trunk::mapped(scene)?;
-    let wanted: Vec<(DVec3, f64)> = (0..scene.times.len()).map(|at| wanted_lean(scene, &trunk, at)).collect();
+    let wanted: Vec<(DVec3, f64)> = (0..scene.poses.len()).map(|at| wanted_lean(scene, &trunk, at)).collect();
     if wanted.iter().all(|(_, share)| *share == 0.0) {
         return None;
     }
-    let leans = eased(&scene.times, &wanted);
+    let times = &scene.source.times;
+    let leans = eased(times, &wanted);
     let mut turns: Vec<DQuat> = leans.into_iter().map(DQuat::from_scaled_axis).collect();
     let [max_turn, max_rate] = [MAX_LEAN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
-    limit_turns(&scene.times, &mut turns, max_turn, max_rate);
+    limit_turns(times, &mut turns, max_turn, max_rate);
     let rotations = trunk.rotations(scene, &turns);
-    Some(NewChannel::corrected(clip, resampled, &scene.times, None, rotations))
+    Some(NewChannel::corrected(clip, resampled, times, None, rotations))
 }
 
 /// How the chest would turn for the shoulders to be where arms reach from, as a scaled axis, and how much that is wanted.
@@ -113,14 +117,12 @@ fn wanted_lean(scene: &Scene, trunk: &Trunk, at: usize) -> (DVec3, f64) {
 
 /// What the source touches with each arm that the trunk doesn't carry: legs, hips and the ground.
 fn wishes(scene: &Scene, trunk: &Trunk, at: usize) -> [Wish; ARMS] {
-    let bodies = scene.bodies;
+    let Scene { bodies, source, .. } = scene;
     let frames = &scene.target.frames[at];
-    let is_carried =
-        |part: usize| is_within(scene.transfer.target_skeleton, bodies.target.joints[part], trunk.spine[0]);
     let mut wishes = [Wish::default(); ARMS];
-    for miss in bodies.misses(&scene.touches[at], frames, scene.target_from_source(at)) {
+    for miss in bodies.misses(&source.touches[at], frames, source.target_from_source(at)) {
         let pair = &bodies.pairs[miss.pair];
-        if let Some(arm) = bodies.regions[pair.limb].arm().filter(|_| !is_carried(pair.other)) {
+        if let Some(arm) = bodies.regions[pair.limb].arm().filter(|_| !trunk.carries[pair.other]) {
             wishes[arm].add(miss.by, 1.0, miss.weight, miss.weight);
         }
     }

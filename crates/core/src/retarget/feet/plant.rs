@@ -22,7 +22,7 @@ use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::limit::limit_turns;
 use crate::retarget::pose::{Scratch, WorldPose, moved};
 use crate::retarget::times::{dense_times, near};
-use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+use crate::retarget::transfer::{Transfer, removed_travel};
 use crate::retarget::two_bones::limb_rotations;
 
 /// The hips come down by at most this share of their height for a leg to reach.
@@ -184,8 +184,7 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
 
 /// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.
 fn ground_travel(transfer: &Transfer, times: &[f32], source: &Ground) -> Vec<DVec3> {
-    let (laws, _) = rotation_laws(transfer);
-    let removed = removed_travel(transfer, &laws, times);
+    let removed = removed_travel(transfer, times);
     let scale = transfer.scale();
     source.travel.iter().enumerate().map(|(at, &travel)| scale * travel - removed.horizontal(at)).collect()
 }

@@ -9,13 +9,13 @@ use super::smoothness::smoothness;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
-use crate::retarget::contacts::{Bodies, BodyMotion, Ground, TouchFigures};
+use crate::retarget::contacts::{Bodies, BodyMotion, SourceScene, TouchFigures};
 use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
 use crate::retarget::math::{angle_between, degrees_between};
 use crate::retarget::pose::{Local, PartialPose, Scratch, WorldPose};
-use crate::retarget::transfer::{Transfer, lowest_leg_joint, removed_travel, rotation_laws};
+use crate::retarget::transfer::{Transfer, lowest_leg_joint, removed_travel};
 
 /// Quality figures; `None` for what cannot be measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -117,8 +117,7 @@ pub fn measure(
     measured: MeasuredClip,
 ) -> (Figures, Vec<FootTrack>) {
     let times = measured_times(transfer.tracks.clip);
-    let (laws, _) = rotation_laws(transfer);
-    let removed = removed_travel(transfer, &laws, &times);
+    let removed = removed_travel(transfer, &times);
     let segments = mapped_segments(transfer, compared_segments());
     let facing_segments = mapped_segments(transfer, FACING.into_iter());
     let ground_joints: Vec<JointIndex> = ON_GROUND.into_iter().filter_map(|slot| target_slots.joint(slot)).collect();
@@ -269,18 +268,14 @@ fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFi
     let Some(bodies) = bodies.filter(|bodies| bodies.target.has_mesh) else { return figures };
     let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
     let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
-    let source = bodies.source_motion(transfer, &times);
-    let (laws, _) = rotation_laws(transfer);
-    let removed = removed_travel(transfer, &laws, &times);
-    let scale = transfer.scale();
+    let source = SourceScene::new(transfer, bodies, times);
     let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());
     let mut target = BodyMotion::default();
-    times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));
-    let ground = Ground::new(transfer, bodies, &times, [&source, &target], scale);
-    for (at, touches) in bodies.touches(&times, &source.frames).iter().enumerate() {
-        let frames = &target.frames[at];
+    source.times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));
+    let ground = source.ground(transfer, bodies, &target);
+    for (at, frames) in target.frames.iter().enumerate() {
         let on_ground = ground.iter().flat_map(|ground| ground.misses(bodies, at, frames)).map(|(_, by)| by);
-        figures.add(bodies, touches, on_ground, frames, (removed.turn(times[at]), scale));
+        figures.add(bodies, &source.touches[at], on_ground, frames, source.target_from_source(at));
     }
     figures
 }

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::heading::Yaw;
 use super::path::{HipsPath, Travel};
-use super::{Hips, RotationLaw, Transfer};
+use super::{Hips, Transfer, rotation_laws};
 use crate::anim::{Interpolation, JointIndex, Keys};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::map::{ResolvedMap, RootPart};
@@ -124,7 +124,7 @@ impl RemovedTravel {
     }
 }
 
-pub fn removed_travel(transfer: &Transfer, laws: &[RotationLaw], times: &[f32]) -> RemovedTravel {
+pub fn removed_travel(transfer: &Transfer, times: &[f32]) -> RemovedTravel {
     let Some(hips) = transfer.hips else { return RemovedTravel::default() };
     let Some(path) = HipsPath::new(transfer, hips) else { return RemovedTravel::default() };
     let Travel { first_secs, slope, .. } = path.travel;
@@ -134,7 +134,10 @@ pub fn removed_travel(transfer: &Transfer, laws: &[RotationLaw], times: &[f32]) 
     };
     let yaw = match path.policy.extraction_joint {
         Some(_) => None,
-        None => laws[hips.top_pair(transfer.map, transfer.target_skeleton)].yaw.clone(),
+        None => {
+            let (laws, _) = rotation_laws(transfer);
+            laws[hips.top_pair(transfer.map, transfer.target_skeleton)].yaw.clone()
+        }
     };
     RemovedTravel { horizontal: times.iter().map(|&time| removed(time)).collect(), yaw }
 }
