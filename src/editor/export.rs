@@ -165,7 +165,7 @@ impl Editor {
         }
         let borrowed = model.borrowed(clip);
         let mut baked = self.baked_clip(clip)?;
-        if borrowed.is_none() {
+        if borrowed.is_none() && !model.is_copy(clip) {
             let derived = baked.clip.take().or_else(|| model.clip(clip).cloned());
             baked.clip = derived.map(|clip| ChangedClip { clip, seam: None }.renamed());
         }

@@ -147,11 +147,12 @@ impl Editor {
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
+        let chooses_copy = matches!(command, Command::CopyClip { .. } | Command::RemoveCopy(_));
         // A whole view chooses its clip itself.
-        let is_map_edit = affects_retargeting && !matches!(command, Command::Replace(_));
+        let is_map_edit = affects_retargeting && !chooses_copy && !matches!(command, Command::Replace(_));
         let playing = if is_map_edit { self.retargeted_clip() } else { None };
         let reframes = matches!(command, Command::SetUp(_));
-        let is_other_clip = matches!(command, Command::SetClip(_)) && self.automatic_view().is_some();
+        let is_other_clip = (chooses_copy || matches!(command, Command::SetClip(_))) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
         let view_before = if is_map_edit { self.automatic_view() } else { None };
@@ -161,15 +162,15 @@ impl Editor {
         if reframes {
             self.apply(Command::FrameAll);
         }
-        if is_other_clip {
-            self.suit_automatic_follow();
-        }
         if affects_retargeting {
             let problems = self.retarget();
             match view {
                 Some(view) => self.settle_view(&view, problems),
                 None => self.report(problems),
             }
+        }
+        if is_other_clip {
+            self.suit_automatic_follow();
         }
         if is_map_edit {
             self.follow_clip(playing);
@@ -299,5 +300,7 @@ fn affects_retargeting(command: &Command) -> bool {
             | Command::SetFeet(_)
             | Command::SetContacts(_)
             | Command::ChangeClip { .. }
+            | Command::CopyClip { .. }
+            | Command::RemoveCopy(_)
     )
 }

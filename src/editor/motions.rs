@@ -6,7 +6,7 @@ use crate::library::{BorrowError, BorrowedClip, Library, Model, ModelId, Motion,
 use crate::retarget::{JointMap, MapError};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
-    choice_of_clip, clip_changes,
+    choice_of_clip, clip_changes, clip_copies, unknown_clip,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -157,7 +157,7 @@ impl Editor {
         problems.join("\n")
     }
 
-    /// Retargets the motions' clips and applies changes to clips where their inputs differ from before; returns problems not
+    /// Retargets the motions' clips, copies clips and applies changes to them where their inputs differ from before; returns problems not
     /// reported yet.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
@@ -174,6 +174,8 @@ impl Editor {
             new.extend(errors.iter().filter(|error| !self.reported.contains(error)).cloned());
             self.reported = errors;
         }
+        let copies = self.library.active().map(|model| clip_copies(model, &self.state)).unwrap_or_default();
+        self.needs_redraw |= self.library.copy_clips(&copies);
         let changes = self.library.active().map(|model| clip_changes(model, &self.state)).unwrap_or_default();
         self.needs_redraw |= self.library.change_clips(&changes);
         new
@@ -203,7 +205,9 @@ impl Editor {
     /// Returns the active clip if it is retargeted.
     pub(super) fn retargeted_clip(&self) -> Option<ClipIdentity> {
         let model = self.library.active()?;
-        let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
+        // A copy keeps its name, whatever becomes of the others.
+        let clip = active_clip(model, &self.state).filter(|&clip| !model.is_copy(clip))?;
+        let borrowed = model.borrowed(clip)?;
         let first = ClipIdentity::first_of(self.library.motions().get(borrowed.motion)?);
         let time_secs = self.state.playhead.time_secs;
         Some(ClipIdentity { source_clip: borrowed.source_clip, time_secs, ..first })
@@ -315,6 +319,9 @@ impl Editor {
         match playing {
             Some(_) if self.library.motions().is_empty() => self.apply(Command::SetClip(ClipChoice::First)),
             Some(clip) if self.keep_retargeted(&clip) => {}
+            None if self.library.active().is_some_and(|model| unknown_clip(model, &self.state).is_some()) => {
+                self.apply(Command::SetClip(ClipChoice::First));
+            }
             playing => self.choose_retargeted(playing),
         }
         self.notify_undoable(format!("Removed motion {name}."));

@@ -9,10 +9,10 @@ use super::maps;
 use super::pins;
 use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, Channel, ClipChoice, Command, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Playhead, Selection,
-    VertexChoice, ViewerState,
+    CameraChoice, Channel, ClipChoice, ClipCopy, Command, Edits, Fade, Hidden, KeyLight, LookTarget, OrbitCamera,
+    Playhead, Selection, VertexChoice, ViewerState,
 };
-use crate::anim::{LoopMode, TimeRange};
+use crate::anim::{Clip, LoopMode, TimeRange};
 use crate::library::{Library, Model};
 use crate::retarget::{ClipChanges, ClipLayer, JointMap};
 
@@ -48,6 +48,8 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
+        Command::CopyClip { clip, changes } => copy_clip(state, model, clip, *changes),
+        Command::RemoveCopy(clip) => remove_copy(state, model, clip),
         Command::SetLayers(layers) => set_layers(state, layers),
         Command::SetShow(show) => state.display.show = show,
         Command::SetChannel(channel) => set_channel(state, channel),
@@ -164,6 +166,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
         rename(state, None, joint, &name);
     }
     state.edits.clips.clear();
+    state.edits.copies.truncate(Edits::MAX_COPIES);
     for (name, changes) in wanted.edits.clips {
         insert_changes(state, name, changes.clamped());
     }
@@ -467,6 +470,33 @@ fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, chan
     insert_changes(state, name, changes);
 }
 
+fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
+    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
+    let original = model.original(clip);
+    let ClipChoice::Named(of) = choice_of_clip(model, original) else { return };
+    if state.edits.copies.len() == Edits::MAX_COPIES {
+        return;
+    }
+    let titles = model.clip_titles();
+    let names = (1..).map(|part| format!("{} part {part}", titles[original]));
+    let Some(name) = names.into_iter().find(|name| !titles.contains(name) && !state.edits.has_copy(name)) else {
+        return;
+    };
+    state.edits.copies.push(ClipCopy { name: name.clone(), of });
+    insert_changes(state, name.clone(), changes.clamped());
+    set_clip(state, Some(model), ClipChoice::Named(name));
+}
+
+fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: usize) {
+    let Some(model) = model.filter(|model| model.is_copy(clip)) else { return };
+    let Some(name) = model.unchanged_clip(clip).map(Clip::name) else { return };
+    if active_clip(model, state) == Some(clip) {
+        set_clip(state, Some(model), choice_of_clip(model, model.original(clip)));
+    }
+    state.edits.copies.retain(|copy| copy.name != name);
+    state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
+}
+
 /// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
 /// a reversed one is dropped.
 fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
@@ -487,7 +517,12 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
     let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
     let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
     let before = changed(state);
+    let was_copy = is_copy_active(state);
     state.restore_undoable(from);
+    if was_copy && !is_copy_active(state) {
+        state.playhead.clone_from(&from.playhead);
+        return;
+    }
     if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
         follow_changes(&mut state.playhead, &before, &changes);
         let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
@@ -495,6 +530,10 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
             state.playhead.range = from.playhead.range;
         }
     }
+}
+
+fn is_copy_active(state: &ViewerState) -> bool {
+    matches!(&state.playhead.clip, ClipChoice::Named(name) if state.edits.has_copy(name))
 }
 
 fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {

@@ -87,6 +87,16 @@ pub enum Command {
         /// Replaces the changes it had.
         changes: Box<ClipChanges>,
     },
+    /// Adds a copy of a clip that has these changes, and plays it. A copy of a copy is one of the original. Numbers out of range
+    /// are clamped.
+    CopyClip {
+        /// Index among all clips.
+        clip: usize,
+        /// The copy's, whatever those of the clip.
+        changes: Box<ClipChanges>,
+    },
+    /// Removes a copy of a clip, by its index among all clips. If it is active, the original plays.
+    RemoveCopy(usize),
     /// Sets the layers over the active clip, the lowest first. Numbers out of range are clamped.
     SetLayers(Vec<ClipLayer>),
     /// Sets what is drawn.

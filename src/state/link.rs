@@ -213,6 +213,14 @@ const KEYS: &[Key] = &[
         reset: changes::reset_mirror,
     },
     Key {
+        name: "copy",
+        repeatable: true,
+        expected: changes::COPY,
+        read: changes::read_copy,
+        write: changes::write_copy,
+        reset: |state| state.edits.copies.clear(),
+    },
+    Key {
         name: "change",
         repeatable: true,
         expected: changes::CHANGE,

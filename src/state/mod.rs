@@ -49,14 +49,14 @@ pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, pr
 pub use names::{title, written_skeleton};
 pub use pins::{looks_at_camera, pinned_clip, pinning};
 pub use playhead::{
-    PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_secs, manual_degrees, manual_rotation,
-    play_range, unknown_clip, world_from_model,
+    PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_copies, clip_secs, manual_degrees,
+    manual_rotation, play_range, unknown_clip, world_from_model,
 };
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::active_variant;
 pub use view::{
-    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
+    Background, CameraOptions, ClipChoice, ClipCopy, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
     RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

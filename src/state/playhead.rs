@@ -50,6 +50,13 @@ pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
     ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
 }
 
+/// Returns the copies of the model's clips, each with its name and the index of its original; those of clips that the model lacks
+/// are skipped.
+pub fn clip_copies(model: &Model, state: &ViewerState) -> Vec<(String, usize)> {
+    let original = |name: &str| clip_called(model, name).filter(|&clip| !model.is_copy(clip));
+    state.edits.copies.iter().filter_map(|copy| Some((copy.name.clone(), original(&copy.of)?))).collect()
+}
+
 /// Returns the changes of the model's clips by index; names that the model lacks are skipped.
 pub fn clip_changes(model: &Model, state: &ViewerState) -> BTreeMap<usize, ClipChanges> {
     let clips = state.edits.clips.iter();

@@ -30,17 +30,24 @@ pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError
 
 fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     let mut add = |key, unknown, instead| found.push(LinkError::UnknownName { key, unknown, instead });
-    if let Some(unknown) = unknown_clip(model, view) {
+    let edits = &view.edits;
+    // The model may not have them yet.
+    let is_copy = |unknown: &UnknownName| edits.has_copy(&unknown.name);
+    if let Some(unknown) = unknown_clip(model, view).filter(|unknown| !is_copy(unknown)) {
         add("clip", unknown, "the rest pose is used");
     }
-    let edits = &view.edits;
-    for unknown in unknown_layers(model, &edits.layers) {
+    for unknown in unknown_layers(model, &edits.layers).filter(|unknown| !is_copy(unknown)) {
         add("layers", unknown, "the layer is left out");
     }
-    for (name, changes) in edits.clips.iter().filter(|(name, _)| clip_called(model, name).is_none()) {
+    let clip_unknown =
+        |name: &String| UnknownName { kind: NameKind::Clip, name: name.clone(), names: model.clip_titles().to_vec() };
+    for copy in edits.copies.iter().filter(|copy| clip_called(model, &copy.of).is_none()) {
+        add("copy", clip_unknown(&copy.of), LEFT_OUT);
+    }
+    let is_unknown = |name: &str| clip_called(model, name).is_none() && !edits.has_copy(name);
+    for (name, changes) in edits.clips.iter().filter(|(name, _)| is_unknown(name)) {
         let is_only_mirrored = *changes == ClipChanges { mirror: true, ..ClipChanges::NONE };
-        let unknown = UnknownName { kind: NameKind::Clip, name: name.clone(), names: model.clip_titles().to_vec() };
-        add(if is_only_mirrored { "mirror" } else { "change" }, unknown, LEFT_OUT);
+        add(if is_only_mirrored { "mirror" } else { "change" }, clip_unknown(name), LEFT_OUT);
     }
     if let Some(unknown) = unknown_variant(model, view) {
         add("variant", unknown, "the file's own materials are used");

@@ -186,6 +186,8 @@ pub struct Edits {
     pub names: BTreeMap<usize, String>,
     /// Changes to clips, by their name, or index in decimal, as in [`ClipChoice::Named`]; never empty ones.
     pub clips: BTreeMap<String, ClipChanges>,
+    /// Copies of clips, in the order in which they were made; the names differ.
+    pub copies: Vec<ClipCopy>,
     /// Clips over the active one, the lowest first.
     pub layers: Vec<ClipLayer>,
     /// Name of the material variant (KHR_materials_variants); `None` shows the file's own materials.
@@ -194,6 +196,25 @@ pub struct Edits {
     pub hidden: Hidden,
     /// Which axis of the file points up.
     pub up: UpAxis,
+}
+
+impl Edits {
+    /// The most copies of clips at once.
+    pub const MAX_COPIES: usize = 100;
+
+    /// Whether a copy of a clip has this name.
+    pub fn has_copy(&self, name: &str) -> bool {
+        self.copies.iter().any(|copy| copy.name == name)
+    }
+}
+
+/// A copy of a clip, to have changes of its own.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClipCopy {
+    /// The name of the copy; not empty.
+    pub name: String,
+    /// The name of the original, or its index in decimal, as in [`ClipChoice::Named`].
+    pub of: String,
 }
 
 /// What the viewport explains about the model.

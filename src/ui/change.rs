@@ -32,7 +32,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     controls::section(ui, capitals!(text::CHANGE_CLIP));
     changes.mirror ^= controls::switch(ui, text::MIRROR, changes.mirror);
     changes.reverse ^= controls::switch(ui, text::BACKWARDS, changes.reverse);
-    trim(ui, shown, &mut changes);
+    let copy = trim(ui, shown, &mut changes);
     if controls::switch(ui, text::MAKE_LOOP, changes.loop_secs.is_some()) {
         changes.loop_secs = if changes.loop_secs.is_some() { None } else { Some(DEFAULT_BLEND_SECS) };
     }
@@ -54,25 +54,37 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if !changes.is_none() && ui.button(text::RESET_CHANGES).clicked() {
         changes = ClipChanges::default();
     }
-    if changes != before {
+    if let Some(changes) = copy {
+        out.commands.push(Command::CopyClip { clip, changes: Box::new(changes) });
+    } else if model.is_copy(clip) && ui.button(text::REMOVE_COPY).clicked() {
+        out.commands.push(Command::RemoveCopy(clip));
+    } else if changes != before {
         out.commands.push(Command::ChangeClip { clip, changes: Box::new(changes) });
     }
 }
 
-/// A button that keeps only what is between the in and out points, then one that restores the whole clip.
-fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) {
+/// Buttons that keep only what is between the in and out points, in place or as a new clip, or one that restores the whole clip.
+/// Returns the changes of the new clip.
+fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<ClipChanges> {
     if changes.trim.is_some() {
         if ui.button(text::UNDO_TRIM).clicked() {
             changes.trim = None;
         }
-        return;
+        return None;
     }
     // The range is then not in the time of the original clip.
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
-    let button = ui.add_enabled(range.is_some(), egui::Button::new(text::TRIM_TO_RANGE));
     let hint = controls::with_key(ui, if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE });
-    if button.on_disabled_hover_text(hint).clicked() {
-        changes.trim = range;
-    }
+    let clicked = |ui: &mut Ui, label| {
+        let button = ui.add_enabled(range.is_some(), egui::Button::new(label));
+        button.on_disabled_hover_text(&*hint).clicked()
+    };
+    ui.horizontal_wrapped(|ui| {
+        if clicked(ui, text::TRIM_TO_RANGE) {
+            changes.trim = range;
+        }
+        clicked(ui, text::TRIM_TO_COPY).then(|| ClipChanges { trim: range, ..changes.clone() })
+    })
+    .inner
 }

@@ -98,7 +98,8 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
     }
     let mut found = search.is_empty();
     let mut heading = None;
-    for (index, title) in titles.iter().enumerate() {
+    for index in model.listed_clips() {
+        let title = &titles[index];
         if !matches(title, search) {
             continue;
         }

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, control, controls, eventually, resize, savedBy, startSite, state, toggleInspector, until, untilStill, whenBorrowed } from "./browser.mjs";
+import { BACK_ENDS, apply, control, controls, eventually, resize, savedBy, startSite, state, toggleInspector, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
 
 const WALKER = "model=sample:walker&clip=Walk&play=0";
 /** Height of the walker, and duration of its walk. */
@@ -259,6 +259,26 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual([clips.length, clips.at(-1)?.name], [7, "walk (changed)"]);
       assert.ok(difference(await joints(page, { clip: "walk (changed)", t: 0.3, play: 0 }), mirrored) < ROUNDING);
       assert.ok(difference(await joints(page, { mirror: "walk (changed)" }), original) < ROUNDING);
+    });
+
+    onPage("clips are cut out of one, listed, saved and in the link", { link: () => `${WALKER}&range=0.25,0.75` }, async (page) => {
+      const original = await joints(page, { t: 0.5 });
+      await showMotionTab(page);
+      await control(page, "button", "Trim to a new clip").press("Enter");
+      await until(page, async () => (await window.gaitway.state()).clip === "Walk part 1");
+      await control(page, "button", /^Walk part 1/).waitFor();
+      const cut = await joints(page, { t: 0.25 });
+      assert.ok(difference(cut, original) < ROUNDING);
+      const saved = await exported(page, "Save GLB");
+      await apply(page, { clip: "Walk", range: "0,0.2" });
+      await control(page, "button", "Trim to a new clip").press("Enter");
+      const { copy, change } = await state(page);
+      assert.deepEqual([copy, change], [["Walk part 1:Walk", "Walk part 2:Walk"], ["Walk part 1:trim:0.25:0.75", "Walk part 2:trim:0:0.2"]]);
+      await page.reload();
+      await whenReady(page);
+      assert.ok(difference(await joints(page, { clip: "Walk part 1", t: 0.25 }), original) < ROUNDING, "the link has it");
+      const { clips } = await reopen(page, saved);
+      assert.deepEqual([clips.length, clips.at(-1)?.name], [1, "Walk part 1"]);
     });
 
     const pushUp = (/** @type {import("./browser.mjs").Site} */ site) => `model=${encodeURIComponent(site.data(PUSH_UP))}&play=0`;

@@ -10,9 +10,9 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
-    LookTarget, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources,
-    ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, Channel, ClipChoice, ClipCopy, Display, EnvironmentChoice, Fade, Hidden, KeyLight,
+    LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show,
+    Sources, ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -213,6 +213,13 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("camera_options.fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
         ("camera_options.follow", with(&|state| state.camera_options.follow = true)),
         ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
+        (
+            "edits.copies",
+            with(&|state| {
+                let copy = |name: &str, of: &str| ClipCopy { name: name.to_owned(), of: of.to_owned() };
+                state.edits.copies = vec![copy("Walk: 50 % & more", "Walk"), copy("a", "2")];
+            }),
+        ),
         ("edits.variant", with(&|state| state.edits.variant = Some("Midnight & blue, 100 %".to_owned()))),
         ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
         ("display.exposure", with(&|state| state.display.exposure = -0.7)),

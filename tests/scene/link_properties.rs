@@ -10,9 +10,9 @@ use gaitway::retarget::{
     Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
-    LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice,
-    ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, Channel, ClipChoice, ClipCopy, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight,
+    LightSetup, LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis,
+    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -110,7 +110,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..42 {
+        for field in 0..43 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -142,6 +142,11 @@ impl Random {
     fn clips(&mut self) -> BTreeMap<String, ClipChanges> {
         let changes = ClipChanges { reverse: true, mirror: self.often(), ..ClipChanges::default() };
         (0..self.below(4)).map(|_| (self.text(), changes.clone())).collect()
+    }
+
+    fn copies(&mut self) -> Vec<ClipCopy> {
+        let copies: BTreeMap<String, String> = (0..self.below(4)).map(|_| (self.text(), self.text())).collect();
+        copies.into_iter().map(|(name, of)| ClipCopy { name, of }).collect()
     }
 
     fn layer(&mut self) -> ClipLayer {
@@ -229,6 +234,7 @@ impl Random {
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
             37 => state.edits.clips = self.clips(),
+            42 => state.edits.copies = self.copies(),
             38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
             39 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
             41 => state.retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),

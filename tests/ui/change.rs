@@ -101,3 +101,27 @@ fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
     press(&mut harness, text::RESET_CHANGES);
     assert!(harness.state().state().edits.clips.is_empty());
 }
+
+#[test]
+fn the_range_becomes_a_new_clip_which_can_be_removed() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Motion.label());
+    let range = TimeRange { start_secs: 0.25, end_secs: 0.75 };
+    harness.state_mut().editor.apply(Command::SetRange(Some(range)));
+    harness.run();
+    harness.get_by_label(text::TRIM_TO_COPY).scroll_to_me();
+    harness.run();
+    press(&mut harness, text::TRIM_TO_COPY);
+    let row = |harness: &Harness<'_, Bench>, name: &str| {
+        harness.query_by_label(name).map(|row| (row.rect().top(), row.accesskit_node().description()))
+    };
+    let (part, described) = row(&harness, "Walk part 1").expect("is listed");
+    assert_eq!(described.as_deref(), Some("Changed: trimmed"));
+    let [walk, wave] = ["Walk", "Wave"].map(|name| row(&harness, name).expect("is listed").0);
+    assert!(walk < part && part < wave, "it follows its original");
+    harness.get_by_label(text::REMOVE_COPY).scroll_to_me();
+    harness.run();
+    press(&mut harness, text::REMOVE_COPY);
+    assert_eq!(row(&harness, "Walk part 1"), None);
+    assert!(harness.query_by_label(text::REMOVE_COPY).is_none(), "the original can't be removed");
+}

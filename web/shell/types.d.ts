@@ -172,6 +172,8 @@ export interface State {
   show: string;
   channel: string;
   hidden: string;
+  copy: string[];
+  change: string[];
   layers: string[];
   camera: string;
   pose: string;

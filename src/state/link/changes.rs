@@ -1,13 +1,15 @@
-//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip. Mirroring comes first
+//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip, and `copy=NAME:CLIP`. Mirroring comes first
 //! whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
 
 use super::values::{escaped_name, finite, unescaped_name};
 use super::{Read, Written};
 use crate::anim::TimeRange;
 use crate::retarget::ClipChanges;
-use crate::state::ViewerState;
+use crate::state::{ClipCopy, Edits, ViewerState};
 
 pub(super) const MIRROR: &str = "a clip's name or index";
+pub(super) const COPY: &str =
+    "a new name and the clip that it is a copy of: Walk part 1:Walk; up to 100, each with its own name";
 pub(super) const CHANGE: &str = "a clip and its changes: Walk:trim:0.5:1.5,reverse,speed:2,loop:0.2,offset:1:0,turn:90; the speed is from 0.1 to 10";
 const TRIM: &str = "trim:START:END in seconds, the end after the start";
 
@@ -28,6 +30,23 @@ pub(super) fn write_mirror(state: &ViewerState) -> Written {
 
 pub(super) fn reset_mirror(state: &mut ViewerState) {
     reset(state, |changes| changes.mirror = false);
+}
+
+pub(super) fn read_copy(state: &mut ViewerState, text: &str) -> Read {
+    let names = text.split_once(':').and_then(|(name, of)| Some((clip_name(name)?, clip_name(of)?)));
+    let copies = &mut state.edits.copies;
+    match names {
+        Some((name, of)) if copies.len() < Edits::MAX_COPIES && copies.iter().all(|copy| copy.name != name) => {
+            copies.push(ClipCopy { name, of });
+            Read::Done
+        }
+        _ => Read::Bad(COPY),
+    }
+}
+
+pub(super) fn write_copy(state: &ViewerState) -> Written {
+    let copies = state.edits.copies.iter();
+    Written::List(copies.map(|ClipCopy { name, of }| format!("{}:{}", escaped_name(name), escaped_name(of))).collect())
 }
 
 pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {

@@ -10,6 +10,10 @@ pub const MIRROR: &str = "Mirror";
 pub const BACKWARDS: &str = "Reverse";
 /// Button that keeps the part between the in and out points.
 pub const TRIM_TO_RANGE: &str = "Trim to range";
+/// Button that adds that part as a clip of its own.
+pub const TRIM_TO_COPY: &str = "Trim to a new clip";
+/// Button that removes such a clip.
+pub const REMOVE_COPY: &str = "Remove this clip";
 /// Why that button is disabled.
 pub const NEEDS_RANGE: &str = "Set a range on the timeline first (keys I and O).";
 /// Why that button is disabled.

@@ -1,6 +1,7 @@
 //! The editor without a shell: opening, activating, closing and undoing, with their notices.
 
 mod camera;
+mod copies;
 mod early;
 mod environments;
 mod maps;

@@ -280,6 +280,14 @@ impl Library {
         model.set_borrowed(borrowed);
     }
 
+    /// Replaces the copies of clips of the active model, each with its name and the index of its original. Returns whether they
+    /// differ from before.
+    pub fn copy_clips(&mut self, copies: &[(String, usize)]) -> bool {
+        let active = self.active;
+        let model = self.models.iter_mut().find(|model| model.id == active);
+        model.is_some_and(|model| model.copy_clips(copies))
+    }
+
     /// Applies changes to clips of the active model, by index among all clips, and restores the others. Only clips whose changes
     /// or originals differ from before are computed again; returns whether any clip differs from before.
     pub fn change_clips(&mut self, changes: &BTreeMap<usize, ClipChanges>) -> bool {

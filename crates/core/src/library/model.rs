@@ -37,6 +37,8 @@ pub struct Model {
     pub images: Vec<Option<ImageData>>,
     /// Clips of other files retargeted to this model; their indices follow the asset's own.
     borrowed: Vec<BorrowedClip>,
+    /// Copies of clips; their indices follow the borrowed ones.
+    copies: Vec<ClipCopy>,
     clips_revision: u32,
     /// Changed clips and their changes, by index among all clips.
     changed: BTreeMap<usize, (ClipChanges, ChangedClip)>,
@@ -57,6 +59,14 @@ pub struct Finding {
     pub joint: Option<JointIndex>,
 }
 
+/// A clip under another name, to have changes of its own.
+#[derive(Debug)]
+struct ClipCopy {
+    /// Index of the original, which is no copy.
+    of: usize,
+    clip: Clip,
+}
+
 /// Key of cached clip bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct SweptKey {
@@ -74,7 +84,7 @@ impl Model {
     /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
         let asset = asset.into();
-        let clip_titles = unique_titles(&source, &asset.clips, &[]);
+        let clip_titles = unique_titles(&source, &asset.clips, &[], &[]);
         let rig = Rig::new(&asset);
         let extent = Extent::new(&asset, &rig);
         Self {
@@ -86,6 +96,7 @@ impl Model {
             asset,
             images,
             borrowed: Vec::new(),
+            copies: Vec::new(),
             clips_revision: 0,
             changed: BTreeMap::new(),
             clip_titles,
@@ -107,20 +118,44 @@ impl Model {
         (self.asset, self.images, self.findings) = (complete.asset, complete.images, OnceLock::new());
     }
 
-    /// Number of playable clips: the asset's own, then the borrowed ones.
+    /// Number of playable clips: the asset's own, then the borrowed ones, then copies.
     pub fn clip_count(&self) -> usize {
+        self.original_count() + self.copies.len()
+    }
+
+    /// Number of clips that aren't copies.
+    pub fn original_count(&self) -> usize {
         self.asset.clips.len() + self.borrowed.len()
     }
 
-    /// Returns a clip by its index among all clips, the asset's own, then the borrowed ones, with its changes.
+    /// Returns the index of the clip that this one is a copy of; its own if it is no copy.
+    pub fn original(&self, clip: usize) -> usize {
+        clip.checked_sub(self.original_count()).and_then(|at| self.copies.get(at)).map_or(clip, |copy| copy.of)
+    }
+
+    /// Indices of all clips as people list them: each copy follows its original.
+    pub fn listed_clips(&self) -> impl Iterator<Item = usize> {
+        let first_copy = self.original_count();
+        let copies_of = move |clip: usize| {
+            let copies = self.copies.iter().enumerate().filter(move |(_, copy)| copy.of == clip);
+            copies.map(move |(at, _)| first_copy + at)
+        };
+        (0..first_copy).flat_map(move |clip| std::iter::once(clip).chain(copies_of(clip)))
+    }
+
+    /// Whether a clip is a copy of another one.
+    pub fn is_copy(&self, clip: usize) -> bool {
+        self.original(clip) != clip
+    }
+
+    /// Returns a clip by its index among all clips, with its changes.
     pub fn clip(&self, index: usize) -> Option<&Clip> {
         self.changed.get(&index).map(|(_, changed)| &changed.clip).or_else(|| self.unchanged_clip(index))
     }
 
     /// Returns a clip by its index among all clips, without its changes.
     pub fn unchanged_clip(&self, index: usize) -> Option<&Clip> {
-        let own = &self.asset.clips;
-        own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
+        self.clips().nth(index)
     }
 
     /// Returns a clip with its changes, if it has any.
@@ -128,14 +163,31 @@ impl Model {
         self.changed.get(&index).map(|(_, changed)| changed)
     }
 
-    /// Whether a clip is retargeted or changed, so that the model's file lacks it.
+    /// Whether a clip is retargeted, changed or a copy, so that the model's file lacks it.
     pub fn is_derived(&self, clip: usize) -> bool {
-        self.borrowed(clip).is_some() || self.changed.contains_key(&clip)
+        self.borrowed(clip).is_some() || self.changed.contains_key(&clip) || self.is_copy(clip)
     }
 
-    /// Returns all clips by index without their changes: the asset's own, then the borrowed ones. Changes keep the names.
+    /// Returns all clips by index without their changes: the asset's own, then the borrowed ones, then copies. Changes keep the
+    /// names.
     pub fn clips(&self) -> impl Iterator<Item = &Clip> + Clone {
-        self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
+        let borrowed = self.borrowed.iter().map(|borrowed| &borrowed.clip);
+        self.asset.clips.iter().chain(borrowed).chain(self.copies.iter().map(|copy| &copy.clip))
+    }
+
+    /// Replaces the copies, each with its name and the index of its original. Returns whether they differ from before.
+    pub(super) fn copy_clips(&mut self, copies: &[(String, usize)]) -> bool {
+        let known = self.copies.iter().map(|copy| (copy.clip.name(), copy.of));
+        if known.eq(copies.iter().map(|(name, of)| (&**name, *of))) {
+            return false;
+        }
+        self.copies.clear();
+        let copy = |(name, of): &(String, usize)| {
+            Some(ClipCopy { of: *of, clip: self.unchanged_clip(*of)?.clone().with_name(name.clone()) })
+        };
+        self.copies = copies.iter().filter_map(copy).collect();
+        self.forget_clips_from(self.original_count());
+        true
     }
 
     /// Applies changes to clips, by index among all clips, and restores the others. Clips whose changes are the same as before
@@ -168,17 +220,17 @@ impl Model {
         is_changed
     }
 
-    /// Returns the borrowed clip with this index among all clips.
+    /// Returns the borrowed clip with this index among all clips, or that a copy with this index is of.
     pub fn borrowed(&self, clip: usize) -> Option<&BorrowedClip> {
-        self.borrowed.get(clip.checked_sub(self.asset.clips.len())?)
+        self.borrowed.get(self.original(clip).checked_sub(self.asset.clips.len())?)
     }
 
-    /// Returns the borrowed clips with their indices among all clips.
+    /// Returns the borrowed clips with their indices among all clips, without copies.
     pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> + Clone {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 
-    /// Incremented whenever clips are borrowed or changed: an index may then refer to another clip.
+    /// Incremented whenever clips are borrowed, copied or changed: an index may then refer to another clip.
     pub fn clips_revision(&self) -> u32 {
         self.clips_revision
     }
@@ -200,15 +252,20 @@ impl Model {
         std::mem::take(&mut self.borrowed)
     }
 
-    /// Replaces the borrowed clips.
+    /// Replaces the borrowed clips, and removes the copies.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;
+        self.copies.clear();
+        self.forget_clips_from(self.asset.clips.len());
+    }
+
+    /// Brings up to date what is derived from the clips, of which those from this index on may be others than before.
+    fn forget_clips_from(&mut self, first: usize) {
         self.clips_revision += 1;
-        let own = self.asset.clips.len();
-        self.changed.retain(|&clip, _| clip < own);
-        self.clip_titles = unique_titles(&self.source, &self.asset.clips, &self.borrowed);
+        self.changed.retain(|&clip, _| clip < first);
+        self.clip_titles = unique_titles(&self.source, &self.asset.clips, &self.borrowed, &self.copies);
         if let Ok(mut swept) = self.swept.lock() {
-            swept.retain(|key, _| key.clip.is_none_or(|clip| clip < own));
+            swept.retain(|key, _| key.clip.is_none_or(|clip| clip < first));
         }
     }
 
@@ -427,16 +484,17 @@ fn is_named(clip: &Clip) -> bool {
 }
 
 /// Titles by index: each clip's name, otherwise its number in its own file. Mixamo's clips are called as their file is.
-fn unique_titles(source: &str, own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<String> {
+fn unique_titles(source: &str, own: &[Clip], borrowed: &[BorrowedClip], copies: &[ClipCopy]) -> Vec<String> {
     let title = |index: usize, clip: &Clip| match clip.name().trim() {
         "" => format!("Clip {index}"),
         _ => file_title(source, index, own.len()),
     };
     let own = own.iter().enumerate().map(|(index, clip)| (clip, title(index, clip)));
     let borrowed = borrowed.iter().map(|borrowed| (&borrowed.clip, borrowed.file_title.clone()));
+    let copies = copies.iter().map(|copy| (&copy.clip, copy.clip.name().to_owned()));
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let mut titles = Vec::new();
-    for (clip, unnamed) in own.chain(borrowed) {
+    for (clip, unnamed) in own.chain(borrowed).chain(copies) {
         let base = if is_named(clip) { clip.name().to_owned() } else { unnamed };
         let mut title = base.clone();
         loop {

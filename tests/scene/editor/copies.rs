@@ -1,0 +1,121 @@
+//! Copies of clips, to cut several out of one.
+
+use gaitway::anim::{Clip, TimeRange};
+use gaitway::editor::{Editor, Export};
+use gaitway::formats::{FileSet, load};
+use gaitway::library::Model;
+use gaitway::retarget::ClipChanges;
+use gaitway::state::{ClipChoice, Command, Edits, active_clip, active_map, from_link, to_link};
+
+use super::{editor, open_motion, title};
+
+fn model(editor: &Editor) -> &Model {
+    editor.library().active().expect("a model")
+}
+
+fn clip(editor: &Editor) -> usize {
+    active_clip(model(editor), editor.state()).expect("a clip plays")
+}
+
+fn secs(editor: &Editor, clip: usize) -> f32 {
+    model(editor).clip(clip).expect("a clip").duration_secs()
+}
+
+/// Copies a part of a clip.
+fn cut(editor: &mut Editor, clip: usize, start_secs: f64, end_secs: f64) {
+    let changes = ClipChanges { trim: Some(TimeRange { start_secs, end_secs }), ..ClipChanges::NONE };
+    editor.apply(Command::CopyClip { clip, changes: Box::new(changes) });
+}
+
+#[test]
+fn several_clips_are_cut_out_of_one() {
+    let mut editor = editor("sample:walker");
+    let (titles, whole) = (model(&editor).clip_titles().to_vec(), secs(&editor, 0));
+    cut(&mut editor, 0, 0.25, 0.5);
+    assert_eq!((title(&editor), clip(&editor)), (Some("Walk part 1"), 3));
+    // A copy of a copy is one of the original.
+    cut(&mut editor, 3, 0.25, 1.0);
+    assert_eq!((title(&editor), clip(&editor)), (Some("Walk part 2"), 4));
+    assert_eq!([0, 3, 4].map(|clip| secs(&editor, clip)), [whole, 0.25, 0.75]);
+    assert_eq!(model(&editor).clip_titles()[..3], titles);
+    assert_eq!(model(&editor).listed_clips().collect::<Vec<_>>(), [0, 3, 4, 1, 2]);
+    assert!(!model(&editor).is_derived(0) && model(&editor).is_derived(3), "the file has the original");
+
+    // The file is written with the copy that plays, under its name.
+    let mut files = FileSet::default();
+    files.insert("walker.glb", editor.export(Export::Model { clip: 4 }).expect("is written").bytes);
+    let written = load(&files).expect("a GLB");
+    let last = written.clips.last().expect("a clip");
+    assert_eq!((last.name(), last.duration_secs()), ("Walk part 2", 0.75));
+}
+
+#[test]
+fn copies_are_undone_and_redone() {
+    let mut editor = editor("sample:walker");
+    editor.apply(Command::Seek(0.3));
+    cut(&mut editor, 0, 0.25, 0.5);
+    assert!(editor.undo());
+    assert_eq!((title(&editor), model(&editor).clip_count()), (Some("Walk"), 3));
+    assert_eq!(editor.state().playhead.time_secs, 0.3, "where it was");
+    assert!(editor.redo());
+    assert_eq!((model(&editor).clip_titles()[3].as_str(), secs(&editor, 3)), ("Walk part 1", 0.25));
+    editor.apply(Command::SetClip(ClipChoice::Named("Walk part 1".to_owned())));
+    editor.apply(Command::RemoveCopy(3));
+    assert_eq!((title(&editor), model(&editor).clip_count()), (Some("Walk"), 3));
+    assert!(editor.state().edits.clips.is_empty(), "its changes are gone with it");
+    // Nothing else can be removed.
+    editor.apply(Command::RemoveCopy(0));
+    assert_eq!(model(&editor).clip_count(), 3);
+}
+
+#[test]
+fn a_copy_of_a_borrowed_clip_stays_when_its_map_changes_and_goes_with_its_motion() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let borrowed = clip(&editor);
+    let before = model(&editor).clip_count();
+    cut(&mut editor, borrowed, 0.25, 0.75);
+    let copy = clip(&editor);
+    assert_eq!((copy, secs(&editor, copy)), (before, 0.5));
+    let of = |clip: usize| model(&editor).borrowed(clip).expect("is borrowed").source_clip;
+    assert_eq!(of(copy), of(borrowed), "figures and tracks are the original's");
+    let pose = |editor: &Editor| format!("{:?}", model(editor).clip(copy).map(Clip::channels));
+    let shown = pose(&editor);
+    let mut map = active_map(editor.library(), editor.state(), 0).expect("a map");
+    map.joints.pop_last();
+    editor.apply(Command::SetMap { motion: 0, map: Some(Box::new(map)) });
+    assert_eq!(clip(&editor), copy, "still plays");
+    assert_ne!(pose(&editor), shown, "and follows its original");
+    editor.remove_motion(0);
+    assert_eq!(clip(&editor), 0, "the model's own");
+    assert!(editor.undo());
+    assert_eq!((clip(&editor), secs(&editor, copy)), (copy, 0.5));
+}
+
+#[test]
+fn a_link_has_copies_and_says_what_they_lack() {
+    let mut editor = editor("sample:walker");
+    cut(&mut editor, 0, 0.25, 0.5);
+    let link = to_link(editor.state());
+    assert!(link.ends_with("copy=Walk%20part%201:Walk&change=Walk%20part%201:trim:0.25:0.5"), "{link}");
+    let (state, errors) = from_link(&link);
+    assert_eq!((errors, &state), (Vec::new(), editor.state()));
+    let mut again = self::editor("sample:walker");
+    again.apply(Command::Replace(Box::new(state)));
+    assert_eq!((title(&again), secs(&again, 3)), (Some("Walk part 1"), 0.25));
+
+    let mut partial = |value| again.apply_partial(&serde_json::json!({ "copy": value }));
+    partial(vec!["A:Wave", "B:0"]).expect("names and indices");
+    let error = partial(vec!["A:Wave", "A:Walk"]).expect_err("one name for two");
+    assert!(error.contains("each with its own name"), "{error}");
+    partial(
+        (0..=Edits::MAX_COPIES)
+            .map(|at| format!("{at} x:Walk"))
+            .collect::<Vec<_>>()
+            .iter()
+            .map(|text| &**text)
+            .collect(),
+    )
+    .expect_err("too many");
+    assert_eq!(model(&again).clip_titles()[3..], ["A", "B"]);
+}
