@@ -23,7 +23,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
 /**
  * @typedef {object} PageOptions
  * @property {Backend} [renderer]
- * @property {string} [link] Empty for a first visit; without it, the walker.
+ * @property {string} [link] Empty for a first visit; without it, the walker, at rest: a playing clip keeps a software renderer busy.
  * @property {{ width: number, height: number }} [viewport]
  * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Otherwise half a pixel, in
  *   the context that the pages of a test file share.
@@ -42,16 +42,14 @@ export const VIEWPORT = { width: 800, height: 600 };
 /** Pixels per CSS pixel: the same layout as with 1 takes a quarter of the pixels. */
 const PIXEL_RATIO = 0.5;
 
-/** Both back ends on the software renderer. Domains keep the GPU after a test crashes its process. */
-export const FLAGS = [
-  "--enable-unsafe-webgpu",
-  "--use-webgpu-adapter=swiftshader",
-  "--enable-features=Vulkan",
-  "--use-vulkan=swiftshader",
-  "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader",
-  "--disable-domain-blocking-for-3d-apis",
-];
+/** Both back ends on the software renderer. */
+const SOFTWARE = ["--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+/** Both back ends on a graphics card, without a display. */
+const GRAPHICS_CARD = ["--use-angle=vulkan", "--disable-vulkan-surface", "--ignore-gpu-blocklist"];
+
+/** With GAITWAY_GPU=1, the graphics card draws. Domains keep the GPU after a test crashes its process. */
+export const FLAGS = ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--disable-domain-blocking-for-3d-apis", ...(process.env.GAITWAY_GPU === "1" ? GRAPHICS_CARD : SOFTWARE)];
 
 const TIMEOUT_MS = 60_000;
 
@@ -147,7 +145,7 @@ export function watched(page, isShared = false) {
  * @param {string} address
  * @param {PageOptions} options
  */
-async function openPage(browser, shared, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, deviceScaleFactor, before, files = {}, ready = true }) {
+async function openPage(browser, shared, address, { renderer, link = "model=sample:walker&play=0", viewport = VIEWPORT, deviceScaleFactor, before, files = {}, ready = true }) {
   const isShared = deviceScaleFactor === undefined;
   const program = `${address}${renderer === undefined ? "" : `?renderer=${renderer}`}`;
   if (isShared) await shared.hold(program);

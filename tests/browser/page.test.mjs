@@ -83,7 +83,7 @@ for (const renderer of BACK_ENDS) {
         }
       });
 
-    onPage("starts with a sample that moves", {}, async (page) => {
+    onPage("starts with a sample that moves", { link: () => "model=sample:walker" }, async (page) => {
       const { backend } = await stats(page);
       assert.equal(backend, renderer);
       const first = await pose(page);
@@ -175,7 +175,7 @@ for (const renderer of BACK_ENDS) {
       assert.deepEqual(await state(page), earlier);
     });
 
-    onPage("plays and pauses with the space bar", {}, async (page) => {
+    onPage("plays and pauses with the space bar", { link: () => "model=sample:walker" }, async (page) => {
       await page.mouse.click(CENTER.x, CENTER.y);
       await page.keyboard.press("Space");
       await until(page, async () => Number((await window.gaitway.state()).play) === 0);
