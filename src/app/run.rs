@@ -109,9 +109,9 @@ impl App {
         self.editor.library()
     }
 
-    /// The error that the user sees.
-    pub fn problem(&self) -> Option<&str> {
-        self.panels.messages.error.as_deref()
+    /// The error that the user sees, with the name of the file in its title.
+    pub fn problem(&self) -> Option<String> {
+        self.panels.messages.problem()
     }
 
     /// The notice that the user sees, the one that goes away if there are two.

@@ -478,10 +478,8 @@ fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, change
         return;
     }
     let titles = model.clip_titles();
-    let names = (1..).map(|part| format!("{} part {part}", titles[original]));
-    let Some(name) = names.into_iter().find(|name| !titles.contains(name) && !state.edits.has_copy(name)) else {
-        return;
-    };
+    let is_free = |name: &String| !titles.contains(name) && !state.edits.has_copy(name);
+    let Some(name) = (1..).map(|part: u32| format!("{} part {part}", titles[original])).find(is_free) else { return };
     state.edits.copies.push(ClipCopy { name: name.clone(), of });
     insert_changes(state, name.clone(), changes.clamped());
     set_clip(state, Some(model), ClipChoice::Named(name));

@@ -158,7 +158,7 @@ impl Desk {
         self.app().library()
     }
 
-    pub fn problem(&self) -> Option<&str> {
+    pub fn problem(&self) -> Option<String> {
         self.app().problem()
     }
 

@@ -153,7 +153,7 @@ fn a_joint_map_needs_a_motion_and_is_an_undo_step() {
     std::fs::write(&map, r#"{"gaitway_map": 1, "joints": {"mixamorig:Hips": {"source": "hip"}}}"#).expect("written");
     let before = desk.state().clone();
     desk.open(std::slice::from_ref(&map));
-    let problem = desk.problem().expect("is said").to_owned();
+    let problem = desk.problem().expect("is said");
     assert!(problem.contains("no motion is loaded"), "{problem}");
     assert_eq!(desk.state(), &before);
     desk.open(&["sample:walk".into()]);

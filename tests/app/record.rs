@@ -49,7 +49,7 @@ fn a_recording_that_fails_or_is_cancelled_says_so() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     record(&mut desk, "720p");
     desk.send(Message::Recorded(Err("the encoder stopped".to_owned())));
-    assert_eq!(desk.problem(), Some("Couldn't record the video: the encoder stopped"));
+    assert_eq!(desk.problem().as_deref(), Some("Couldn't record the video: the encoder stopped"));
     assert!(!desk.shows("Saved"));
     desk.scroll_and_press(text::RECORD_IMAGES);
     desk.send(Message::Recorded(Err("the disk is full".to_owned())));

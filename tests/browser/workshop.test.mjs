@@ -264,21 +264,25 @@ for (const renderer of BACK_ENDS)
     onPage("clips are cut out of one, listed, saved and in the link", { link: () => `${WALKER}&range=0.25,0.75` }, async (page) => {
       const original = await joints(page, { t: 0.5 });
       await showMotionTab(page);
-      await control(page, "button", "Trim to a new clip").press("Enter");
-      await until(page, async () => (await window.gaitway.state()).clip === "Walk part 1");
+      const cut = async (/** @type {string} */ name) => {
+        await control(page, "button", "Trim to a new clip").press("Enter");
+        await until(page, async (name) => (await window.gaitway.state()).clip === name, name);
+      };
+      await cut("Walk part 1");
       await control(page, "button", /^Walk part 1/).waitFor();
-      const cut = await joints(page, { t: 0.25 });
-      assert.ok(difference(cut, original) < ROUNDING);
+      assert.ok(difference(await joints(page, { t: 0.25 }), original) < ROUNDING);
       const saved = await exported(page, "Save GLB");
       await apply(page, { clip: "Walk", range: "0,0.2" });
-      await control(page, "button", "Trim to a new clip").press("Enter");
+      await cut("Walk part 2");
       const { copy, change } = await state(page);
       assert.deepEqual([copy, change], [["Walk part 1:Walk", "Walk part 2:Walk"], ["Walk part 1:trim:0.25:0.75", "Walk part 2:trim:0:0.2"]]);
+      await until(page, () => location.hash.includes("copy=Walk%20part%202:Walk"));
       await page.reload();
       await whenReady(page);
       assert.ok(difference(await joints(page, { clip: "Walk part 1", t: 0.25 }), original) < ROUNDING, "the link has it");
-      const { clips } = await reopen(page, saved);
-      assert.deepEqual([clips.length, clips.at(-1)?.name], [1, "Walk part 1"]);
+      // The walker has no file, so what was saved is a motion.
+      const { borrowed_clips } = await reopen(page, saved);
+      assert.deepEqual(borrowed_clips?.map(({ name }) => name), ["Walk part 1"]);
     });
 
     const pushUp = (/** @type {import("./browser.mjs").Site} */ site) => `model=${encodeURIComponent(site.data(PUSH_UP))}&play=0`;

@@ -153,6 +153,12 @@ impl Messages {
         }
     }
 
+    /// The error that is shown, as one text.
+    pub fn problem(&self) -> Option<String> {
+        let error = self.error.as_deref()?;
+        Some(self.failed_to_open.as_deref().map_or_else(|| error.to_owned(), |name| format!("{name}: {error}")))
+    }
+
     /// `None` if the message itself names what failed.
     fn error_title(&self) -> Option<String> {
         let refused = self.motion_refused.then(|| text::REFUSED_TITLE.to_owned());
