@@ -5,7 +5,7 @@ use egui::Ui;
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text};
 use crate::retarget::ClipChanges;
-use crate::state::{Command, active_clip, changes_of};
+use crate::state::{Command, Edits, active_clip, changes_of};
 
 const SPEED: SliderSettings = SliderSettings {
     range: (ClipChanges::MIN_SPEED, ClipChanges::MAX_SPEED),
@@ -75,16 +75,18 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
     // The range is then not in the time of the original clip.
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
-    let hint = controls::with_key(ui, if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE });
-    let clicked = |ui: &mut Ui, label| {
-        let button = ui.add_enabled(range.is_some(), egui::Button::new(label));
-        button.on_disabled_hover_text(&*hint).clicked()
+    let no_range = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
+    let has_room = shown.state.edits.copies.len() < Edits::MAX_COPIES;
+    let clicked = |ui: &mut Ui, label, is_enabled| {
+        let hint = controls::with_key(ui, if range.is_none() { no_range } else { text::ENOUGH_COPIES });
+        let button = ui.add_enabled(range.is_some() && is_enabled, egui::Button::new(label));
+        button.on_disabled_hover_text(hint).clicked()
     };
     ui.horizontal_wrapped(|ui| {
-        if clicked(ui, text::TRIM_TO_RANGE) {
+        if clicked(ui, text::TRIM_TO_RANGE, true) {
             changes.trim = range;
         }
-        clicked(ui, text::TRIM_TO_COPY).then(|| ClipChanges { trim: range, ..changes.clone() })
+        clicked(ui, text::TRIM_TO_COPY, has_room).then(|| ClipChanges { trim: range, ..changes.clone() })
     })
     .inner
 }

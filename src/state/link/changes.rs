@@ -1,5 +1,5 @@
-//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip, and `copy=NAME:CLIP`. Mirroring comes first
-//! whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
+//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip, and `copy=NAME:CLIP`.
+//! Mirroring comes first whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
 
 use super::values::{escaped_name, finite, unescaped_name};
 use super::{Read, Written};
