@@ -193,16 +193,17 @@ impl Editor {
         if !self.has_files_of(&state) {
             return Err(OTHER_FILES.to_owned());
         }
-        let mut unusable = view_problems(&state, self.library.active());
-        unusable.retain(|problem| partial.get(problem.key()).is_some());
         let before = self.state.clone();
         // What it says is no longer chosen automatically.
         self.suits_follow &= partial.get("follow").is_none();
         state.retarget.feet_are_automatic &= partial.get("feet").is_none();
+        let view = state.clone();
         self.record(Command::Replace(Box::new(state)));
         let problems = self.retarget();
         (self.needs_redraw, self.is_changed) = (true, true);
         if problems.is_empty() {
+            let mut unusable = view_problems(&view, self.library.active());
+            unusable.retain(|problem| partial.get(problem.key()).is_some());
             self.tell(&unusable, problems);
             return Ok(());
         }

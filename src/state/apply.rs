@@ -4,17 +4,18 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
+use super::clips;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
 use super::pins;
-use super::playhead::{active_clip, changes_of, choice_of_clip, clip_called, clip_of, clip_secs, play_range};
+use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
 use super::{
-    CameraChoice, Channel, ClipChoice, ClipCopy, Command, Edits, Fade, Hidden, KeyLight, LookTarget, OrbitCamera,
-    Playhead, Selection, VertexChoice, ViewerState,
+    CameraChoice, Channel, ClipChoice, Command, Edits, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Selection,
+    VertexChoice, ViewerState,
 };
-use crate::anim::{Clip, LoopMode, TimeRange};
+use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
-use crate::retarget::{ClipChanges, ClipLayer, JointMap};
+use crate::retarget::{ClipLayer, JointMap};
 
 const MAX_NAME_CHARS: usize = 80;
 
@@ -47,9 +48,9 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ClearPose => state.edits.pose.clear(),
         Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
-        Command::ChangeClip { clip, changes } => set_changes(state, model, clip, *changes),
-        Command::CopyClip { clip, changes } => copy_clip(state, model, clip, *changes),
-        Command::RemoveCopy(clip) => remove_copy(state, model, clip),
+        Command::ChangeClip { clip, changes } => clips::set_changes(state, model, clip, *changes),
+        Command::CopyClip { clip, changes } => clips::copy_clip(state, model, clip, *changes),
+        Command::RemoveCopy(clip) => clips::remove_copy(state, model, clip),
         Command::SetLayers(layers) => set_layers(state, layers),
         Command::SetShow(show) => state.display.show = show,
         Command::SetChannel(channel) => set_channel(state, channel),
@@ -168,7 +169,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     state.edits.clips.clear();
     state.edits.copies.truncate(Edits::MAX_COPIES);
     for (name, changes) in wanted.edits.clips {
-        insert_changes(state, name, changes.clamped());
+        clips::insert_changes(state, name, changes.clamped());
     }
     set_layers(state, wanted.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
@@ -218,7 +219,7 @@ fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
 }
 
 /// Starts a clip from its beginning, with a crossfade if the current one is playing.
-fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: ClipChoice) {
+pub(super) fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: ClipChoice) {
     let before = model.map(|model| (model, active_clip(model, state)));
     let time_secs = state.playhead.time_secs;
     state.playhead.clip = clip;
@@ -454,91 +455,6 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
         _ => {
             state.edits.names.insert(joint, name.to_owned());
         }
-    }
-}
-
-fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
-    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
-    let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
-    let changes = changes.clamped();
-    let before = changes_of(model, state, clip);
-    // A link may name the clip by its index.
-    state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
-    if active_clip(model, state) == Some(clip) {
-        follow_changes(&mut state.playhead, &before, &changes);
-    }
-    insert_changes(state, name, changes);
-}
-
-fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
-    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
-    let original = model.original(clip);
-    let ClipChoice::Named(of) = choice_of_clip(model, original) else { return };
-    if state.edits.copies.len() == Edits::MAX_COPIES {
-        return;
-    }
-    let titles = model.clip_titles();
-    let is_free = |name: &String| !titles.contains(name) && !state.edits.has_copy(name);
-    let Some(name) = (1..).map(|part: u32| format!("{} part {part}", titles[original])).find(is_free) else { return };
-    state.edits.copies.push(ClipCopy { name: name.clone(), of });
-    insert_changes(state, name.clone(), changes.clamped());
-    set_clip(state, Some(model), ClipChoice::Named(name));
-}
-
-fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: usize) {
-    let Some(model) = model.filter(|model| model.is_copy(clip)) else { return };
-    let Some(name) = model.unchanged_clip(clip).map(Clip::name) else { return };
-    if active_clip(model, state) == Some(clip) {
-        set_clip(state, Some(model), choice_of_clip(model, model.original(clip)));
-    }
-    state.edits.copies.retain(|copy| copy.name != name);
-    state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
-}
-
-/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
-/// a reversed one is dropped.
-fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
-    if changes.trim != before.trim {
-        (playhead.range, playhead.time_secs) = (None, 0.0);
-    }
-    let stretch = before.speed / changes.speed;
-    playhead.time_secs *= stretch;
-    playhead.range = playhead
-        .range
-        .filter(|_| changes.reverse == before.reverse)
-        .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
-}
-
-/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that those
-/// dropped returns.
-pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
-    let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
-    let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
-    let before = changed(state);
-    let was_copy = is_copy_active(state);
-    state.restore_undoable(from);
-    if was_copy && !is_copy_active(state) {
-        state.playhead.clone_from(&from.playhead);
-        return;
-    }
-    if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
-        follow_changes(&mut state.playhead, &before, &changes);
-        let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
-        if has_dropped && active_clip(model, from) == Some(clip) {
-            state.playhead.range = from.playhead.range;
-        }
-    }
-}
-
-fn is_copy_active(state: &ViewerState) -> bool {
-    matches!(&state.playhead.clip, ClipChoice::Named(name) if state.edits.has_copy(name))
-}
-
-fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
-    if changes.is_none() {
-        state.edits.clips.remove(&name);
-    } else {
-        state.edits.clips.insert(name, changes);
     }
 }
 

@@ -87,8 +87,8 @@ pub enum Command {
         /// Replaces the changes it had.
         changes: Box<ClipChanges>,
     },
-    /// Adds a copy of a clip that has these changes, and plays it. A copy of a copy is one of the original. Numbers out of range
-    /// are clamped.
+    /// Adds a copy of a clip that has these changes, and plays it; ignored if there are [`Edits::MAX_COPIES`](super::Edits).
+    /// A copy of a copy is one of the original. Numbers out of range are clamped.
     CopyClip {
         /// Index among all clips.
         clip: usize,

@@ -2,7 +2,7 @@
 
 use std::mem::Discriminant;
 
-use super::apply::restore_edits;
+use super::clips::restore_edits;
 use super::{Command, SavedMotion, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 

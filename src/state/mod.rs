@@ -4,6 +4,7 @@ mod apply;
 mod avatar;
 mod camera;
 mod channel;
+mod clips;
 mod command;
 mod comparison;
 mod framing;
@@ -29,6 +30,7 @@ pub use apply::apply;
 pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
+pub use clips::{changes_of, clip_changes, clip_copies};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use framing::{
@@ -49,8 +51,8 @@ pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, pr
 pub use names::{title, written_skeleton};
 pub use pins::{looks_at_camera, pinned_clip, pinning};
 pub use playhead::{
-    PoseSampler, active_clip, changes_of, choice_of_clip, clip_changes, clip_copies, clip_secs, manual_degrees,
-    manual_rotation, play_range, unknown_clip, world_from_model,
+    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, unknown_clip,
+    world_from_model,
 };
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};

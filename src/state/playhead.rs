@@ -1,7 +1,5 @@
 //! From a view state to a pose: the active clip, its time, and the sampled pose.
 
-use std::collections::BTreeMap;
-
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::avatar::AvatarPose;
@@ -9,7 +7,7 @@ use super::pins::apply_pins;
 use super::{ClipChoice, LayerSampler, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
-use crate::retarget::{ClipChanges, ClipOverLayers};
+use crate::retarget::ClipOverLayers;
 
 /// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
@@ -48,28 +46,6 @@ pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
     let found = clip_called(model, name);
     let unique = model.clips().filter(|other| other.name() == name).count() == 1;
     ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
-}
-
-/// Returns the copies of the model's clips, each with its name and the index of its original; those of clips that the model lacks
-/// are skipped.
-pub fn clip_copies(model: &Model, state: &ViewerState) -> Vec<(String, usize)> {
-    let original = |name: &str| clip_called(model, name).filter(|&clip| !model.is_copy(clip));
-    state.edits.copies.iter().filter_map(|copy| Some((copy.name.clone(), original(&copy.of)?))).collect()
-}
-
-/// Returns the changes of the model's clips by index; names that the model lacks are skipped.
-pub fn clip_changes(model: &Model, state: &ViewerState) -> BTreeMap<usize, ClipChanges> {
-    let clips = state.edits.clips.iter();
-    clips.filter_map(|(name, changes)| Some((clip_called(model, name)?, changes.clone()))).collect()
-}
-
-/// Returns the changes of one clip.
-pub fn changes_of(model: &Model, state: &ViewerState, clip: usize) -> ClipChanges {
-    let mut clips = state.edits.clips.iter().rev();
-    clips
-        .find(|(name, _)| clip_called(model, name) == Some(clip))
-        .map(|(_, changes)| changes.clone())
-        .unwrap_or_default()
 }
 
 /// Returns the in and out points, clamped to the clip.

@@ -12,7 +12,7 @@ use crate::retarget::ClipChanges;
 const LEFT_OUT: &str = "it is left out";
 
 /// Returns what a view asks for that can't be shown, key by key. Without a model, or while an empty stage stands in for it,
-/// only what no model could show.
+/// only what no model could show. The model must have the view's copies of clips.
 pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError> {
     // Angles may only be written otherwise.
     const ANGLES: [&str; 3] = ["camera", "environment", "pose"];
@@ -31,12 +31,10 @@ pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError
 fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     let mut add = |key, unknown, instead| found.push(LinkError::UnknownName { key, unknown, instead });
     let edits = &view.edits;
-    // The model may not have them yet.
-    let is_copy = |unknown: &UnknownName| edits.has_copy(&unknown.name);
-    if let Some(unknown) = unknown_clip(model, view).filter(|unknown| !is_copy(unknown)) {
+    if let Some(unknown) = unknown_clip(model, view) {
         add("clip", unknown, "the rest pose is used");
     }
-    for unknown in unknown_layers(model, &edits.layers).filter(|unknown| !is_copy(unknown)) {
+    for unknown in unknown_layers(model, &edits.layers) {
         add("layers", unknown, "the layer is left out");
     }
     let clip_unknown =
@@ -44,8 +42,7 @@ fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     for copy in edits.copies.iter().filter(|copy| clip_called(model, &copy.of).is_none()) {
         add("copy", clip_unknown(&copy.of), LEFT_OUT);
     }
-    let is_unknown = |name: &str| clip_called(model, name).is_none() && !edits.has_copy(name);
-    for (name, changes) in edits.clips.iter().filter(|(name, _)| is_unknown(name)) {
+    for (name, changes) in edits.clips.iter().filter(|(name, _)| clip_called(model, name).is_none()) {
         let is_only_mirrored = *changes == ClipChanges { mirror: true, ..ClipChanges::NONE };
         add(if is_only_mirrored { "mirror" } else { "change" }, clip_unknown(name), LEFT_OUT);
     }

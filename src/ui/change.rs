@@ -76,17 +76,21 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
     let no_range = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
-    let has_room = shown.state.edits.copies.len() < Edits::MAX_COPIES;
-    let clicked = |ui: &mut Ui, label, is_enabled| {
-        let hint = controls::with_key(ui, if range.is_none() { no_range } else { text::ENOUGH_COPIES });
-        let button = ui.add_enabled(range.is_some() && is_enabled, egui::Button::new(label));
-        button.on_disabled_hover_text(hint).clicked()
-    };
+    let why_not = range.is_none().then_some(no_range);
+    let is_full = shown.state.edits.copies.len() == Edits::MAX_COPIES;
     ui.horizontal_wrapped(|ui| {
-        if clicked(ui, text::TRIM_TO_RANGE, true) {
+        if trim_button(ui, text::TRIM_TO_RANGE, why_not) {
             changes.trim = range;
         }
-        clicked(ui, text::TRIM_TO_COPY, has_room).then(|| ClipChanges { trim: range, ..changes.clone() })
+        let why_not = why_not.or(is_full.then_some(text::ENOUGH_COPIES));
+        trim_button(ui, text::TRIM_TO_COPY, why_not).then(|| ClipChanges { trim: range, ..changes.clone() })
     })
     .inner
+}
+
+/// Returns whether the button was clicked; `why_not` disables it.
+fn trim_button(ui: &mut Ui, label: &str, why_not: Option<&str>) -> bool {
+    let button = ui.add_enabled(why_not.is_none(), egui::Button::new(label));
+    let hint = controls::with_key(ui, why_not.unwrap_or_default());
+    button.on_disabled_hover_text(hint).clicked()
 }

@@ -1,4 +1,4 @@
-// Runs both back ends in Chromium on a software renderer, and wraps the page for tests. Tests find the shell's controls
+// Runs both back ends in Chromium, on a software renderer unless told otherwise, and wraps the page for tests. Tests find the shell's controls
 // by their ids.
 import fs from "node:fs";
 import http from "node:http";
@@ -48,8 +48,11 @@ const SOFTWARE = ["--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader"
 /** Both back ends on a graphics card, without a display. */
 const GRAPHICS_CARD = ["--use-angle=vulkan", "--disable-vulkan-surface", "--ignore-gpu-blocklist"];
 
-/** With GAITWAY_GPU=1, the graphics card draws. Domains keep the GPU after a test crashes its process. */
-export const FLAGS = ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--disable-domain-blocking-for-3d-apis", ...(process.env.GAITWAY_GPU === "1" ? GRAPHICS_CARD : SOFTWARE)];
+/** Whether the graphics card draws. */
+export const USES_GRAPHICS_CARD = process.env.GAITWAY_GPU === "1";
+
+/** Domains keep the GPU after a test crashes its process. */
+export const FLAGS = ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--disable-domain-blocking-for-3d-apis", ...(USES_GRAPHICS_CARD ? GRAPHICS_CARD : SOFTWARE)];
 
 const TIMEOUT_MS = 60_000;
 

@@ -1,5 +1,5 @@
-// Measures a first visit with Lighthouse: on a desktop, with the program loaded and the first scene moving. A software
-// renderer draws here, which is slower than any graphics card.
+// Measures a first visit with Lighthouse: on a desktop, with the program loaded and the first scene moving. Usually,
+// a software renderer draws here, which is slower than any graphics card.
 import assert from "node:assert/strict";
 import lighthouse, { desktopConfig } from "lighthouse";
 import { chromium } from "playwright-core";

@@ -169,7 +169,6 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage("rejects a wrong value and keeps the state", {}, async (page) => {
-      await apply(page, { play: 0 });
       const earlier = await state(page);
       await assert.rejects(apply(page, { speed: "quickly" }), /speed/);
       assert.deepEqual(await state(page), earlier);
@@ -184,7 +183,6 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage("orbits by dragging and zooms in with the wheel", {}, async (page) => {
-      await apply(page, { play: 0 });
       const before = await picture(page);
       await page.mouse.move(CENTER.x, CENTER.y);
       await page.mouse.down();
@@ -200,7 +198,6 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage("follows a resize", {}, async (page) => {
-      await apply(page, { play: 0 });
       const before = await picture(page);
       await resize(page, 1000, 500);
       const wide = await picture(page);
@@ -230,7 +227,6 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage("draws nothing while nothing changes", {}, async (page) => {
-      await apply(page, { play: 0 });
       // Let animations such as a fading tooltip finish.
       await untilStill(page);
       const drawn = await framesDrawnDuring(page, IDLE_FRAMES);
@@ -258,7 +254,6 @@ for (const renderer of BACK_ENDS) {
       });
 
     onPage("says that a folder has no files in it", {}, async (page) => {
-      await apply(page, { play: 0 });
       const before = await page.screenshot();
       await page.locator("#gallery-own").evaluate((button) => button instanceof HTMLElement && button.click());
       await page.locator("#open-folder").dispatchEvent("change");

@@ -283,17 +283,17 @@ impl Library {
     /// Replaces the copies of clips of the active model, each with its name and the index of its original. Returns whether they
     /// differ from before.
     pub fn copy_clips(&mut self, copies: &[(String, usize)]) -> bool {
-        let active = self.active;
-        let model = self.models.iter_mut().find(|model| model.id == active);
-        model.is_some_and(|model| model.copy_clips(copies))
+        self.active_mut().is_some_and(|model| model.copy_clips(copies))
     }
 
     /// Applies changes to clips of the active model, by index among all clips, and restores the others. Only clips whose changes
     /// or originals differ from before are computed again; returns whether any clip differs from before.
     pub fn change_clips(&mut self, changes: &BTreeMap<usize, ClipChanges>) -> bool {
-        let active = self.active;
-        let model = self.models.iter_mut().find(|model| model.id == active);
-        model.is_some_and(|model| model.change_clips(changes))
+        self.active_mut().is_some_and(|model| model.change_clips(changes))
+    }
+
+    fn active_mut(&mut self) -> Option<&mut Model> {
+        self.models.iter_mut().find(|model| model.id == self.active)
     }
 
     /// Quality figures of a borrowed clip; none for the model's own clips.

@@ -155,7 +155,11 @@ impl Model {
 
     /// Returns a clip by its index among all clips, without its changes.
     pub fn unchanged_clip(&self, index: usize) -> Option<&Clip> {
-        self.clips().nth(index)
+        let own = &self.asset.clips;
+        match index.checked_sub(self.original_count()) {
+            Some(copy) => self.copies.get(copy).map(|copy| &copy.clip),
+            None => own.get(index).or_else(|| self.borrowed.get(index - own.len()).map(|borrowed| &borrowed.clip)),
+        }
     }
 
     /// Returns a clip with its changes, if it has any.

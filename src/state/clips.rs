@@ -1,0 +1,121 @@
+//! Edits of clips: their changes, and copies with changes of their own.
+
+use std::collections::BTreeMap;
+
+use super::apply::set_clip;
+use super::playhead::{active_clip, choice_of_clip, clip_called};
+use super::{ClipChoice, ClipCopy, Edits, Playhead, ViewerState};
+use crate::anim::{Clip, TimeRange};
+use crate::library::Model;
+use crate::retarget::ClipChanges;
+
+/// Returns the copies of the model's clips, each with its name and the index of its original; those of clips that the model lacks
+/// are skipped.
+pub fn clip_copies(model: &Model, state: &ViewerState) -> Vec<(String, usize)> {
+    let original = |name: &str| clip_called(model, name).filter(|&clip| !model.is_copy(clip));
+    state.edits.copies.iter().filter_map(|copy| Some((copy.name.clone(), original(&copy.of)?))).collect()
+}
+
+/// Returns the changes of the model's clips by index; names that the model lacks are skipped.
+pub fn clip_changes(model: &Model, state: &ViewerState) -> BTreeMap<usize, ClipChanges> {
+    let clips = state.edits.clips.iter();
+    clips.filter_map(|(name, changes)| Some((clip_called(model, name)?, changes.clone()))).collect()
+}
+
+/// Returns the changes of one clip.
+pub fn changes_of(model: &Model, state: &ViewerState, clip: usize) -> ClipChanges {
+    let mut clips = state.edits.clips.iter().rev();
+    clips
+        .find(|(name, _)| clip_called(model, name) == Some(clip))
+        .map(|(_, changes)| changes.clone())
+        .unwrap_or_default()
+}
+
+/// Replaces the changes of a clip.
+pub(super) fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
+    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
+    let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
+    let changes = changes.clamped();
+    let before = changes_of(model, state, clip);
+    // A link may name the clip by its index.
+    state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
+    if active_clip(model, state) == Some(clip) {
+        follow_changes(&mut state.playhead, &before, &changes);
+    }
+    insert_changes(state, name, changes);
+}
+
+/// Adds a copy of a clip, unless there are [`Edits::MAX_COPIES`], and plays it.
+pub(super) fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
+    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
+    let original = model.original(clip);
+    let ClipChoice::Named(of) = choice_of_clip(model, original) else { return };
+    if state.edits.copies.len() == Edits::MAX_COPIES {
+        return;
+    }
+    let titles = model.clip_titles();
+    let is_free = |name: &String| !titles.contains(name) && !state.edits.has_copy(name);
+    let Some(name) = (1..).map(|part: u32| format!("{} part {part}", titles[original])).find(is_free) else { return };
+    state.edits.copies.push(ClipCopy { name: name.clone(), of });
+    insert_changes(state, name.clone(), changes.clamped());
+    set_clip(state, Some(model), ClipChoice::Named(name));
+}
+
+/// Removes a copy; the original plays in its place.
+pub(super) fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: usize) {
+    let Some(model) = model.filter(|model| model.is_copy(clip)) else { return };
+    let Some(name) = model.unchanged_clip(clip).map(Clip::name) else { return };
+    if active_clip(model, state) == Some(clip) {
+        set_clip(state, Some(model), choice_of_clip(model, model.original(clip)));
+    }
+    state.edits.copies.retain(|copy| copy.name != name);
+    state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
+}
+
+/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
+/// a reversed one is dropped.
+fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
+    if changes.trim != before.trim {
+        (playhead.range, playhead.time_secs) = (None, 0.0);
+    }
+    let stretch = before.speed / changes.speed;
+    playhead.time_secs *= stretch;
+    playhead.range = playhead
+        .range
+        .filter(|_| changes.reverse == before.reverse)
+        .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+}
+
+/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that those
+/// dropped returns.
+pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
+    let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
+    let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
+    let before = changed(state);
+    let was_copy = is_copy_active(state);
+    state.restore_undoable(from);
+    if was_copy && !is_copy_active(state) {
+        state.playhead.clone_from(&from.playhead);
+        return;
+    }
+    if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
+        follow_changes(&mut state.playhead, &before, &changes);
+        let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
+        if has_dropped && active_clip(model, from) == Some(clip) {
+            state.playhead.range = from.playhead.range;
+        }
+    }
+}
+
+fn is_copy_active(state: &ViewerState) -> bool {
+    matches!(&state.playhead.clip, ClipChoice::Named(name) if state.edits.has_copy(name))
+}
+
+/// Sets the changes of a name, whether the model has such a clip or not.
+pub(super) fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
+    if changes.is_none() {
+        state.edits.clips.remove(&name);
+    } else {
+        state.edits.clips.insert(name, changes);
+    }
+}
