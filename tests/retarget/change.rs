@@ -4,8 +4,9 @@ use gaitway::anim::{
     Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, SampleCursor, Skeleton, TimeRange,
     Transform, model_from_joint,
 };
-use gaitway::asset::{Asset, AssetParts, Slot};
+use gaitway::asset::{Asset, AssetParts, MeshInstance, Slot};
 use gaitway::avatar::{Avatar, Expression};
+use gaitway::mesh::{Mesh, Skin};
 use gaitway::retarget::{ChangedClip, ClipChanges, Symmetry, change_clip, recognize};
 use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
 
@@ -63,26 +64,42 @@ fn mirrored_twice_is_the_clip() {
     }
 }
 
-/// Every joint is where the one on the other side was, across the plane X = 0.
 #[test]
 fn a_mirrored_clip_is_seen_in_a_mirror() {
-    let reflect = |at: DVec3| DVec3::new(-at.x, at.y, at.z);
-    for kind in KINDS {
-        let figure = dancer(kind);
-        let clip = &figure.asset.clips[0];
-        let mirrored = changed(&figure, clip, &ClipChanges { mirror: true, ..NONE }).clip;
-        let mut moved = 0.0_f64;
-        for time in times(clip) {
-            let (before, after) = (figure.world(clip, time), figure.world(&mirrored, time));
-            for (&slot, &joint) in &figure.slots.0 {
-                let Some(other) = figure.slots.joint(slot.mirrored()) else { continue };
-                let (expected, found) = (reflect(before[joint.get()].1), after[other.get()].1);
-                assert!(expected.distance(found) < 1e-5, "{slot:?} at {time}: {found} instead of {expected}");
-                moved = moved.max(before[other.get()].1.distance(found));
-            }
+    for (axes, facing_degrees, arms_down_degrees) in [(3, 0.0, 0.0), (4, 90.0, 0.0), (5, 180.0, 50.0), (6, 0.0, 50.0)] {
+        let across = DQuat::from_rotation_y(f64::to_radians(facing_degrees)) * DVec3::X;
+        for kind in KINDS {
+            let rig = Rig { axes, facing_degrees, arms_down_degrees, armature: true, ..Rig::default() };
+            let mut figure = build(&rig);
+            figure.dance(5, 60.0, kind);
+            let clip = &figure.asset.clips[0];
+            let mirrored = changed(&figure, clip, &ClipChanges { mirror: true, ..NONE }).clip;
+            let moved = times(clip).map(|time| check_mirrored(&figure, across, [clip, &mirrored], time));
+            assert!(moved.fold(0.0, f64::max) > 0.2, "the dance isn't symmetric");
         }
-        assert!(moved > 0.2, "the dance isn't symmetric");
     }
+}
+
+/// Every joint is where the one on the other side was, across the plane between left and right, and turned as its mirror image.
+/// Returns how far a joint has moved.
+fn check_mirrored(figure: &Figure, across: DVec3, [clip, mirrored]: [&Clip; 2], time: f32) -> f64 {
+    let reflect = |at: DVec3| at - 2.0 * across * at.dot(across);
+    let rest = figure.world_of(figure.asset.skeleton.rest());
+    let (before, after) = (figure.world(clip, time), figure.world(mirrored, time));
+    let mut moved = 0.0_f64;
+    for (&slot, &joint) in &figure.slots.0 {
+        let Some(other) = figure.slots.joint(slot.mirrored()) else { continue };
+        let (joint, other) = (joint.get(), other.get());
+        let (expected, found) = (reflect(before[joint].1), after[other].1);
+        assert!(expected.distance(found) < 1e-5, "{slot:?} at {time}: {found} instead of {expected}");
+        let away = before[joint].0 * rest[joint].0.inverse();
+        // The axis of a rotation is a pseudovector.
+        let axis = -reflect(away.xyz());
+        let expected = DQuat::from_xyzw(axis.x, axis.y, axis.z, away.w) * rest[other].0;
+        assert!(degrees(expected, after[other].0) < 1e-3, "{slot:?} at {time}");
+        moved = moved.max(before[other].1.distance(found));
+    }
+    moved
 }
 
 /// A fish has no body parts, only sides in its names.
@@ -123,6 +140,25 @@ fn joints_that_are_no_body_parts_are_mirrored_by_the_sides_in_their_names() {
         }
         assert!(own[2].distance(other[2]) > 1e-3);
     }
+}
+
+#[test]
+fn mirroring_swaps_morph_targets_named_for_a_side() {
+    let names = ["browDown_L", "jawOpen", "browDown_R", "eyeBlinkLeft", "lonely_L", "eyeBlinkRight"];
+    let mesh = Mesh { target_names: names.map(str::to_owned).to_vec(), ..Mesh::default() };
+    let face = Joint { morph_weights: vec![0.0; names.len()], ..Joint::default() };
+    let skeleton = Skeleton::new(vec![face]).expect("a joint");
+    let instances = vec![MeshInstance::new(JointIndex(0), 0, None)];
+    let parts = AssetParts { skeleton, meshes: vec![mesh], instances, ..AssetParts::default() };
+    let asset = Asset::new(parts).expect("is valid");
+    let mut builder = ClipBuilder::new("", &asset.skeleton);
+    let values: Vec<f32> = (1..=12).map(|weight| weight as f32).collect();
+    let keys = Keys::MorphWeights { values, targets: 6 };
+    builder.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("valid");
+    let mirror = ClipChanges { mirror: true, ..NONE };
+    let clip = change_clip(&asset, &builder.build(), &mirror, || symmetry(&asset)).clip;
+    let Keys::MorphWeights { values, .. } = &clip.channels()[0].keys else { panic!("weights become something else") };
+    assert_eq!(values[..], [3.0, 2.0, 1.0, 6.0, 5.0, 4.0, 9.0, 8.0, 7.0, 12.0, 11.0, 10.0]);
 }
 
 #[test]
@@ -197,6 +233,34 @@ fn speed_stretches_time() {
         assert_eq!(key_count(&fast), key_count(clip));
         for time in times(&fast) {
             check_same(&figure, (clip, time * 1.7), (&fast, time), 2e-5);
+        }
+    }
+}
+
+/// The body goes along with an arm that waves alone, whichever joints the skin has.
+#[test]
+fn a_clip_of_an_arm_is_turned_and_moved_with_its_body() {
+    let mut figure = dancer(Interpolation::Linear);
+    let arm = figure.joint(Slot::LeftUpperArm);
+    let mut clip = ClipBuilder::new("wave", &figure.asset.skeleton);
+    let keys = [Quat::IDENTITY, Quat::from_rotation_x(0.8)].to_vec();
+    clip.channel(arm, Interpolation::Linear, &[0.0, 1.0], Keys::Rotation(keys)).expect("valid");
+    let clip = clip.build();
+    let joints: Vec<JointIndex> = figure.slots.0.values().copied().collect();
+    let skin =
+        Skin::new(String::new(), joints.clone(), vec![Affine3A::IDENTITY; joints.len()], figure.asset.skeleton.len());
+    let parts = std::mem::take(&mut figure.asset).into_parts();
+    figure.asset = Asset::new(AssetParts { skins: vec![skin.expect("valid")], ..parts }).expect("valid");
+    let changes = ClipChanges { offset: [1.5, -0.5], turn_degrees: 70.0, ..NONE };
+    let placed = changed(&figure, &clip, &changes).clip;
+    let turn = DQuat::from_rotation_y(70_f64.to_radians());
+    let hips = figure.joint(Slot::Hips).get();
+    let start = figure.world(&clip, 0.0)[hips].1;
+    for time in [0.0, 0.3, 1.0] {
+        let (before, after) = (figure.world(&clip, time), figure.world(&placed, time));
+        for joint in joints.iter().map(|joint| joint.get()) {
+            let expected = start + turn * (before[joint].1 - start) + DVec3::new(1.5, 0.0, -0.5);
+            assert!(expected.distance(after[joint].1) < 1e-5, "{} instead of {expected}", after[joint].1);
         }
     }
 }

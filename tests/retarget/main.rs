@@ -13,6 +13,8 @@ mod real;
 mod skeletons;
 
 mod change;
+mod changed_people;
+mod contact_table;
 mod contacts;
 mod coursework;
 mod feet;
@@ -25,5 +27,6 @@ mod pins;
 mod rests;
 mod soles;
 mod stack;
+mod surface;
 mod verdicts;
 mod written;

@@ -9,7 +9,7 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use super::track::{Target, Tracks};
 use crate::anim::{JointIndex, PropertyTarget};
 use crate::asset::Asset;
-use crate::retarget::map::opposite_joints;
+use crate::retarget::map::{opposite_joints, pairs_by_side};
 use crate::retarget::pose::{WorldPose, node_locals};
 use crate::retarget::recognize::Recognized;
 
@@ -90,9 +90,21 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
             Target::Scale(joint) => *joint = symmetry.opposite[joint.get()],
             Target::Property(PropertyTarget::LookAt) => track.map(|angles| angles[0] = -angles[0], &[]),
             Target::Property(PropertyTarget::Expression(index)) => *index = other_expression(asset, *index),
-            Target::Weights(_) | Target::Property(_) => {}
+            Target::Weights(joint) => {
+                for [left, right] in pairs_by_side(target_names(asset, *joint).take(track.width)) {
+                    track.map(|weights| weights.swap(left, right), &[]);
+                }
+            }
+            Target::Property(_) => {}
         }
     }
+}
+
+/// Returns the names of a node's morph targets, as far as they have any.
+fn target_names(asset: &Asset, node: JointIndex) -> impl Iterator<Item = &str> {
+    let instance = asset.instances.iter().find(|instance| instance.joint == node);
+    let names = instance.map_or(&[][..], |instance| &asset.meshes[instance.mesh].target_names);
+    names.iter().map(String::as_str)
 }
 
 /// Returns the expression of the other side: `blinkLeft` for `blinkRight`.

@@ -125,7 +125,7 @@ pub fn change_clip(
     }
     let seam = changes.loop_secs.map(|secs| seam::blend(&mut tracks, skeleton, secs as f32));
     if changes.offset != [0.0; 2] || changes.turn_degrees != 0.0 {
-        path::place(&mut tracks, skeleton, changes.offset, changes.turn_degrees.to_radians());
+        path::place(&mut tracks, asset, changes.offset, changes.turn_degrees.to_radians());
     }
     ChangedClip { clip: tracks.build(clip.name(), skeleton), seam }
 }

@@ -17,7 +17,7 @@ mod unmapped;
 pub use error::MapError;
 pub use file::{JointMapFile, SourceRef};
 pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
-pub use opposite::opposite_joints;
+pub use opposite::{opposite_joints, pairs_by_side};
 pub use options::{Contacts, Feet, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart};
 pub use propose::{Proposal, ProposedPair, propose, propose_recognized};
 pub use resolved::{Layer, Pair, ResolvedMap};
