@@ -43,6 +43,9 @@ def test_numpy_archives_that_numpy_writes(tmp_path: Path) -> None:
     assert clip.frames_per_sec == 25
     assert clip.duration_secs == pytest.approx(0.76)
     assert clip.key_times == pytest.approx(np.arange(frames) / 25)
+    np.savez(path, poses=np.array([{"joint": 1}], dtype=object), mocap_framerate=25.0)
+    with pytest.raises(gaitway.Error, match=r"smpl\.npz: .*pickled Python objects.*numpy\.savez"):
+        gaitway.load_motion(path)
 
 
 def broken(folder: Path) -> Path:

@@ -18,6 +18,14 @@ OPTIONS = {
         {"mirror": True, "reverse": False, "trim": (0.1, 0.5), "offset": (-1, 0.5), "turn": -90, "speed": None},
         ["--mirror", "--trim", "0.1,0.5", "--offset", "-1,0.5", "--turn", "-90"],
     ),
+    "kept contacts": ({"contacts": "keep", "origin": "rest"}, ["--contacts", "keep", "--origin", "rest"]),
+    "looped and pinned": (
+        {"make_loop": 0.2, "speed": 1.5, "pin": ["leftHand=at:0.3,1.2,0.4@0.2,0.5,0.1", "head=look:0,1.5,3"]},
+        [
+            *("--make-loop", "0.2", "--speed", "1.5"),
+            *("--pin", "leftHand=at:0.3,1.2,0.4@0.2,0.5,0.1", "--pin", "head=look:0,1.5,3"),
+        ],
+    ),
 }
 
 

@@ -180,11 +180,7 @@ impl Editor {
                 write_motion(&model.asset, &skeleton, &clips)
             }
         };
-        let motion = borrowed.and_then(|borrowed| self.library.motions().get(borrowed.motion));
-        let name = match motion {
-            Some(motion) => format!("{}-{}.glb", stem(&model.source), stem(&motion.source)),
-            None => format!("{}.glb", self.stem_with_clip(Some(clip))),
-        };
+        let name = format!("{}.glb", self.stem_with_clip(Some(clip)));
         let bytes = bytes.map_err(|error| error.to_string())?;
         let remarks: Vec<String> = baked.remark.into_iter().chain(remark).collect();
         Ok(ExportedFile { name, bytes, remark: (!remarks.is_empty()).then(|| remarks.join(" ")) })

@@ -2,6 +2,7 @@
 //! that succeed can be undone.
 
 use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
+use crate::asset::Warning;
 use crate::library::{BorrowError, BorrowedClip, Library, Model, ModelId, Motion, names_checksum};
 use crate::retarget::{JointMap, MapError};
 use crate::state::{
@@ -65,6 +66,7 @@ impl Editor {
         }
         self.remember(before);
         self.report(problems);
+        self.report(motions.iter().flat_map(lost_frames).collect());
         self.choose_retargeted(motions.first().map(ClipIdentity::first_of));
         self.events.push(Event::MotionsAdded);
         let mut notice = added.unwrap_or_default();
@@ -369,6 +371,12 @@ pub(super) fn without_still(motions: Vec<Motion>) -> (Vec<Motion>, Vec<String>) 
     let why =
         |motion: &Motion| format!("{}: it has no animation, so there is nothing to borrow", short_name(&motion.source));
     (moving, still.iter().map(why).collect())
+}
+
+/// Returns what is missing of a BVH that was cut short: unlike a model's, the warnings of a motion are in no tab.
+fn lost_frames(motion: &Motion) -> impl Iterator<Item = String> + '_ {
+    let lost = motion.asset.warnings.iter().filter(|warning| matches!(warning, Warning::FramesMissing { .. }));
+    lost.map(|warning| format!("{}: {warning}", short_name(&motion.source)))
 }
 
 /// Whether the map has no pairs yet: the user has just started it.

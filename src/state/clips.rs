@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::apply::set_clip;
+use super::layers::clip_of_layer;
 use super::playhead::{active_clip, choice_of_clip, clip_called};
 use super::{ClipChoice, ClipCopy, Edits, Playhead, ViewerState};
 use crate::anim::{Clip, TimeRange};
@@ -61,13 +62,14 @@ pub(super) fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: us
     set_clip(state, Some(model), ClipChoice::Named(name));
 }
 
-/// Removes a copy; the original plays in its place.
+/// Removes a copy and the layers that play it; the original plays in its place.
 pub(super) fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: usize) {
     let Some(model) = model.filter(|model| model.is_copy(clip)) else { return };
     let Some(name) = model.unchanged_clip(clip).map(Clip::name) else { return };
     if active_clip(model, state) == Some(clip) {
         set_clip(state, Some(model), choice_of_clip(model, model.original(clip)));
     }
+    state.edits.layers.retain(|layer| clip_of_layer(model, layer) != Some(clip));
     state.edits.copies.retain(|copy| copy.name != name);
     state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
 }

@@ -11,8 +11,8 @@ use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_enco
 use serde_json::{Map, Value, json};
 
 pub use self::files::{
-    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
-    linked_files, most_similar_link, public_link, shown_files,
+    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_with_missing,
+    link_without_missing, linked_files, most_similar_link, public_link, shown_files,
 };
 pub use self::pins::read_pin;
 pub use self::values::with_current_member;

@@ -42,8 +42,8 @@ pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknow
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
 pub use link::{
-    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
-    linked_files, most_similar_link, public_link, shown_files,
+    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_with_missing,
+    link_without_missing, linked_files, most_similar_link, public_link, shown_files,
 };
 pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};

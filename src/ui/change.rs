@@ -4,6 +4,7 @@ use egui::Ui;
 
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text};
+use crate::anim::TimeRange;
 use crate::retarget::ClipChanges;
 use crate::state::{Command, Edits, active_clip, changes_of};
 
@@ -63,27 +64,29 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// Buttons that keep only what is between the in and out points, in place or as a new clip, or one that restores the whole clip.
+/// Buttons that keep only what is between the in and out points, in place or as a new clip, and one that restores the whole clip.
 /// Returns the changes of the new clip.
 fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<ClipChanges> {
-    if changes.trim.is_some() {
-        if ui.button(text::UNDO_TRIM).clicked() {
-            changes.trim = None;
-        }
-        return None;
-    }
     // The range is then not in the time of the original clip.
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
+    let start_secs = changes.trim.map_or(0.0, |trim| trim.start_secs);
+    let range = range
+        .map(|range| TimeRange { start_secs: start_secs + range.start_secs, end_secs: start_secs + range.end_secs });
     let no_range = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
     let why_not = range.is_none().then_some(no_range);
     let is_full = shown.state.edits.copies.len() == Edits::MAX_COPIES;
     ui.horizontal_wrapped(|ui| {
+        let is_trimmed = changes.trim.is_some();
         if trim_button(ui, text::TRIM_TO_RANGE, why_not) {
             changes.trim = range;
         }
         let why_not = why_not.or(is_full.then_some(text::ENOUGH_COPIES));
-        trim_button(ui, text::TRIM_TO_COPY, why_not).then(|| ClipChanges { trim: range, ..changes.clone() })
+        let copy = trim_button(ui, text::TRIM_TO_COPY, why_not).then(|| ClipChanges { trim: range, ..changes.clone() });
+        if is_trimmed && ui.button(text::UNDO_TRIM).clicked() {
+            changes.trim = None;
+        }
+        copy
     })
     .inner
 }

@@ -27,10 +27,13 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut layers = before.clone();
     let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
+    controls::hint(ui, text::ABOUT_LAYERS);
+    let adds = ui.button(text::ADD_LAYER).clicked();
+    ui.add_space(4.0);
     // A layer that was just added gets the focus. That scrolls to its chooser, so the whole card scrolls into view afterwards.
     let added_id = ui.scope_id().with("added layer");
     let added: Option<usize> = ui.data(|data| data.get_temp(added_id));
-    for (index, layer) in layers.iter_mut().enumerate() {
+    for (index, layer) in layers.iter_mut().enumerate().rev() {
         let done = ui.push_id(("layer", index), |ui| {
             controls::card(ui, |ui| card(ui, shown, model, layer, index + 1 < before.len()))
         });
@@ -50,7 +53,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         Some((index, Moved::Removed)) => drop(layers.remove(index)),
         None => {}
     }
-    if ui.button(text::ADD_LAYER).clicked() {
+    if adds {
         // Another clip than the one that plays, if there is one.
         let playing = shown.clip_index();
         let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
@@ -60,7 +63,6 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         layers.push(ClipLayer { clip: name_of(model, clip), mask, ..ClipLayer::default() });
         ui.data_mut(|data| data.insert_temp(added_id, before.len()));
     }
-    controls::hint(ui, text::ABOUT_LAYERS);
     if layers != *before {
         out.commands.push(Command::SetLayers(layers));
     }

@@ -179,7 +179,14 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut speed = shown.state.playback.speed;
     let palette = style::palette(ui);
     if ui
-        .add(egui::DragValue::new(&mut speed).range(SPEEDS).speed(0.01).fixed_decimals(2).suffix("×"))
+        .add(
+            egui::DragValue::new(&mut speed)
+                .range(SPEEDS)
+                .speed(0.01)
+                .fixed_decimals(2)
+                .suffix("×")
+                .custom_parser(controls::read_number),
+        )
         .on_hover_text("Speed. Drag, or click to type.")
         .accessible_name(text::SPEED_VALUE)
         .changed()

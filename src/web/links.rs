@@ -39,6 +39,12 @@ pub fn link_without_missing(link: &str) -> String {
     state::link_without_missing(link)
 }
 
+/// Returns a link with the missing files of the one that asks for them, if it shows what could be shown of that one.
+#[wasm_bindgen]
+pub fn link_with_missing(link: &str, asking: &str) -> String {
+    state::link_with_missing(link, asking)
+}
+
 /// Returns the link with its missing files renamed to `names`, in the order of [`linked_files`].
 #[wasm_bindgen]
 pub fn link_with_files(link: &str, names: Vec<String>) -> String {

@@ -261,6 +261,85 @@ for (const renderer of BACK_ENDS)
       assert.ok(difference(await joints(page, { mirror: "walk (changed)" }), original) < ROUNDING);
     });
 
+    onPage("a clip is edited by the controls of the Motion tab, decimals after a comma", { link: () => WALKER }, async (page) => {
+      await showMotionTab(page);
+      await flip(page, "Reverse", true);
+      for (const [name, text] of [["Clip speed value", "1,6"], ["Turn path value", "-70"], ["Move along X value", "−1.5"]]) {
+        const number = control(page, "spinbutton", name);
+        await number.fill(text);
+        await number.press("Enter");
+        await untilStill(page);
+      }
+      await flip(page, "Make loopable", true);
+      await until(page, async () => (await window.gaitway.state()).change.length === 1);
+      assert.deepEqual((await state(page)).change, ["Walk:reverse,speed:1.6,loop:0.2,offset:-1.5:0,turn:-70"]);
+      await page.locator("#mirror").getByText(/^The ends were 0\.0° and 0\.0 cm apart/).waitFor();
+      const edited = await joints(page, { t: 0.3 });
+      const linked = await joints(page, { change: "Walk:reverse,speed:1.6,loop:0.2,offset:-1.5:0,turn:-70" });
+      assert.ok(difference(edited, linked) < ROUNDING);
+      const speed = control(page, "spinbutton", "Clip speed value");
+      await speed.fill("fast");
+      await speed.press("Enter");
+      await eventually(async () => (await speed.inputValue()) === "1.6", "the number is back");
+      await control(page, "button", "Reset clip").press("Enter");
+      await until(page, async () => (await window.gaitway.state()).change.length === 0);
+      // What vanished under the keyboard hands it to what is near.
+      await until(page, () => document.activeElement?.closest("#mirror") !== null && document.activeElement?.getAttribute("role") !== "img");
+    });
+
+    onPage("a layer is added and set by the controls of the Motion tab", { link: () => WALKER }, async (page) => {
+      await showMotionTab(page);
+      await control(page, "button", "Add layer").press("Enter");
+      await until(page, async () => (await window.gaitway.state()).layers.length === 1);
+      const chooser = control(page, "combobox", "Layer's clip");
+      await chooser.press("Enter");
+      const wave = page.locator("#mirror > [role=group]").getByRole("button", { name: "Wave" });
+      await wave.waitFor({ state: "attached" });
+      await wave.press("Enter");
+      await wave.waitFor({ state: "detached" });
+      await until(page, () => /^Layer's clip/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+      for (const [name, text] of [["Layer weight value", "0,5"], ["Layer start value", "0.25"]]) {
+        const number = control(page, "spinbutton", name);
+        await number.fill(text);
+        await number.press("Enter");
+        await untilStill(page);
+      }
+      await control(page, "radio", "Add to rest").press("Enter");
+      for (const part of ["Torso", "Head"]) await flip(page, part, false);
+      const expected = "Wave:weight:0.5,start:0.25,additive:rest,mask:left-arm:right-arm";
+      await until(page, async (expected) => (await window.gaitway.state()).layers[0] === expected, expected);
+      await controls(page, "slider", "Layer “Wave”").or(page.locator("#mirror").getByText("Wave")).first().waitFor({ state: "attached" });
+      const layered = await joints(page, { t: 0.7 });
+      const linked = await joints(page, { layers: expected });
+      assert.deepEqual(layered, linked);
+      const plain = await joints(page, { layers: null });
+      assert.ok(furthestJoint(layered, plain, ["RightHand"]) > 0.02 && furthestJoint(layered, plain, ["Head", "LeftFoot"]) < ROUNDING);
+    });
+
+    onPage("pins are made in the Scene tab: a foot to a point, a head to the camera", { link: () => `${WALKER}&t=0.3` }, async (page) => {
+      await resize(page, 1280, 800);
+      await toggleInspector(page);
+      await control(page, "tab", "Scene").press("Enter");
+      for (const [joint, goal, pin] of /** @type {const} */ ([["LeftFoot", "To a point", /^\d+:at:/], ["Head", "Camera", new RegExp(`^${HEAD}:look:camera$`)]])) {
+        const before = await joints(page, {});
+        await control(page, "treeitem", new RegExp(`^${joint}`)).press("Enter");
+        await until(page, async () => (await window.gaitway.state()).joint !== null);
+        await untilStill(page);
+        await control(page, "radio", goal).press("Enter");
+        await until(page, async (source) => (await window.gaitway.state()).pin.some((pin) => new RegExp(source).test(pin)), pin.source);
+        const pinned = await joints(page, {});
+        if (joint === "LeftFoot") {
+          // It is where it was, and stays there.
+          assert.ok(furthestJoint(pinned, before, [joint]) < 2e-3);
+          const later = await joints(page, { t: 0.6 });
+          assert.ok(furthestJoint(later, pinned, [joint]) < 1e-5 && furthestJoint(later, pinned, ["RightFoot"]) > 0.05);
+          await apply(page, { t: 0.3 });
+        } else {
+          assert.ok(largestAngle(pinned, before, [joint]) > 5);
+        }
+      }
+    });
+
     onPage("clips are cut out of one, listed, saved and in the link", { link: () => `${WALKER}&range=0.25,0.75` }, async (page) => {
       const original = await joints(page, { t: 0.5 });
       await showMotionTab(page);
@@ -274,6 +353,11 @@ for (const renderer of BACK_ENDS)
       const saved = await exported(page, "Save GLB");
       await apply(page, { clip: "Walk", range: "0,0.2" });
       await cut("Walk part 2");
+      await control(page, "button", "Remove this clip").press("Enter");
+      await until(page, async () => (await window.gaitway.state()).copy.length === 1);
+      await until(page, () => document.activeElement?.closest("#mirror") !== null && document.activeElement?.getAttribute("role") !== "img");
+      await undo(page);
+      await apply(page, { clip: "Walk part 2" });
       const { copy, change } = await state(page);
       assert.deepEqual([copy, change], [["Walk part 1:Walk", "Walk part 2:Walk"], ["Walk part 1:trim:0.25:0.75", "Walk part 2:trim:0:0.2"]]);
       await until(page, () => location.hash.includes("copy=Walk%20part%202:Walk"));

@@ -1,10 +1,17 @@
 //! Damaged files, the same on every run: flipped bits, truncation, other numbers. The loader may reject or load them,
 //! but what it loads must be consistent, and nothing may panic.
 
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use gaitway::anim::{JointIndex, TimeRange};
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, write_motion};
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, write_bvh, write_motion, write_vrma};
+use gaitway::retarget::{
+    ClipChanges, ClipLayer, ClipOverLayers, LayerMode, Pin, PinGoal, PinTimes, Pinning, StackedLayer, Symmetry,
+    bake_stack, change_clip, recognize,
+};
+use glam::{Affine3A, Vec3};
 
 use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
@@ -97,7 +104,13 @@ fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String
         let files = one(name, damage(file, random));
         let result = catch_unwind(AssertUnwindSafe(|| {
             let _ = missing_files(&files);
-            load(&files).map(|asset| check_asset(&files, &asset))
+            load(&files).map(|asset| {
+                check_asset(&files, &asset);
+                // That takes the longest.
+                if case % 6 == 5 {
+                    check_clips(&asset);
+                }
+            })
         }));
         match result {
             Ok(Ok(())) => read += 1,
@@ -129,6 +142,47 @@ fn check_asset(files: &FileSet, asset: &Asset) {
     }
 }
 
+/// Whatever its clips are, they can be changed, layered, pinned and written in each format, or the error says why not.
+fn check_clips(asset: &Asset) {
+    let skeleton = &asset.skeleton;
+    let recognized = recognize(asset);
+    let slots = recognized.humanoid();
+    let joints: Vec<JointIndex> = skeleton.joints().collect();
+    let Some(clip) = asset.clips.first() else { return };
+    let trim = Some(TimeRange { start_secs: 0.1, end_secs: 0.4 });
+    let (offset, turn_degrees) = ([1.0, -2.0], 30.0);
+    let changes =
+        ClipChanges { mirror: true, trim, reverse: true, speed: 2.0, loop_secs: Some(0.1), offset, turn_degrees };
+    let changed = change_clip(asset, clip, &changes, || Symmetry::of(asset, &recognized)).clip;
+    let layer = ClipLayer { mode: LayerMode::Additive, weight: 0.5, speed: 1.5, ..ClipLayer::default() };
+    let source = ClipOverLayers { clip: &changed, below: &[] };
+    let stacked = StackedLayer { layer: &layer, source, included: vec![true; skeleton.len()] };
+    let layered = bake_stack(skeleton, clip, &[stacked]);
+    let mut pinning =
+        Pinning { asset, body: &recognized, pins: &BTreeMap::new(), world_from_model: Affine3A::IDENTITY, eye: None };
+    let goals = [PinGoal::Point(Vec3::ONE), PinGoal::Look(Vec3::Y)];
+    let times = Some(PinTimes { start_secs: 0.2, end_secs: 0.3, blend_secs: 0.1 });
+    let pin = |number| Some((number, Pin { goal: *goals.iter().find(|&&goal| pinning.allows(number, goal))?, times }));
+    let pins: BTreeMap<usize, Pin> = (0..skeleton.len()).filter_map(pin).take(3).collect();
+    pinning.pins = &pins;
+    let pinned = pinning.bake(clip, clip.duration_secs().into());
+    for clip in [clip, &changed, &layered, &pinned] {
+        let written = [
+            ("bvh", write_bvh(asset, skeleton, &joints, clip, 30.0)),
+            ("vrma", write_vrma(asset, &slots, recognized.facing.forward, clip)),
+        ];
+        for (extension, written) in written {
+            match written {
+                Ok(bytes) => {
+                    let name = format!("written.{extension}");
+                    load(&one(&name, bytes)).unwrap_or_else(|problem| panic!("{name} can't be read: {problem}"));
+                }
+                Err(problem) => assert!(!problem.to_string().is_empty()),
+            }
+        }
+    }
+}
+
 pub fn generated() -> Vec<(&'static str, Vec<u8>)> {
     let joints = [0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0];
     let weights = [0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0];
@@ -145,7 +199,7 @@ pub fn generated() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 /// Small files of different kinds.
-pub const REAL: [&str; 13] = [
+pub const REAL: [&str; 15] = [
     "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
     "khronos/SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
     "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",
@@ -159,6 +213,8 @@ pub const REAL: [&str; 13] = [
     "cosc422/original/Dwarf/avatar_walk.bvh",
     "bvh/cosc422_Test.bvh",
     "bvh/deepmotion_rest.bvh",
+    "vrm/three-vrm_test.vrma",
+    "cosc422/mannequin_run.glb",
 ];
 
 #[test]

@@ -395,6 +395,26 @@ fn baked_pins_look_the_same_with_few_keys() {
     }
 }
 
+/// Damaged files have keys at any times.
+#[test]
+fn an_endless_clip_is_baked_in_no_time() {
+    let mut figure = build(&Rig::default());
+    let mut endless = gaitway::anim::ClipBuilder::new("endless", &figure.asset.skeleton);
+    let hips = figure.joint(Slot::Hips);
+    let keys = Keys::Translation(vec![Vec3::Y, 1.2 * Vec3::Y, Vec3::Y]);
+    endless.channel(hips, Interpolation::Linear, &[0.0, 1.0, 4e9], keys).expect("valid");
+    let clip = endless.build();
+    figure.set_clip(clip);
+    let body = recognize(&figure.asset);
+    let hand = figure.joint(Slot::LeftHand);
+    let pins =
+        BTreeMap::from([(figure.asset.skeleton.source_index(hand), pin(PinGoal::Point(Vec3::new(0.3, 1.2, 0.3))))]);
+    let baked = pinning(&figure, &body, &pins).bake(&figure.asset.clips[0], 4e9);
+    assert!((2..10_000).contains(&key_count(&baked, hand)));
+    let held = figure.world(&baked, 0.7)[hand.get()].1;
+    assert!(held.distance(DVec3::new(0.3, 1.2, 0.3)) < 1e-4, "{held}");
+}
+
 /// A body that stands still needs no more than the first and the last key.
 #[test]
 fn what_stays_in_place_has_two_keys() {

@@ -10,6 +10,7 @@ use gaitway::retarget::{
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::figure::{Figure, Rig, build};
+use crate::laws::degrees;
 use crate::skeletons::{asset, chain};
 
 /// A figure with a clip, and another clip for it.
@@ -73,6 +74,75 @@ fn the_order_of_layers_matters() {
     let full = ClipLayer::default();
     let both = played(&figure, &other, &[sum, full], 0.6);
     assert_eq!(both, sampled(&figure, &other, 0.6));
+}
+
+#[test]
+fn a_clip_that_rests_adds_nothing_to_the_rest() {
+    let (figure, _) = dancer(Interpolation::Linear, true);
+    let skeleton = &figure.asset.skeleton;
+    let mut resting = ClipBuilder::new("rest", skeleton);
+    for joint in skeleton.joints() {
+        let rest = skeleton.rest().local(joint);
+        for keys in [Keys::Rotation(vec![rest.rotation; 2]), Keys::Translation(vec![rest.translation; 2])] {
+            resting.channel(joint, Interpolation::Linear, &[0.0, 1.0], keys).expect("valid");
+        }
+    }
+    let resting = resting.build();
+    for mode in [LayerMode::Additive, LayerMode::AdditiveToRest] {
+        let layer = ClipLayer { mode, ..ClipLayer::default() };
+        assert_eq!(played(&figure, &resting, &[layer], 0.7), sampled(&figure, &figure.asset.clips[0], 0.7), "{mode:?}");
+    }
+}
+
+/// Local transforms in double precision: rotation and translation. No clip here animates scale.
+type Locals = Vec<(DQuat, DVec3)>;
+
+fn locals(pose: &Pose) -> Locals {
+    pose.locals().map(|local| (local.rotation.as_dquat().normalize(), local.translation.as_dvec3())).collect()
+}
+
+fn nlerp(from: DQuat, to: DQuat, weight: f64) -> DQuat {
+    let to = if from.dot(to) < 0.0 { -to } else { to };
+    (from * (1.0 - weight) + to * weight).normalize()
+}
+
+/// Each layer changes the result of those below it.
+#[test]
+fn a_stack_matches_double_precision() {
+    let (figure, other) = dancer(Interpolation::Linear, true);
+    let duration_secs = f64::from(other.duration_secs());
+    let over = ClipLayer { weight: 0.6, speed: 1.5, start_secs: 0.1, ..ClipLayer::default() };
+    let sum = ClipLayer { weight: 0.7, mode: LayerMode::Additive, start_secs: 0.35, ..ClipLayer::default() };
+    let to_rest = ClipLayer { weight: 0.4, mode: LayerMode::AdditiveToRest, mask: arms(), ..ClipLayer::default() };
+    let layers = [over, sum, to_rest];
+    let rest = locals(figure.asset.skeleton.rest());
+    let first = locals(&sampled(&figure, &other, 0.0));
+    for step in 0..30 {
+        let time_secs = 1.5 * (f64::from(step) + 0.37) / 30.0;
+        let mut expected = locals(&sampled(&figure, &figure.asset.clips[0], time_secs));
+        for layer in &layers {
+            let run_secs = ((time_secs - layer.start_secs) * layer.speed).rem_euclid(duration_secs);
+            let to = locals(&sampled(&figure, &other, run_secs));
+            let included = included(&figure, &layer.mask);
+            for joint in (0..expected.len()).filter(|&joint| included[joint]) {
+                let (own, to, weight) = (&mut expected[joint], to[joint], layer.weight);
+                let from = if layer.mode == LayerMode::Additive { first[joint] } else { rest[joint] };
+                *own = match layer.mode {
+                    LayerMode::Override => (nlerp(own.0, to.0, weight), own.1.lerp(to.1, weight)),
+                    LayerMode::Additive | LayerMode::AdditiveToRest => {
+                        let turn = nlerp(DQuat::IDENTITY, to.0 * from.0.conjugate(), weight);
+                        (turn * own.0, own.1 + (to.1 - from.1) * weight)
+                    }
+                };
+            }
+        }
+        let found = locals(&played(&figure, &other, &layers, time_secs));
+        for (joint, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            let size = expected.1.length().max(1.0);
+            assert!(degrees(found.0, expected.0) < 1e-3, "joint {joint} at {time_secs}");
+            assert!(found.1.distance(expected.1) < 1e-6 * size, "joint {joint} at {time_secs}");
+        }
+    }
 }
 
 /// Every joint belongs to one part, and those between slots and beyond them to the nearest above.

@@ -1,6 +1,8 @@
 //! Many motions in one run of `gaitway retarget`.
 
 use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
 use serde_json::Value;
@@ -74,6 +76,42 @@ fn many_motions_are_retargeted_and_resumed() {
     let call = ["retarget", "--model", "sample:walker", "--motion", &whole, "--out-dir", &out, "--clip-only"];
     assert_eq!(kinds(&lines(&call, 0)), ["written"; 3]);
     assert_eq!(lines(&call, 0).len(), 3);
+}
+
+/// Whatever was written before the program was killed is whole, and only the rest is made afterwards.
+#[test]
+fn a_killed_run_is_resumed() {
+    const COUNT: usize = 400;
+    let (folder, motion) = folder("killed");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    fs::create_dir_all(folder.join("in")).expect("a folder");
+    for index in 0..COUNT {
+        fs::copy(&motion, folder.join(format!("in/{index:03}.bvh"))).expect("a copy");
+    }
+    let (inputs, out) = (path("in"), path("out"));
+    let call = ["retarget", "--model", "sample:walker", "--motion", &inputs, "--out-dir", &out, "--clip-only"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
+    let mut child = command.args(call).stdout(Stdio::piped()).spawn().expect("the program runs");
+    let first = BufReader::new(child.stdout.take().expect("a pipe")).lines().next();
+    child.kill().expect("it runs");
+    child.wait().expect("it ran");
+    assert!(first.is_some_and(|line| line.is_ok_and(|line| line.contains("\"figures\""))));
+    let is_result = |name: &str| name.ends_with(".glb");
+    let files = || -> Vec<(String, Vec<u8>)> {
+        let entries = fs::read_dir(&out).expect("a folder").map(|entry| entry.expect("an entry"));
+        let results = entries.filter(|entry| entry.file_name().to_str().is_some_and(is_result));
+        results.map(|file| (file.path().display().to_string(), fs::read(file.path()).expect("a file"))).collect()
+    };
+    let before = files();
+    assert!((1..COUNT).contains(&before.len()), "{} of {COUNT} were written", before.len());
+    let resumed = lines(&call, 0);
+    let skipped = resumed.iter().filter(|line| line["skipped"].is_string()).count();
+    assert_eq!((resumed.len(), skipped), (COUNT, before.len()));
+    let after = files();
+    assert_eq!(after.len(), COUNT);
+    assert!(
+        before.iter().all(|file| after.contains(file)) && after.iter().all(|file| file.1.len() == after[0].1.len())
+    );
 }
 
 /// A member of a folder or an archive has no time of its own, so it may have changed.

@@ -8,7 +8,7 @@ use crate::cli::{check_fails, document, run};
 use crate::data_folder::data_folder;
 
 /// A humanoid of nine joints in BVH, walking in place, in centimetres.
-const BVH: &str = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+pub const BVH: &str = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
 JOINT Spine\n{\nOFFSET 0 15 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT Head\n{\nOFFSET 0 45 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 20 0\n}\n}\n}\n\
 JOINT LeftUpLeg\n{\nOFFSET 10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftLeg\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftFoot\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 15\n}\n}\n}\n}\n\
 JOINT RightUpLeg\n{\nOFFSET -10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT RightLeg\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT RightFoot\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 15\n}\n}\n}\n}\n}\n\
@@ -368,6 +368,61 @@ fn clips_are_changed_on_the_way() {
     // Durations are printed in milliseconds.
     assert!(run(&["convert", &motion, "--trim", "0.2,0.5004", "--out", &out]).status.success());
     check_fails(&["convert", &motion, "--speed", "0", "--out", &out], 2, "0.1 to 10");
+}
+
+/// A clip that ends elsewhere than it starts says by how much, in the report for people, too.
+#[test]
+fn a_loop_says_how_far_apart_its_ends_were() {
+    let (folder, motion) = folder("loop");
+    let out = folder.join("looped.bvh");
+    let out = out.to_str().expect("a plain path");
+    let output = run(&["convert", &motion, "--make-loop", "0.1", "--out", out]);
+    let told = [output.stdout, output.stderr].concat();
+    let told = String::from_utf8(told).expect("UTF-8");
+    // Thighs and shins swing by 40°, and the hips travel by 30 cm of 165.
+    assert!(told.contains("40.0° and 0.0 cm apart, not counting 0.30 m of travel"), "{told}");
+    let near = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4);
+    let (start, end) = (places(out, "0", "0"), places(out, "0", "0.5"));
+    let travelled = |at: &[f64; 3]| [at[0], at[1], at[2] - 0.3];
+    assert!(start.iter().zip(&end).all(|(start, end)| near(start, &travelled(end))), "{start:?} {end:?}");
+}
+
+/// The hips of the motion rest beside the origin, so its own path starts away from its rest.
+#[test]
+fn the_path_starts_where_the_motion_or_its_rest_is() {
+    let (folder, _) = folder("origin");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let (motion, map) = (path("aside.bvh"), path("map.json"));
+    std::fs::write(&motion, BVH.replacen("OFFSET 0 90 0", "OFFSET 50 90 0", 1)).expect("a file");
+    assert!(run(&["map", "--model", "sample:walker", "--motion", &motion, "--out", &map]).status.success());
+    let hips = |options: &[&str]| {
+        let out = path("out.bvh");
+        let call = ["retarget", "--model", "sample:walker", "--motion", &motion, "--map", &map, "--out", &out];
+        assert!(run(&[&call[..], options].concat()).status.success());
+        let document = document(&["pose", &out, "--clip", "0", "--time", "0", "--json"]);
+        let nodes = document["nodes"].as_array().expect("nodes");
+        let hips = nodes.iter().find(|node| node["name"] == "Hips").expect("is written");
+        [12, 14].map(|at| hips["world"][at].as_f64().expect("a number"))
+    };
+    let report = document(&[
+        "retarget",
+        "--model",
+        "sample:walker",
+        "--motion",
+        &motion,
+        "--out",
+        &path("out.glb"),
+        "--clip-only",
+        "--json",
+    ]);
+    let scale = report["hips_scale"].as_f64().expect("a number");
+    let (feet, rest) = (hips(&["--origin", "feet"]), hips(&["--origin", "rest"]));
+    assert!(feet[0].abs() < 1e-4 && (rest[0] + 0.5 * scale).abs() < 1e-4, "{feet:?} {rest:?} × {scale}");
+    assert_eq!(hips(&[]), feet, "feet is the default");
+    let mut written: Value = serde_json::from_slice(&std::fs::read(&map).expect("a map")).expect("JSON");
+    written["root"]["origin"] = json!("rest");
+    std::fs::write(&map, written.to_string()).expect("a file");
+    assert_eq!((hips(&[]), hips(&["--origin", "feet"])), (rest, feet), "the option overrides the map");
 }
 
 #[test]

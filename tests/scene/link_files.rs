@@ -2,8 +2,8 @@
 //! and adding them again.
 
 use gaitway::state::{
-    LinkRole, LinkedFile, embedded_link, link_with_files, link_without_missing, linked_files, most_similar_link,
-    public_link, shown_files,
+    LinkRole, LinkedFile, embedded_link, link_with_files, link_with_missing, link_without_missing, linked_files,
+    most_similar_link, public_link, shown_files,
 };
 use serde_json::{Value, json};
 
@@ -144,6 +144,19 @@ fn the_most_similar_link_shows_the_same_files() {
     check("motion=sample:run&model=sample:mannequin&speed=2", Some(2));
     check("v=1&model=sample:mannequin", None);
     check("v=1", None);
+}
+
+/// Whoever shares a view whose motion hasn't arrived shares the motion, too.
+#[test]
+fn a_shared_link_asks_for_what_is_missing_here() {
+    let asking = "v=1&model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&clip=9&fov=30";
+    let now = "v=1&model=sample:pilot&motion=sample:walk&copy=A:walk&clip=run&fov=20";
+    assert_eq!(
+        link_with_missing(now, asking),
+        "model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&v=1&copy=A:walk&clip=run&fov=20"
+    );
+    let other = "v=1&model=sample:dwarf&fov=20";
+    assert_eq!(link_with_missing(other, asking), other, "something else is shown");
 }
 
 #[test]

@@ -57,6 +57,14 @@ describe("written VRM animations play in three-vrm", { skip: skipWithoutData }, 
   if (skipWithoutData) return;
   for (const avatar of AVATARS)
     for (const motion of MOTIONS) test(`${avatar} ← ${path.basename(motion)}`, () => compareInThreeVrm(dataFile(`vrm/${avatar}.vrm`), dataFile(motion)));
+  const edits = ["--mirror", "--turn", "40", "--contacts", "keep", "--pin", "leftHand=at:0.3,1.1,0.3", "--pin", "head=look:1,1,2"];
+  test("a mirrored and turned clip with contacts and pins", () => compareInThreeVrm(dataFile(`vrm/${AVATARS[0]}.vrm`), dataFile(MOTIONS[0]), edits));
+  test("a clip of a model that is no avatar", async () => {
+    const vrma = path.join(folder, "soldier.vrma");
+    const { status, stderr } = await run("convert", dataFile("threejs/Soldier.glb"), "--clip", "Run", "--out", vrma);
+    assert.equal(status, 0, stderr);
+    await compareInThreeVrm(dataFile(`vrm/${AVATARS[0]}.vrm`), vrma);
+  });
 });
 
 describe("written VRM animations have the expressions of their motion in three-vrm", { skip: skipWithoutData }, () => {
@@ -90,11 +98,12 @@ async function happiness(file) {
 /**
  * @param {string} model
  * @param {string} motion
+ * @param {string[]} [edits]
  */
-async function compareInThreeVrm(model, motion) {
+async function compareInThreeVrm(model, motion, edits = []) {
   const [whole, alone] = ["whole.vrm", "alone.vrma"].map((name) => path.join(folder, name));
   for (const out of [whole, alone]) {
-    const { status, stderr } = await run("retarget", "--model", model, "--motion", motion, "--out", out);
+    const { status, stderr } = await run("retarget", "--model", model, "--motion", motion, ...edits, "--out", out);
     assert.equal(status, 0, stderr);
   }
   const own = (await document("inspect", model)).clips.length;

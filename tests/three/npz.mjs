@@ -3,14 +3,15 @@ import { archive } from "../browser/archive.mjs";
 
 /**
  * @param {number[]} shape
- * @param {Float64Array} values
+ * @param {Float64Array | Buffer} values
+ * @param {string} [kind] NumPy's name for what they are.
  */
-function npy(shape, values) {
-  const header = `{'descr': '<f8', 'fortran_order': False, 'shape': (${shape.map((side) => `${side},`).join("")}), }`;
+function npy(shape, values, kind = "<f8") {
+  const header = `{'descr': '${kind}', 'fortran_order': False, 'shape': (${shape.map((side) => `${side},`).join("")}), }`;
   const padded = `${header.padEnd(64 * Math.ceil((11 + header.length) / 64) - 11)}\n`;
   const length = Buffer.alloc(2);
   length.writeUInt16LE(padded.length);
-  return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(padded), Buffer.from(values.buffer)]);
+  return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(padded), Buffer.from(values.buffer, values.byteOffset, values.byteLength)]);
 }
 
 /**
@@ -33,3 +34,6 @@ export function walkingPerson(joints) {
     "mocap_framerate.npy": npy([], Float64Array.of(20)),
   });
 }
+
+/** An archive with a Python object, `None`, in place of numbers. */
+export const PICKLED = archive({ "poses.npy": npy([], Buffer.from("\x80\x04N.", "latin1"), "|O") });

@@ -50,6 +50,25 @@ fn place_of_joint(bench: &Bench) -> Pos2 {
     bench.viewport.min + vec2(x * bench.viewport.width(), y * bench.viewport.height())
 }
 
+#[test]
+fn a_click_beside_an_open_menu_only_closes_it() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, text::EXPORT);
+    let place = place_of_joint(harness.state());
+    for expected in [None, Some(SHIN)] {
+        let is_open = egui::Popup::is_any_open(&harness.ctx);
+        assert_eq!(is_open, expected.is_none());
+        harness.event(egui::Event::PointerMoved(place));
+        harness.run();
+        for pressed in [true, false] {
+            let (button, modifiers) = (PointerButton::Primary, egui::Modifiers::NONE);
+            harness.event(egui::Event::PointerButton { pos: place, button, pressed, modifiers });
+            harness.run();
+        }
+        assert_eq!(harness.state().state().selection.joint, expected);
+    }
+}
+
 fn angles(commands: &[Command]) -> [f32; 3] {
     let Some(Command::SetPose { joint: SHIN, degrees: Some(degrees) }) = commands.last() else {
         panic!("{commands:?}")

@@ -78,6 +78,15 @@ fn the_range_becomes_the_clip() {
     };
     assert_eq!(duration(&harness), 0.5);
     assert_eq!(harness.state().state().playhead.range, None);
+    // A part of the part, in its own time.
+    let range = TimeRange { start_secs: 0.125, end_secs: 0.375 };
+    harness.state_mut().editor.apply(Command::SetRange(Some(range)));
+    harness.run();
+    press(&mut harness, text::TRIM_TO_RANGE);
+    let trim = TimeRange { start_secs: 0.375, end_secs: 0.625 };
+    let trimmed = ClipChanges { trim: Some(trim), ..ClipChanges::NONE };
+    assert_eq!(harness.state().state().edits.clips.values().collect::<Vec<_>>(), [&trimmed]);
+    assert_eq!(duration(&harness), 0.25);
     press(&mut harness, text::UNDO_TRIM);
     assert!(duration(&harness) > 0.75);
 }

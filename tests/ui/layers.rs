@@ -42,15 +42,15 @@ fn a_layer_is_added_masked_raised_and_removed() {
     assert_eq!(layers(&harness), [edited.clone(), idle.clone()]);
     // The top layer can't be raised any further.
     let raise: Vec<_> = harness.get_all_by_label(text::RAISE_LAYER).collect();
-    assert!(!raise[0].accesskit_node().is_disabled() && raise[1].accesskit_node().is_disabled());
-    raise[0].scroll_to_me();
+    assert!(raise[0].accesskit_node().is_disabled() && !raise[1].accesskit_node().is_disabled());
+    raise[1].scroll_to_me();
     harness.run();
-    harness.get_all_by_label(text::RAISE_LAYER).next().expect("two").click();
+    harness.get_all_by_label(text::RAISE_LAYER).nth(1).expect("two").click();
     harness.run();
     assert_eq!(layers(&harness), [idle.clone(), edited.clone()]);
     choose(&mut harness, text::EXPORT, text::SAVE_GLB);
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
-    harness.get_all_by_label(text::REMOVE_LAYER).next().expect("two").click();
+    harness.get_all_by_label(text::REMOVE_LAYER).nth(1).expect("two").click();
     harness.run();
     assert_eq!(layers(&harness), [edited]);
     for _ in 0..6 {
@@ -70,12 +70,12 @@ fn a_new_layer_is_in_sight_and_has_the_focus() {
         for count in 1..=2 {
             scrolled_to(&mut harness, text::ADD_LAYER);
             press(&mut harness, text::ADD_LAYER);
-            let chooser = harness.get_all_by_label(text::LAYER_CLIP).last().expect("a card");
+            let chooser = harness.get_all_by_label(text::LAYER_CLIP).next().expect("a card");
             assert!(chooser.accesskit_node().is_focused(), "layer {count} on {size:?}");
             let (rect, timeline) = (chooser.rect(), harness.get_by_label(text::TIME).rect());
             assert!(rect.top() > 40.0 && rect.bottom() < timeline.top(), "layer {count} on {size:?}: {rect:?}");
             if size == WIDE {
-                let last = harness.get_all_by_label(text::body_part(BodyPart::RightLeg)).last().expect("in the card");
+                let last = harness.get_all_by_label(text::body_part(BodyPart::RightLeg)).next().expect("in the card");
                 assert!(last.rect().bottom() < timeline.top(), "layer {count}: {:?}", last.rect());
             }
         }

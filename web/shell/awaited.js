@@ -44,9 +44,16 @@ export function forgetAwaited() {
 export function passOver() {
   // Copies of files that couldn't be loaded are accepted, not asked for.
   [current, passedOver] = [null, current !== null && current.missing.length > 0 ? current : null];
-  if (passedOver === null) return;
-  const names = passedOver.missing.map(({ name }) => fileName(name));
-  return `This link needs ${listOf(names)}. Open ${names.length === 1 ? "it" : "them"} to see the ${passedOver.isOwn ? "view as it was" : "shared view"}.`;
+  return passedOver === null ? undefined : needOf(passedOver);
+}
+
+/**
+ * Tells what a link needs.
+ * @param {Awaited} asking
+ */
+export function needOf({ missing, isOwn }) {
+  const names = missing.map(({ name }) => fileName(name));
+  return `This link needs ${listOf(names)}. Open ${names.length === 1 ? "it" : "them"} to see the ${isOwn ? "view as it was" : "shared view"}.`;
 }
 
 /**

@@ -64,7 +64,7 @@ export function recordView() {
 }
 
 /** The link of the current entry if files are asked for that it needs, with the names of those that have arrived. */
-function askingLink() {
+export function askingLink() {
   const asking = awaited();
   return asking !== null && asking.missing.length > 0 && shownFiles(session.link) === entry.files ? asking.link : null;
 }

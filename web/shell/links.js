@@ -53,6 +53,13 @@ export const embeddedLink = (link) => loaded().embedded_link(link);
 export const linkWithoutMissing = (link) => loaded().link_without_missing(link);
 
 /**
+ * Returns a link with the missing files of the one that asks for them, if it shows what could be shown of that one.
+ * @param {string} link
+ * @param {string} asking
+ */
+export const linkWithMissing = (link, asking) => loaded().link_with_missing(link, asking);
+
+/**
  * Returns a link with its missing files under the names they arrived with.
  * @param {string} link
  * @param {string[]} names In the order of the link.

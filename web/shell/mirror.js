@@ -14,11 +14,11 @@ const NAMES = { tablist: "Inspector", tree: "Nodes", grid: "Joints and their sou
 const IN_LIST = Object.values(LISTS).map((role) => `[role=${role}]`).join();
 /** Roles of list entries that an arrow key chooses, not only reaches. */
 const CHOSEN_BY_ARROWS = ["tab", "radio"];
-/** Keys that an element handles itself, by its `type`. */
+/** Keys that an element handles itself, by its kind. */
 const OWN_KEYS = {
   button: /^(Enter| )$/,
   range: /^(Home|End|Page.*)$/,
-  number: /^(?!Escape$)/,
+  spinbutton: /^(?!Escape$)/,
   text: /^(?!(Escape|Enter|ArrowUp|ArrowDown)$)/,
 };
 /** Keys that change a number by a step, whose size the program knows. */
@@ -79,8 +79,9 @@ export class Mirror {
     }
     // Before placing: an empty row in front would take the place of the next one.
     for (const row of this.root.querySelectorAll("[role=row]:empty")) row.remove();
+    const hadTree = this.root.querySelector("[role=tree]") !== null;
     const menu = this.#place(entries);
-    if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus);
+    if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus, hadTree);
     this.#focused = focus;
     this.#isShowing = false;
     if (before !== null && !this.root.contains(document.activeElement)) this.#program.mirror_focus(false);
@@ -134,8 +135,11 @@ export class Mirror {
   #newElement({ id, role, focusable }) {
     const element = document.createElement(TAGS[/** @type {keyof typeof TAGS} */ (role)] ?? "button");
     if (element instanceof HTMLButtonElement) element.type = "button";
-    if (element instanceof HTMLInputElement) element.type = { slider: "range", spinbutton: "number" }[role] ?? "text";
-    else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
+    if (element instanceof HTMLInputElement) {
+      element.type = role === "slider" ? "range" : "text";
+      // The browser's own field for numbers knows one decimal separator, which depends on the language.
+      if (role === "spinbutton") [element.role, element.inputMode] = [role, "decimal"];
+    } else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
     else if (role !== "button" && role !== "text") element.setAttribute("role", role);
     if (role === "dialog") element.ariaModal = "true";
     if (role === "img" && focusable) element.tabIndex = 0;
@@ -146,39 +150,41 @@ export class Mirror {
       this.#program.mirror_act(id, "focus");
     });
     element.addEventListener("click", () => {
-      this.#opener = element;
+      // What is in a menu leaves with it.
+      if (element.closest("[data-role=group]") === null) this.#opener = element;
       this.#program.mirror_act(id, "click");
     });
     if (element instanceof HTMLInputElement) {
-      if (element.type === "number") {
+      const isNumber = role === "spinbutton";
+      if (isNumber) {
         element.addEventListener("input", () => void (element.dataset.typing = ""));
         for (const type of ["change", "blur"]) element.addEventListener(type, () => void delete element.dataset.typing);
       }
-      element.addEventListener(element.type === "number" ? "change" : "input", () => {
-        const value = element.type === "text" ? element.value : element.valueAsNumber;
-        if (!Number.isNaN(value)) this.#program.mirror_act(id, "set", value);
+      element.addEventListener(isNumber ? "change" : "input", () => {
+        const value = isNumber ? numberIn(element.value) : element.type === "range" ? element.valueAsNumber : element.value;
+        if (Number.isNaN(value)) element.value = element.ariaValueNow ?? "";
+        else this.#program.mirror_act(id, "set", value);
       });
     }
     return element;
   }
 
   /**
-   * Moves the focus to where the user expects it: into a menu that opens, back to what opened a menu that closes, or to where
-   * the program has moved its own.
+   * Moves the focus to where the user expects it: into a menu that opens, back to what opened a menu that closes, to where the
+   * program has moved its own, or else to what is nearest to where it was.
    * @param {HTMLElement} before What had the focus.
    * @param {HTMLElement | null} menu What has just opened.
    * @param {string} focus
+   * @param {boolean} hadTree Whether there was a tree before.
    */
-  #keepFocus(before, menu, focus) {
+  #keepFocus(before, menu, focus, hadTree) {
     if (this.#wanted === focus) this.#wanted = null;
     const first = menu === null ? undefined : stopsIn(menu)[0];
     const hasMoved = this.#wanted === null && focus !== this.#focused;
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
-    const selected = this.root.querySelector("[role=treeitem][aria-selected=true]");
-    /** @type {HTMLElement | null} */
-    const viewport = this.root.querySelector("[role=img][tabindex]");
-    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? viewport ?? stopsIn(this.root)[0]);
+    const selected = hadTree ? null : this.root.querySelector("[role=treeitem][aria-selected=true]");
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? nearest(stopsIn(this.root), before));
     const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();
@@ -189,7 +195,8 @@ export class Mirror {
   /** @param {KeyboardEvent} event */
   #passKey(event) {
     const { key, target, altKey, ctrlKey, shiftKey, metaKey } = event;
-    const type = target instanceof HTMLInputElement || target instanceof HTMLButtonElement ? target.type : "";
+    const { type = "", role = null } = target instanceof HTMLInputElement || target instanceof HTMLButtonElement ? target : {};
+    const kind = role === "spinbutton" ? role : type;
     const isCommand = ctrlKey || metaKey;
     const next = isCommand ? undefined : neighbourOf(target, key);
     if (next !== undefined) {
@@ -200,19 +207,19 @@ export class Mirror {
       event.preventDefault();
       return;
     }
-    const way = type === "range" || type === "number" ? STEPS[/** @type {keyof typeof STEPS} */ (key)] : undefined;
+    const way = kind === "range" || kind === "spinbutton" ? STEPS[/** @type {keyof typeof STEPS} */ (key)] : undefined;
     if (way !== undefined && !isCommand) {
       if (event.type === "keydown") this.#program.mirror_act(/** @type {HTMLElement} */ (target).dataset.id ?? "", way);
       event.preventDefault();
       return;
     }
-    if (type === "number" && isCommand && /^[yz]$/i.test(key)) {
+    if (kind === "spinbutton" && isCommand && /^[yz]$/i.test(key)) {
       // The browser takes back what is being typed, the program what was entered: its own field would take back the text alone.
       const { id, typing } = /** @type {HTMLElement} */ (target).dataset;
       if (typing !== undefined) return;
       if (event.type === "keydown") this.#program.mirror_act(id ?? "", "blur");
     }
-    if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (type)]?.test(key))) return;
+    if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (kind)]?.test(key))) return;
     this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
     // The browser's own commands stay, also those of function keys.
     if (!(isCommand || altKey || /^F([2-9]|1.)$/.test(key)) || /^[ozsy]$/i.test(key)) event.preventDefault();
@@ -227,14 +234,14 @@ function update(element, entry) {
   const { role, name, value, now, min, max, checked, rect } = entry;
   const isPicked = role === "tab" || role === "treeitem" || role === "gridcell";
   const state = isPicked ? "aria-selected" : role === "button" ? "aria-pressed" : "aria-checked";
-  const isBar = role === "progressbar";
+  const hasRange = role === "progressbar" || role === "spinbutton";
   const attributes = {
     "aria-label": role === "text" ? undefined : role === "combobox" && value !== undefined ? `${name ?? ""} ${value}`.trim() : name,
     "aria-description": entry.description,
     "aria-valuetext": role === "slider" || role === "spinbutton" ? value : undefined,
-    "aria-valuenow": isBar ? now : undefined,
-    "aria-valuemin": isBar ? min : undefined,
-    "aria-valuemax": isBar ? max : undefined,
+    "aria-valuenow": hasRange ? now : undefined,
+    "aria-valuemin": hasRange ? min : undefined,
+    "aria-valuemax": hasRange ? max : undefined,
     "aria-expanded": entry.expanded,
     "aria-disabled": entry.disabled,
     "aria-level": entry.level,
@@ -255,13 +262,42 @@ function update(element, entry) {
  * @param {HTMLInputElement} input
  * @param {MirrorEntry} entry
  */
-function updateInput(input, { value, now, min, max }) {
-  const isText = input.type === "text";
-  if (!isText) [input.min, input.max, input.step] = [String(min ?? ""), String(max ?? ""), "any"];
+function updateInput(input, { role, value, now, min, max }) {
+  const isText = role === "textbox";
+  if (role === "slider") [input.min, input.max, input.step] = [String(min ?? ""), String(max ?? ""), "any"];
   const shown = String((isText ? value : now) ?? "");
   // The program doesn't know yet what is being typed.
   const isTyping = input === document.activeElement && (isText || input.dataset.typing !== undefined);
   if (input.value !== shown && !isTyping) input.value = shown;
+}
+
+/**
+ * Reads a number, whose decimals may follow a comma; NaN for anything else.
+ * @param {string} text
+ */
+function numberIn(text) {
+  const trimmed = text.trim().replace("−", "-");
+  return trimmed === "" ? NaN : Number(trimmed.includes(".") ? trimmed : trimmed.replace(",", "."));
+}
+
+/**
+ * Returns the element in whose direction the eye would go from one that is gone; the viewport only if there is nothing else.
+ * @param {HTMLElement[]} stops
+ * @param {HTMLElement} gone
+ */
+function nearest(stops, gone) {
+  /** @type {(element: HTMLElement) => number[]} */
+  const centre = ({ style: { left, top, width, height } }) => [parseFloat(left) + parseFloat(width) / 2, parseFloat(top) + parseFloat(height) / 2];
+  const [x, y] = centre(gone);
+  /** @type {(element: HTMLElement) => number} */
+  const distance = (element) => {
+    const [otherX, otherY] = centre(element);
+    return element.dataset.role === "img" ? Infinity : Math.hypot(otherX - x, otherY - y);
+  };
+  /** @type {HTMLElement | undefined} */
+  let best;
+  for (const stop of stops) if (best === undefined || distance(stop) < distance(best)) best = stop;
+  return best;
 }
 
 /**
@@ -306,17 +342,20 @@ function chooseStop(list) {
 }
 
 /**
- * Returns the element that an arrow key leads to in a list, or Home and End among tabs, null at its end; undefined for other keys
+ * Returns the element that an arrow key leads to in a list, or Home and End in a menu or among tabs, null at its end; undefined for other keys
  * and outside lists. In a tree, left and right are left to the rows, which they collapse and expand.
  * @param {EventTarget | null} target
  * @param {string} key
  */
 function neighbourOf(target, key) {
+  /** @type {HTMLElement | null} */
+  const menu = target instanceof HTMLElement ? target.closest("[data-role=group]") : null;
   const list = target instanceof HTMLElement ? target.closest(IN_LIST) : null;
   const step = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1 }[key];
+  const end = { Home: 0, End: -1 }[key];
+  if (menu !== null && end !== undefined && !(target instanceof HTMLInputElement)) return stopsIn(menu).at(end) ?? null;
   if (!(target instanceof HTMLElement) || list === null) return undefined;
   const items = itemsOf(list);
-  const end = { Home: 0, End: -1 }[key];
   // Elsewhere these keys are the program's.
   if (end !== undefined && list.role === "tablist") return items.at(end) ?? null;
   if (step === undefined) return undefined;

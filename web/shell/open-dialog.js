@@ -1,9 +1,10 @@
 // The dialog in which files, folders and URLs are chosen, and its keyboard shortcut.
+import { awaited, needOf } from "./awaited.js";
 import { button, byId, dialog, field, focusCanvas, isDialogOpen } from "./dom.js";
 import { showGallery } from "./gallery.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
-import { refuse } from "./session.js";
+import { refuse, session } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Openable} Openable */
 /** @typedef {import("./types.d.ts").Role} Role */
@@ -35,7 +36,8 @@ export function showOpenDialog(kind = "any") {
   byId("open-form", HTMLFormElement).reset();
   const { title, what, example, sample } = TEXTS[kind];
   byId("open-title").textContent = title;
-  byId("open-what").textContent = what;
+  const asking = kind === "any" ? awaited() : null;
+  byId("open-what").textContent = asking !== null && asking.missing.length > 0 ? `${needOf(asking)} ${what}` : what;
   field("open-url").placeholder = example;
   byId("open-sample").textContent = sample;
   dialog("open").showModal();
@@ -75,8 +77,12 @@ byId("open-form").addEventListener("submit", (event) => {
   const url = field("open-url").value.trim();
   if (url !== "") openChosen([url]);
 });
-// The dialog that asks for a link's files leads here.
-dialog("bring").addEventListener("close", () => dialog("bring").returnValue === "choose" && showOpenDialog());
+// The dialog that asks for a link's files leads here, or says what is missing.
+dialog("bring").addEventListener("close", () => {
+  const [{ returnValue }, asking] = [dialog("bring"), awaited()];
+  if (returnValue === "choose") showOpenDialog();
+  else if (returnValue === "later" && asking !== null) session.app?.notify(needOf(asking));
+});
 
 addEventListener(
   "keydown",

@@ -1,7 +1,8 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
 import { byId, button, dialog, field, listOf, messageOf, showList } from "./dom.js";
 import { companionsOf, localFiles, shareableLink } from "./held.js";
-import { embeddedLink } from "./links.js";
+import { askingLink } from "./history.js";
+import { embeddedLink, linkWithMissing, linkedFiles } from "./links.js";
 import { parts } from "./parts.js";
 import { session } from "./session.js";
 
@@ -23,8 +24,11 @@ export function addressOf(link) {
  */
 export function share(link) {
   if (session.app === null) return;
+  const asking = askingLink();
+  if (asking !== null) link = linkWithMissing(link, asking);
   const address = addressOf(link);
-  const local = localFiles(link);
+  // Others lack the files that are missing here, too.
+  const local = [...localFiles(link), ...linkedFiles(link).filter(({ isToBring }) => isToBring)];
   byId("share-local").hidden = local.length === 0;
   const lines = local.map(({ role, name }) => {
     const companions = companionsOf(name);

@@ -121,6 +121,7 @@ export interface Bindings {
   public_link(link: string, local: string[]): string;
   embedded_link(link: string): string;
   link_without_missing(link: string): string;
+  link_with_missing(link: string, asking: string): string;
   link_with_files(link: string, names: string[]): string;
   most_similar_link(link: string, others: string[]): number | undefined;
   /** Only in a build for benches/web. */

@@ -127,6 +127,16 @@ pub fn link_without_missing(link: &str) -> String {
     })
 }
 
+/// Returns a link with the missing files of the link that asks for them, if it shows what could be shown of that one.
+pub fn link_with_missing(link: &str, asking: &str) -> String {
+    if shown_files(link) != shown_files(&link_without_missing(asking)) {
+        return link.to_owned();
+    }
+    let files = rewrite(asking, &mut |pair| LinkRole::of(pair).map(|_| pair.to_owned()));
+    let view = rewrite(link, &mut |pair| LinkRole::of(pair).is_none().then(|| pair.to_owned()));
+    [files, view].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("&")
+}
+
 /// Returns the link with its missing files renamed to `names`, in the order of [`linked_files`]. An empty name leaves a file
 /// missing. Archive members are kept.
 pub fn link_with_files(link: &str, names: &[String]) -> String {

@@ -243,6 +243,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
                 .max_decimals(1)
                 // Typing an angle is a single undo step, not one per digit.
                 .update_while_editing(false)
+                .custom_parser(controls::read_number)
                 .prefix(prefix)
                 .suffix("°");
             let field = controls::sized(ui, [width, 26.0], field);

@@ -52,7 +52,12 @@ pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0).min(80.0);
         for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
-            let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).prefix(name).suffix(" m");
+            let field = egui::DragValue::new(coordinate)
+                .speed(0.02)
+                .max_decimals(2)
+                .prefix(name)
+                .suffix(" m")
+                .custom_parser(controls::read_number);
             // Values that round to zero have no sign.
             let field = field.custom_formatter(|value, decimals| {
                 let value = egui::emath::round_to_decimals(value, 2) + 0.0;

@@ -34,8 +34,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, ou
     let now = before.map(|pin| pin.goal);
     let point_now = match now {
         Some(PinGoal::Point(at) | PinGoal::Look(at)) => at,
-        // Halfway to the camera, where the handle covers the head.
-        _ if is_head => rounded(model, position.midpoint(shown.frame.view.eye)),
+        _ if is_head => rounded(model, beside_sight(position, shown.frame.view.eye)),
         _ => rounded(model, position),
     };
     let others = || skeleton.joints().filter(|&other| model.rig().is_real(other) && allows(at_joint(other)));
@@ -74,6 +73,12 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, ou
     if pin != before {
         out.commands.push(Command::SetPin { joint: number, pin });
     }
+}
+
+/// Returns a point in front of a head, halfway to the camera and a bit to the side: on the way, its handle would cover the head.
+fn beside_sight(head: Vec3, eye: Vec3) -> Vec3 {
+    let away = eye - head;
+    head + 0.5 * away + 0.1 * away.length() * away.cross(Vec3::Y).normalize_or_zero()
 }
 
 /// Coordinates of the goal, and the joint that another is held at.

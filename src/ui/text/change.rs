@@ -64,8 +64,8 @@ pub const LAYERS: &str = "Layers";
 /// Button that adds a layer on top.
 pub const ADD_LAYER: &str = "Add layer";
 /// What layers are.
-pub const ABOUT_LAYERS: &str = "Layers play over this clip, the last one on top. Choose body parts, or select a joint, \
-                                to limit a layer to them. Without either, it replaces the whole pose.";
+pub const ABOUT_LAYERS: &str = "Layers play over every clip, the first one on top. Choose body parts, or select a joint, \
+                                to limit a layer to them. Without either, it plays on the whole body.";
 /// Chooser of a layer's clip.
 pub const LAYER_CLIP: &str = "Layer's clip";
 /// Button that swaps a layer with the next.

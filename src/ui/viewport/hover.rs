@@ -31,7 +31,8 @@ pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
     // Labels appear under the pointer only while bones are drawn.
     local.viewport.hovered = hovered.filter(|_| shown.frame.bones.iter().any(|bone| bone.visible));
     local.viewport.hovered_joint = local.viewport.hovered.and_then(of_model);
-    if response.clicked() {
+    // A click beside an open menu only closes it.
+    if response.clicked() && !local.had_popup {
         let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
         if clicked.is_none() && local.layout.sheet.take().is_some() {
             return;

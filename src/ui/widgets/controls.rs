@@ -365,10 +365,7 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
         let before = *value;
         // When a field loses the focus, egui sets the number that it shows, rounded and clamped, even if nothing was typed.
         let shown = egui::emath::round_to_decimals(before, settings.decimals);
-        let typed = move |text: &str| {
-            let text: String = text.replace('−', "-").split_whitespace().collect();
-            text.parse().ok().filter(|&typed: &f64| typed != shown)
-        };
+        let typed = move |text: &str| read_number(text).filter(|&typed| typed != shown);
         let field = ui.add_sized(
             [field_width, height],
             egui::DragValue::new(value)
@@ -388,6 +385,14 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
         }
         named(&field, || text::value_of(label));
     });
+}
+
+/// Reads a typed number, whose decimals may follow a comma.
+pub fn read_number(text: &str) -> Option<f64> {
+    let text: String = text.replace('−', "-").split_whitespace().collect();
+    // Beside a point, commas would separate thousands.
+    let text = if text.contains('.') { text } else { text.replace(',', ".") };
+    text.parse().ok()
 }
 
 /// A rounded card that fills the width.
@@ -493,5 +498,26 @@ pub fn follow_focus(ui: &Ui) {
         && (!focused.interact_rect.is_positive() || ui.clip_rect().contains_rect(focused.interact_rect));
     if focused.gained_focus() && is_inside {
         focused.scroll_to_me(None);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_a_point_or_a_comma() {
+        for (text, number) in [
+            ("1.5", Some(1.5)),
+            ("1,5", Some(1.5)),
+            ("−0,25", Some(-0.25)),
+            (" 1 000 ", Some(1000.0)),
+            ("1,234.5", None),
+            ("1,5,0", None),
+            ("50%", None),
+            ("", None),
+        ] {
+            assert_eq!(read_number(text), number, "{text}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use gaitway::anim::{Clip, TimeRange};
 use gaitway::editor::{Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::Model;
-use gaitway::retarget::ClipChanges;
+use gaitway::retarget::{ClipChanges, ClipLayer};
 use gaitway::state::{ClipChoice, Command, Edits, active_clip, active_map, from_link, to_link};
 
 use super::{editor, open_motion, title};
@@ -47,6 +47,33 @@ fn several_clips_are_cut_out_of_one() {
     let written = load(&files).expect("a GLB");
     let last = written.clips.last().expect("a clip");
     assert_eq!((last.name(), last.duration_secs()), ("Walk part 2", 0.75));
+}
+
+#[test]
+fn each_part_of_a_borrowed_clip_has_a_file_name_of_its_own() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let borrowed = clip(&editor);
+    let name = |editor: &Editor, clip: usize| editor.export(Export::Model { clip }).expect("is written").name;
+    let mut names = vec![name(&editor, borrowed)];
+    for start_secs in [0.1, 0.2] {
+        cut(&mut editor, borrowed, start_secs, 0.5);
+        names.push(name(&editor, clip(&editor)));
+    }
+    assert_eq!(names, ["Pilot-Walk.glb", "Pilot-Walk part 1.glb", "Pilot-Walk part 2.glb"]);
+}
+
+#[test]
+fn a_copy_takes_the_layers_that_play_it_along() {
+    let mut editor = editor("sample:walker");
+    cut(&mut editor, 0, 0.25, 0.5);
+    let layers = ["Walk part 1", "Wave"].map(|clip| ClipLayer { clip: clip.to_owned(), ..ClipLayer::default() });
+    editor.apply(Command::SetLayers(layers.to_vec()));
+    editor.apply(Command::RemoveCopy(3));
+    assert_eq!(editor.state().edits.layers, layers[1..]);
+    assert!(editor.undo());
+    assert_eq!(editor.state().edits.layers, layers);
+    assert_eq!(model(&editor).clip_count(), 4);
 }
 
 #[test]

@@ -11,6 +11,7 @@ use gaitway::state::{ViewerState, active_clip};
 use glam::Vec3;
 
 use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion};
+use crate::cli_motion::BVH;
 use crate::data::moving_box;
 
 #[test]
@@ -40,6 +41,32 @@ fn a_model_without_a_skeleton_is_told_what_it_lacks() {
     let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
     assert!(error.contains("chair.glb has no skeleton that a motion could move; bind its mesh to one"), "{error}");
     assert_eq!(editor.take_events().last(), Some(&Event::MotionsRefused { lacks_skeleton: true }));
+}
+
+/// A walk of two frames whose file announces three, and one that has more than it announces.
+#[test]
+fn a_motion_that_was_cut_short_says_so() {
+    let walk = |name: &str, announced: &str| {
+        let mut files = FileSet::default();
+        files.insert(name, BVH.replace("Frames: 2", announced).into_bytes());
+        Motion::new(name.to_owned(), Arc::new(load(&files).expect("a motion")))
+    };
+    for (announced, told) in [
+        ("Frames: 3", Some("walk.bvh: line 61: 3 frames are announced, 2 are there; those are used")),
+        ("Frames: 1", None),
+        ("Frames: 2", None),
+    ] {
+        let mut editor = editor("sample:walker");
+        let contents = Contents { motions: Some(vec![walk("walk.bvh", announced)]), ..Contents::default() };
+        editor.open(contents, None, &mut any).expect("fits");
+        let problems = editor.take_events().into_iter().find_map(|event| match event {
+            Event::Problem(problem) => Some(problem),
+            _ => None,
+        });
+        assert_eq!(problems.as_deref(), told);
+        let model = editor.library().active().expect("a model");
+        assert_eq!(model.borrowed_clips().count(), 1, "it is borrowed all the same");
+    }
 }
 
 /// The pilot without its clips as a motion of this name.

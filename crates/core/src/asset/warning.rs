@@ -70,6 +70,13 @@ pub enum Warning {
         /// Why it was left out.
         problem: String,
     },
+    /// A .bvh ends before its frames do.
+    FramesMissing {
+        /// Line of the file.
+        line: String,
+        /// What is missing, and how it was handled.
+        problem: String,
+    },
     /// A problem without a variant of its own.
     Other {
         /// What [`Warning::code`] returns.
@@ -95,6 +102,7 @@ impl Warning {
             Self::ImageUnreadable { .. } => "image-unreadable",
             Self::MatrixNotDecomposable { .. } => "matrix-not-decomposable",
             Self::ChannelIgnored { .. } => "channel-ignored",
+            Self::FramesMissing { .. } => "bvh-motion",
             Self::Other { code, .. } => code,
         }
     }
@@ -110,6 +118,7 @@ impl Warning {
             Self::ImagesAwaited => "images",
             Self::ImageUnreadable { image, .. } => image,
             Self::MatrixNotDecomposable { node } => node,
+            Self::FramesMissing { line, .. } => line,
             Self::ChannelIgnored { place, .. } | Self::Other { place, .. } => place,
         }
     }
@@ -141,6 +150,7 @@ impl fmt::Display for Warning {
                 write!(f, "{node}: its matrix is sheared or singular and has no exact translation, rotation and scale")
             }
             Self::ChannelIgnored { clip, place, problem } => write!(f, "clip “{clip}”, {place} is left out: {problem}"),
+            Self::FramesMissing { line, problem } => write!(f, "{line}: {problem}"),
             Self::Other { place, problem, .. } if place.is_empty() => f.write_str(problem),
             Self::Other { place, problem, .. } => write!(f, "{place}: {problem}"),
         }

@@ -28,19 +28,23 @@ pub fn read(
     budget: &Budget,
     warnings: &mut Warnings,
 ) -> Result<Option<Frames>, Problem> {
-    let mut warn = |line: usize, problem: String| {
-        warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
-    };
+    let other =
+        |line: usize, problem: String| Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem };
+    let missing = |line: usize, problem: String| Warning::FramesMissing { line: format!("line {line}"), problem };
     if lines.word().is_none() {
-        warn(lines.line, "there is no MOTION: the skeleton stands still".to_owned());
+        warnings.push(other(lines.line, "there is no MOTION: the skeleton stands still".to_owned()));
         return Ok(None);
     }
-    let Header { frame_secs, line, announced } = header(lines, &mut warn)?;
-    let numbers = frames(lines, hierarchy.channel_count, budget, &mut warn)?;
+    let Header { frame_secs, line, announced } =
+        header(lines, &mut |line, problem| warnings.push(other(line, problem)))?;
+    let numbers =
+        frames(lines, hierarchy.channel_count, budget, &mut |line, problem| warnings.push(missing(line, problem)))?;
     let frame_count = numbers.len().checked_div(hierarchy.channel_count).unwrap_or(0);
     match announced {
         Some(announced) if announced != frame_count as u64 && hierarchy.channel_count > 0 => {
-            warn(line, format!("{announced} frames are announced, {frame_count} are there; those are used"));
+            let problem = format!("{announced} frames are announced, {frame_count} are there; those are used");
+            let is_more = frame_count as u64 > announced;
+            warnings.push(if is_more { other(line, problem) } else { missing(line, problem) });
         }
         _ => {}
     }

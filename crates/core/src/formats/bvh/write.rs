@@ -87,7 +87,7 @@ fn frames_of(clip: &Clip, frames_per_sec: f64) -> (usize, f64) {
     }
     let intervals = (duration_secs * frames_per_sec).round().max(1.0);
     let frame_secs = if duration_secs > 0.0 { duration_secs / intervals } else { 1.0 / frames_per_sec };
-    (if duration_secs > 0.0 { intervals as usize + 1 } else { 1 }, frame_secs)
+    (if duration_secs > 0.0 { (intervals as usize).saturating_add(1) } else { 1 }, frame_secs)
 }
 
 fn bones(skeleton: &Skeleton, reference: &Pose, joints: &[JointIndex]) -> Vec<Bone> {

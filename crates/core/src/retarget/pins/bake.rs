@@ -12,6 +12,9 @@ use crate::retarget::pose::{WorldPose, is_within, locals_of};
 
 /// Longest time between samples.
 const MAX_STEP_SECS: f32 = 1.0 / 60.0;
+/// Most samples between two keys, as if these were ten seconds apart: a damaged file has keys at any times. Where joints turn fast,
+/// there are more.
+const MAX_STEPS: f32 = 600.0;
 
 impl Pinning<'_> {
     /// Returns a clip with the pins baked in. It repeats after `period_secs`, and so do the times of the pins.
@@ -155,7 +158,7 @@ fn close_times<'a>(clip: &Clip, pins: impl Iterator<Item = &'a Pin>, period_secs
     times.retain(|&time| (0.0..=duration_secs).contains(&time));
     let mut close = Vec::with_capacity(times.len());
     for pair in times.windows(2) {
-        let steps = ((pair[1] - pair[0]) / MAX_STEP_SECS).ceil().max(1.0);
+        let steps = ((pair[1] - pair[0]) / MAX_STEP_SECS).ceil().clamp(1.0, MAX_STEPS);
         close.extend((0..steps as usize).map(|step| pair[0] + (pair[1] - pair[0]) * (step as f32 / steps)));
     }
     close.extend(times.last());
