@@ -66,6 +66,10 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if layers != *before {
         out.commands.push(Command::SetLayers(layers));
     }
+    if !model.body().slots.0.is_empty() {
+        controls::section(ui, capitals!(text::PINS));
+        controls::hint(ui, text::ABOUT_PINS);
+    }
 }
 
 /// How the user moves a layer in the stack.

@@ -429,15 +429,28 @@ export const framesDrawnDuring = (page, count) =>
     return (await window.gaitway.stats()).frames - before;
   }, count);
 
-/** The app is idle after this many animation frames without drawing. */
-const STILL_FRAMES = 45;
+/**
+ * The app is at rest after this many animation frames without drawing: longer than a quarter of a second, after which it refines a
+ * picture and reads the panels to the mirror.
+ */
+const STILL_FRAMES = 24;
 
 /**
  * Waits until the app draws no more frames: it has responded to the last resize, key or click.
  * @param {Page} page
  */
 export async function untilStill(page) {
-  await eventually(async () => (await framesDrawnDuring(page, STILL_FRAMES)) === 0, "the app should come to rest");
+  const comesToRest = (/** @type {number} */ count) =>
+    page.evaluate(async (count) => {
+      let [{ frames }, still] = [await window.gaitway.stats(), 0];
+      for (let left = 10 * count; left > 0 && still < count; left--) {
+        await new Promise(requestAnimationFrame);
+        const { frames: now } = await window.gaitway.stats();
+        [still, frames] = [now === frames ? still + 1 : 0, now];
+      }
+      return still === count;
+    }, count);
+  await eventually(() => comesToRest(STILL_FRAMES), "the app should come to rest");
 }
 
 /**

@@ -79,8 +79,6 @@ pub(super) fn show(
 fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, contacts: Contacts) -> Vec<Line> {
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
-    let length = |value: Option<f64>| value.map(|metres| format!("{:.1} cm", 100.0 * metres));
-    let share = |value: Option<f64>| value.map(text::percent);
     let group = |title, hint| Line::Group { title, hint };
     let angles = |mean: Option<f64>, mean_verdict, max: Option<f64>, max_verdict| {
         [figure(text::MEAN, degrees(mean), mean_verdict), figure("Largest", degrees(max), max_verdict)]
@@ -117,7 +115,7 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
     ));
     lines.push(figure("Largest turn in 1/60 s", degrees(figures.largest_turn_degrees_per_frame), None));
     let jerk = figures.jerk_metres_per_sec3_mean.map(|jerk| format!("{jerk:.0} m/s³"));
-    lines.push(figure("Mean jerk of the joints", jerk, None));
+    lines.push(figure("Mean jerk", jerk, None));
     let hint = "Measured while the source's foot is on the ground, next to the source's own slide.";
     lines.extend([
         group("FEET", hint),
@@ -126,17 +124,28 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
         figure("Height of the soles", length(figures.foot_hover_metres_mean), verdicts.foot_hover),
         figure("Max. sole penetration", length(figures.sole_penetration_metres_max), verdicts.sole_penetration),
         figure("Max. joint penetration", length(figures.ground_penetration_metres_max), verdicts.ground_penetration),
-        group(
-            "CONTACTS",
-            "Where the source's hands touch its body, or hands and knees the ground, and limbs inside other parts of the body.",
-        ),
-        figure("Contact error", length(figures.contact_error_metres_mean), verdicts.contact_error),
-        figure("Limbs inside the body", share(figures.self_penetration_share), verdicts.self_penetration),
     ]);
+    lines.extend(contact_lines(figures, verdicts));
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));
-    lines.push(figure(text::COVERAGE, share(figures.coverage), verdicts.coverage));
+    lines.push(figure(text::COVERAGE, figures.coverage.map(text::percent), verdicts.coverage));
     lines
+}
+
+fn contact_lines(figures: &Figures, verdicts: &Verdicts) -> [Line; 3] {
+    let inside = figures.self_penetration_share.map(text::percent);
+    // With a body to measure, only contacts can be missing.
+    let error = length(figures.contact_error_metres_mean).or(inside.is_some().then(|| "no contacts".to_owned()));
+    let hint = "Where the source's hands touch its body, or hands and knees the ground, and limbs inside other parts of the body.";
+    [
+        Line::Group { title: "CONTACTS", hint },
+        figure("Contact error", error, verdicts.contact_error),
+        figure("Limbs inside the body", inside, verdicts.self_penetration),
+    ]
+}
+
+fn length(metres: Option<f64>) -> Option<String> {
+    metres.map(|metres| format!("{:.1} cm", 100.0 * metres))
 }
 
 fn figure(name: &'static str, value: Option<String>, verdict: Option<Verdict>) -> Line {

@@ -288,7 +288,13 @@ fn body(
     let (map, tab) = (pairing.map, &mut local.motion);
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Section::Options => options::show(ui, shown, pairing, map, contents, out),
+        Section::Options => {
+            let playing = active_clip(pairing.model, pairing.state);
+            if playing.is_some_and(|clip| pairing.model.borrowed(clip).is_none()) {
+                controls::hint(ui, text::OWN_CLIP_PLAYS);
+            }
+            options::show(ui, shown, pairing, map, contents, out);
+        }
         Section::Clip => clip(ui, shown, out),
         Section::Figures => figures::show(ui, shown, pairing, contents, tab),
         Section::Files => options::files(ui, shown, pairing, out),

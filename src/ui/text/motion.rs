@@ -20,6 +20,9 @@ pub const WHAT_A_MOTION_ADDS: &str =
 pub const FIT: &str = "Fit";
 /// Part of the tab: opening, saving and removing files.
 pub const FILES: &str = "Files";
+/// Said while a clip plays to which the options don't apply.
+pub const OWN_CLIP_PLAYS: &str =
+    "The clip that plays is the model's own. The options are those of the borrowed motion.";
 /// Accessible name of the choice of one of several motions.
 pub const MOTION_FILE: &str = "Motion file";
 

@@ -3,6 +3,11 @@
 use super::labelled;
 use crate::retarget::{PinGoal, PinTimes};
 
+/// Heading in the Motion tab.
+pub const PINS: &str = "Pins";
+/// Where pins are made.
+pub const ABOUT_PINS: &str = "To hold a hand or foot in place, or to make the head look at something, select the joint: its card in \
+                              the Scene tab has the choice. Pins hold in every clip.";
 /// Label of the choice of where the selected joint is held.
 pub const PIN: &str = "Pin";
 /// Label of the choice of what the selected joint looks at.
