@@ -93,7 +93,10 @@ impl Plugin for Mirror {
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
         let is_input = |event: &Event| !matches!(event, Event::PointerMoved(_) | Event::MouseMoved(_));
         let has_input = !self.events.is_empty() || input.events.iter().any(is_input);
-        let mut events = self.take_events();
+        // What was typed into the canvas belongs to the field that still has the focus.
+        let is_typed =
+            input.events.iter().any(|event| matches!(event, Event::Text(_) | Event::Key { pressed: true, .. }));
+        let mut events = if is_typed { Vec::new() } else { self.take_events() };
         if events.iter().any(is_blur) {
             // egui doesn't do it.
             context

@@ -95,8 +95,10 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
     let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
     let before = changed(state);
     let was_copy = is_copy_active(state);
+    // A copy that was removed while it played.
+    let returns = is_copy_active(from) && !has_copy_of(state, &from.playhead.clip);
     state.restore_undoable(from);
-    if was_copy && !is_copy_active(state) {
+    if returns || (was_copy && !is_copy_active(state)) {
         state.playhead.clone_from(&from.playhead);
         return;
     }
@@ -110,7 +112,11 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
 }
 
 fn is_copy_active(state: &ViewerState) -> bool {
-    matches!(&state.playhead.clip, ClipChoice::Named(name) if state.edits.has_copy(name))
+    has_copy_of(state, &state.playhead.clip)
+}
+
+fn has_copy_of(state: &ViewerState, clip: &ClipChoice) -> bool {
+    matches!(clip, ClipChoice::Named(name) if state.edits.has_copy(name))
 }
 
 /// Sets the changes of a name, whether the model has such a clip or not.

@@ -71,9 +71,15 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
     let is_timed = changes.reverse || changes.speed != 1.0;
     let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
     let start_secs = changes.trim.map_or(0.0, |trim| trim.start_secs);
-    let range = range
-        .map(|range| TimeRange { start_secs: start_secs + range.start_secs, end_secs: start_secs + range.end_secs });
-    let no_range = if is_timed { text::TRIM_FIRST } else { text::NEEDS_RANGE };
+    let in_clip = |secs: f64| egui::emath::round_to_decimals(start_secs + secs, 6);
+    let range =
+        range.map(|range| TimeRange { start_secs: in_clip(range.start_secs), end_secs: in_clip(range.end_secs) });
+    let no_range = match (changes.reverse, changes.speed != 1.0) {
+        (true, true) => text::RETIMED,
+        (true, false) => text::REVERSED,
+        (false, true) => text::OTHER_SPEED,
+        (false, false) => text::NEEDS_RANGE,
+    };
     let why_not = range.is_none().then_some(no_range);
     let is_full = shown.state.edits.copies.len() == Edits::MAX_COPIES;
     ui.horizontal_wrapped(|ui| {
@@ -94,6 +100,9 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
 /// Returns whether the button was clicked; `why_not` disables it.
 fn trim_button(ui: &mut Ui, label: &str, why_not: Option<&str>) -> bool {
     let button = ui.add_enabled(why_not.is_none(), egui::Button::new(label));
+    if let Some(why_not) = why_not {
+        ui.ctx().accesskit_node_builder(button.id, |node| node.set_description(why_not));
+    }
     let hint = controls::with_key(ui, why_not.unwrap_or_default());
     button.on_disabled_hover_text(hint).clicked()
 }

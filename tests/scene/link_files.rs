@@ -141,6 +141,7 @@ fn the_most_similar_link_shows_the_same_files() {
     check("v=1&model=sample:pilot&clip=run&t=3", Some(0));
     check("v=1&model=sample:pilot&clip=idle&t=3", Some(1));
     check("v=1&model=sample:pilot", Some(0));
+    check("v=1&model=sample:pilot&clip=wave&show=grid", Some(0));
     check("motion=sample:run&model=sample:mannequin&speed=2", Some(2));
     check("v=1&model=sample:mannequin", None);
     check("v=1", None);
@@ -149,11 +150,12 @@ fn the_most_similar_link_shows_the_same_files() {
 /// Whoever shares a view whose motion hasn't arrived shares the motion, too.
 #[test]
 fn a_shared_link_asks_for_what_is_missing_here() {
-    let asking = "v=1&model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&clip=9&fov=30";
+    let asking = "v=1&model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&clip=9&fov=30&camera=1,2,3,4,5,6";
     let now = "v=1&model=sample:pilot&motion=sample:walk&copy=A:walk&clip=run&fov=20";
     assert_eq!(
         link_with_missing(now, asking),
-        "model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&v=1&copy=A:walk&clip=run&fov=20"
+        "model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&v=1&copy=A:walk&clip=run&fov=20\
+         &camera=1,2,3,4,5,6"
     );
     let other = "v=1&model=sample:dwarf&fov=20";
     assert_eq!(link_with_missing(other, asking), other, "something else is shown");

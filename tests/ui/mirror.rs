@@ -143,6 +143,31 @@ fn every_key_moves_the_focus() {
     check(&["ArrowUp"; 40], 0);
 }
 
+/// On a slow machine, one frame may have what is typed and the step to the next control.
+#[test]
+fn what_is_typed_reaches_the_field_that_is_left() {
+    let context = Context::default();
+    context.add_plugin(Mirror::new(|_| ()));
+    let (mut number, mut ids) = (1.0, Vec::new());
+    let mut frame = |events: Vec<egui::Event>| {
+        let mut output = context.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
+            let field = egui::DragValue::new(&mut number).update_while_editing(false);
+            ids = vec![ui.add(field).id, ui.button("next").id];
+        });
+        output.textures_delta.clear();
+        (number, ids.clone())
+    };
+    let (_, ids) = frame(Vec::new());
+    context.memory_mut(|memory| memory.request_focus(ids[0]));
+    (0..2).for_each(|_| drop(frame(Vec::new())));
+    let step = |mirror: &mut Mirror| mirror.act(&ids[1].accesskit_id().0.to_string(), "focus", None);
+    context.with_plugin(step).expect("a mirror");
+    frame(["2", ".", "5"].map(|letter| egui::Event::Text(letter.to_owned())).to_vec());
+    let entered = (0..4).map(|_| frame(Vec::new()).0).last();
+    // Behind the 1 that is there.
+    assert_eq!((entered, context.memory(egui::Memory::focused)), (Some(12.5), Some(ids[1])));
+}
+
 #[test]
 fn radio_buttons_are_in_a_group_named_by_its_topic() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);

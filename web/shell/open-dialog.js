@@ -78,10 +78,12 @@ byId("open-form").addEventListener("submit", (event) => {
   if (url !== "") openChosen([url]);
 });
 // The dialog that asks for a link's files leads here, or says what is missing.
+dialog("bring").addEventListener("cancel", () => void (dialog("bring").returnValue = "later"));
 dialog("bring").addEventListener("close", () => {
   const [{ returnValue }, asking] = [dialog("bring"), awaited()];
-  if (returnValue === "choose") showOpenDialog();
-  else if (returnValue === "later" && asking !== null) session.app?.notify(needOf(asking));
+  if (returnValue === "choose") return showOpenDialog();
+  if (returnValue === "later" && asking !== null) session.app?.notify(needOf(asking));
+  if (document.activeElement === document.body) focusCanvas();
 });
 
 addEventListener(

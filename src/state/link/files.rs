@@ -111,7 +111,7 @@ pub fn embedded_link(link: &str) -> String {
 }
 
 /// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing, or if its
-/// model is: an empty stage stands for it.
+/// model is: an empty stage stands for it. Without its motion, a camera may look at where nobody is.
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
     let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
@@ -122,19 +122,27 @@ pub fn link_without_missing(link: &str) -> String {
     rewrite(link, &mut |pair| {
         // An index counts the clips of all motions.
         let is_index = key_of(pair) == "clip" && value_of(pair).parse::<usize>().is_ok();
-        let is_kept = linked_file(pair).is_none_or(|file| !file.is_to_bring) && !(is_index && lacks_motion);
+        let is_about_motion = is_index || key_of(pair) == "camera";
+        let is_kept = linked_file(pair).is_none_or(|file| !file.is_to_bring) && !(is_about_motion && lacks_motion);
         is_kept.then(|| pair.to_owned())
     })
 }
 
-/// Returns a link with the missing files of the link that asks for them, if it shows what could be shown of that one.
+/// Returns a link with the missing files of the link that asks for them, if it shows what could be shown of that one, and with what
+/// was left out along with them.
 pub fn link_with_missing(link: &str, asking: &str) -> String {
-    if shown_files(link) != shown_files(&link_without_missing(asking)) {
+    let shown = link_without_missing(asking);
+    if shown_files(link) != shown_files(&shown) {
         return link.to_owned();
     }
     let files = rewrite(asking, &mut |pair| LinkRole::of(pair).map(|_| pair.to_owned()));
     let view = rewrite(link, &mut |pair| LinkRole::of(pair).is_none().then(|| pair.to_owned()));
-    [files, view].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("&")
+    let has_key = |pair: &str| pairs(link).any(|other| key_of(other) == key_of(pair));
+    let left_out = rewrite(asking, &mut |pair| {
+        let is_left_out = LinkRole::of(pair).is_none() && !pairs(&shown).any(|other| other == pair) && !has_key(pair);
+        is_left_out.then(|| pair.to_owned())
+    });
+    [files, view, left_out].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("&")
 }
 
 /// Returns the link with its missing files renamed to `names`, in the order of [`linked_files`]. An empty name leaves a file
@@ -157,9 +165,10 @@ pub fn most_similar_link(link: &str, others: &[String]) -> Option<usize> {
     };
     let mut best = None;
     for (index, other) in others.iter().enumerate().filter(|(_, other)| shows_same(other)) {
-        let shared_pairs = pairs(other).filter(|&pair| pairs(link).any(|other| other == pair)).count();
-        if best.is_none_or(|(_, max)| shared_pairs > max) {
-            best = Some((index, shared_pairs));
+        // What the link lacks makes it another view.
+        let score = pairs(other).map(|pair| if pairs(link).any(|other| other == pair) { 1 } else { -1 }).sum::<i32>();
+        if best.is_none_or(|(_, max)| score > max) {
+            best = Some((index, score));
         }
     }
     best.map(|(index, _)| index)

@@ -145,7 +145,8 @@ fn contact_lines(figures: &Figures, verdicts: &Verdicts) -> [Line; 3] {
 }
 
 fn length(metres: Option<f64>) -> Option<String> {
-    metres.map(|metres| format!("{:.1} cm", 100.0 * metres))
+    // Adding zero takes the sign from −0.
+    metres.map(|metres| format!("{:.1} cm", egui::emath::round_to_decimals(100.0 * metres, 1) + 0.0))
 }
 
 fn figure(name: &'static str, value: Option<String>, verdict: Option<Verdict>) -> Line {

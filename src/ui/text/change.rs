@@ -19,7 +19,11 @@ pub const REMOVE_COPY: &str = "Remove this clip";
 /// Why that button is disabled.
 pub const NEEDS_RANGE: &str = "Set a range on the timeline first (keys I and O).";
 /// Why that button is disabled.
-pub const TRIM_FIRST: &str = "To trim, turn off Reverse and reset the clip speed.";
+pub const REVERSED: &str = "To trim, turn off Reverse.";
+/// Why that button is disabled.
+pub const OTHER_SPEED: &str = "To trim, reset the clip speed.";
+/// Why that button is disabled.
+pub const RETIMED: &str = "To trim, turn off Reverse and reset the clip speed.";
 /// Button that brings back the whole clip.
 pub const UNDO_TRIM: &str = "Undo trim";
 /// Switch: the end is made to meet the start.

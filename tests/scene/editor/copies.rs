@@ -71,9 +71,10 @@ fn a_copy_takes_the_layers_that_play_it_along() {
     editor.apply(Command::SetLayers(layers.to_vec()));
     editor.apply(Command::RemoveCopy(3));
     assert_eq!(editor.state().edits.layers, layers[1..]);
+    assert_eq!(title(&editor), Some("Walk"));
     assert!(editor.undo());
     assert_eq!(editor.state().edits.layers, layers);
-    assert_eq!(model(&editor).clip_count(), 4);
+    assert_eq!((title(&editor), model(&editor).clip_count()), (Some("Walk part 1"), 4), "it plays again");
 }
 
 #[test]
