@@ -277,7 +277,7 @@ for (const renderer of BACK_ENDS)
       assert.match(await page.locator("#share-local").innerText(), /walk\.bvh \(motion\)/);
       const link = await linkOf(page);
       // The camera would look at where nobody is without the motion.
-      assert.equal((await state(page)).camera, null);
+      assert.equal((await state(page)).camera, "auto");
       for (const part of ["motion=file:walk.bvh", "clip=run", "fov=30", "camera=10,5,30,9,1,9"]) assert.ok(link.includes(part), `${part} in ${link}`);
     });
 
