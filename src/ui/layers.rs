@@ -39,7 +39,10 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         });
         let (chooser, how) = done.inner;
         if added == Some(index) && chooser.has_focus() {
-            ui.scroll_to_rect(done.response.rect, None);
+            // Its top, if the whole card is higher than the panel.
+            let mut rect = done.response.rect;
+            rect.max.y = rect.max.y.min(rect.top() + ui.clip_rect().height());
+            ui.scroll_to_rect(rect, None);
             ui.data_mut(|data| data.remove::<usize>(added_id));
         } else if added == Some(index) {
             chooser.request_focus();

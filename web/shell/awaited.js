@@ -73,7 +73,7 @@ export function askForRest(waiting, marked, rest) {
  * @param {boolean} [isOwn]
  */
 export function awaitFiles(link, isOwn = isOwnEntry()) {
-  dialog("bring").close();
+  dialog("bring").close("link");
   const wanted = filesToBring(link);
   forgetAwaited();
   if (wanted.length > 0) current = { link, marked: link, wanted, missing: wanted, isOwn };

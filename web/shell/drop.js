@@ -54,7 +54,7 @@ function onDrag(event) {
     const as = showSheet(event);
     hideSheet();
     dialog("open").close();
-    dialog("bring").close();
+    dialog("bring").close("drop");
     droppedItems(transfer).then((items) => openByHand(items, { as }), refuse);
   }
 }

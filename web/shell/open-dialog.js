@@ -77,12 +77,11 @@ byId("open-form").addEventListener("submit", (event) => {
   const url = field("open-url").value.trim();
   if (url !== "") openChosen([url]);
 });
-// The dialog that asks for a link's files leads here, or says what is missing.
-dialog("bring").addEventListener("cancel", () => void (dialog("bring").returnValue = "later"));
+// The dialog that asks for a link's files leads here, or says what is missing. Escape leaves its value empty.
 dialog("bring").addEventListener("close", () => {
   const [{ returnValue }, asking] = [dialog("bring"), awaited()];
   if (returnValue === "choose") return showOpenDialog();
-  if (returnValue === "later" && asking !== null) session.app?.notify(needOf(asking));
+  if ((returnValue === "later" || returnValue === "") && asking !== null) session.app?.notify(needOf(asking));
   if (document.activeElement === document.body) focusCanvas();
 });
 
