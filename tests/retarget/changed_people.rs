@@ -27,12 +27,19 @@ impl Case<'_> {
         change_clip(asset, clip, changes, || Symmetry::of(asset, &recognize(asset))).clip
     }
 
+    /// The clip changed once, and once more.
+    fn changed_twice(&self, changes: &ClipChanges) -> [Clip; 2] {
+        let once = self.changed(self.clip, changes);
+        let twice = self.changed(&once, changes);
+        [once, twice]
+    }
+
     fn skeleton(&self) -> &Skeleton {
         &self.person.asset.skeleton
     }
 }
 
-/// Passes every clip of every character on, and returns what was found wrong.
+/// Passes every clip of every character on, and fails with what was found wrong.
 fn in_each_clip(folder: &Path, mut check: impl FnMut(&Case) -> Result<(), String>) {
     let people = load_people(folder);
     let (mut count, mut problems) = (0, Vec::new());
@@ -149,8 +156,7 @@ fn every_clip_mirrored_twice_is_the_clip() {
     let Some(folder) = data_folder() else { return };
     let mirror = ClipChanges { mirror: true, ..NONE };
     in_each_clip(&folder, |case| {
-        let once = case.changed(case.clip, &mirror);
-        let twice = case.changed(&once, &mirror);
+        let [_, twice] = case.changed_twice(&mirror);
         same_keys(case.clip, &twice, 1e-6)?;
         let apart = times(case.clip).map(|time| apart(case.skeleton(), (case.clip, time), (&twice, time)));
         at_most(apart.fold(0.0, f64::max), 1e-6, "positions are apart by this share of the size")
@@ -193,8 +199,7 @@ fn every_clip_reversed_runs_backwards_and_twice_forwards() {
     let Some(folder) = data_folder() else { return };
     let reverse = ClipChanges { reverse: true, ..NONE };
     in_each_clip(&folder, |case| {
-        let once = case.changed(case.clip, &reverse);
-        let twice = case.changed(&once, &reverse);
+        let [once, twice] = case.changed_twice(&reverse);
         let is_held = |channel: &Channel| channel.interpolation == Interpolation::Step;
         if !case.clip.channels().iter().any(is_held) {
             keeps_keys(case.clip, &twice, [0.0, case.clip.duration_secs()], 0.0)?;

@@ -395,16 +395,21 @@ fn baked_pins_look_the_same_with_few_keys() {
     }
 }
 
+/// A figure whose hips are at these heights, and nothing else moves.
+fn standing(times: &[f32], heights: &[f32]) -> Figure {
+    let mut figure = build(&Rig::default());
+    let mut clip = gaitway::anim::ClipBuilder::new("standing", &figure.asset.skeleton);
+    let keys = Keys::Translation(heights.iter().map(|height| height * Vec3::Y).collect());
+    clip.channel(figure.joint(Slot::Hips), Interpolation::Linear, times, keys).expect("valid");
+    let clip = clip.build();
+    figure.set_clip(clip);
+    figure
+}
+
 /// Damaged files have keys at any times.
 #[test]
 fn an_endless_clip_is_baked_in_no_time() {
-    let mut figure = build(&Rig::default());
-    let mut endless = gaitway::anim::ClipBuilder::new("endless", &figure.asset.skeleton);
-    let hips = figure.joint(Slot::Hips);
-    let keys = Keys::Translation(vec![Vec3::Y, 1.2 * Vec3::Y, Vec3::Y]);
-    endless.channel(hips, Interpolation::Linear, &[0.0, 1.0, 4e9], keys).expect("valid");
-    let clip = endless.build();
-    figure.set_clip(clip);
+    let figure = standing(&[0.0, 1.0, 4e9], &[1.0, 1.2, 1.0]);
     let body = recognize(&figure.asset);
     let hand = figure.joint(Slot::LeftHand);
     let pins =
@@ -418,12 +423,7 @@ fn an_endless_clip_is_baked_in_no_time() {
 /// A body that stands still needs no more than the first and the last key.
 #[test]
 fn what_stays_in_place_has_two_keys() {
-    let mut figure = build(&Rig::default());
-    let mut still = gaitway::anim::ClipBuilder::new("still", &figure.asset.skeleton);
-    let hips = figure.joint(Slot::Hips);
-    still.channel(hips, Interpolation::Linear, &[0.0, 2.0], Keys::Translation(vec![Vec3::Y; 2])).expect("valid");
-    let clip = still.build();
-    figure.set_clip(clip);
+    let figure = standing(&[0.0, 2.0], &[1.0, 1.0]);
     let body = recognize(&figure.asset);
     let hand = figure.joint(Slot::LeftHand);
     let pins =

@@ -52,6 +52,8 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
     let skeleton = &asset.skeleton;
     let rest = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY);
     let reflection = symmetry.reflection();
+    let names = asset.avatar.expressions.iter().map(|expression| expression.name.as_str());
+    let expressions: Vec<[usize; 2]> = pairs_by_side(names).collect();
     for track in &mut tracks.tracks {
         match &mut track.target {
             Target::Rotation(joint) => {
@@ -89,7 +91,11 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
             }
             Target::Scale(joint) => *joint = symmetry.opposite[joint.get()],
             Target::Property(PropertyTarget::LookAt) => track.map(|angles| angles[0] = -angles[0], &[]),
-            Target::Property(PropertyTarget::Expression(index)) => *index = other_expression(asset, *index),
+            Target::Property(PropertyTarget::Expression(index)) => {
+                if let Some(pair) = expressions.iter().find(|pair| pair.contains(index)) {
+                    *index = pair[usize::from(pair[0] == *index)];
+                }
+            }
             Target::Weights(joint) => {
                 for [left, right] in pairs_by_side(target_names(asset, *joint).take(track.width)) {
                     track.map(|weights| weights.swap(left, right), &[]);
@@ -105,13 +111,4 @@ fn target_names(asset: &Asset, node: JointIndex) -> impl Iterator<Item = &str> {
     let instance = asset.instances.iter().find(|instance| instance.joint == node);
     let names = instance.map_or(&[][..], |instance| &asset.meshes[instance.mesh].target_names);
     names.iter().map(String::as_str)
-}
-
-/// Returns the expression of the other side: `blinkLeft` for `blinkRight`.
-fn other_expression(asset: &Asset, index: usize) -> usize {
-    let name = asset.avatar.expressions.get(index).map_or("", |expression| &expression.name);
-    let swapped = [("Left", "Right"), ("Right", "Left")]
-        .into_iter()
-        .find_map(|(side, other)| asset.avatar.expression(&format!("{}{other}", name.strip_suffix(side)?)));
-    swapped.unwrap_or(index)
 }

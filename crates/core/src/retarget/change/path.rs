@@ -61,8 +61,8 @@ pub fn model_from_parent(skeleton: &Skeleton, joint: JointIndex) -> DAffine3 {
     if model_from_parent.inverse().is_finite() { model_from_parent } else { DAffine3::IDENTITY }
 }
 
-/// Turns the character about the vertical through its start, then moves it. Nothing above a carrier is animated, so this is an
-/// affine map of keys.
+/// Turns the character about the vertical through its start, then moves it. Nothing above its handles is animated, so this is
+/// an affine map of keys.
 pub fn place(tracks: &mut Tracks, asset: &Asset, offset: [f64; 2], radians: f64) {
     let skeleton = &asset.skeleton;
     let Some(start) = start(tracks, asset) else { return };
