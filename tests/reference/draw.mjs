@@ -8,10 +8,11 @@ import { promisify } from "node:util";
 import { build } from "esbuild";
 import sharp from "sharp";
 import { serve } from "../../xtask/site/server.mjs";
-import { launch } from "../browser/browser.mjs";
+import { FLAGS, launch } from "../browser/browser.mjs";
 import { dataFile, repository } from "../three/data.mjs";
 import { program } from "../three/gaitway.mjs";
 import { BACKGROUND } from "./colour.mjs";
+import { contentOf, keptPictures } from "./kept.mjs";
 import { roomImage } from "./room.mjs";
 
 /**
@@ -75,21 +76,30 @@ export async function startReference(environment = roomImage()) {
   await page.goto(`${server.origin}/index.html`);
   const hdr = path.join(folder, "environment.hdr");
   fs.writeFileSync(hdr, environment);
+  // The scripts contain the renderers.
+  const kept = keptPictures([browser.version(), ...FLAGS, fs.readFileSync(path.join(folder, "page.js")), environment]);
+  /**
+   * Draws with one of the page's renderers.
+   * @param {keyof Window["reference"]} renderer
+   * @param {string} file
+   * @param {View} view
+   */
+  const drawInPage = (renderer, file, view) =>
+    kept([renderer, JSON.stringify(view), ...contentOf(file)], async () => {
+      const located = { ...view, model: server.origin + view.model, environment: server.origin + view.environment };
+      return await page.evaluate(({ renderer, located }) => window.reference[renderer](located), { renderer, located });
+    });
 
   /**
    * @param {string} file
    * @returns {Promise<Record<"gaitway" | "khronos" | "three", Picture>>}
    */
   const draw = async (file) => {
-    const { camera, view } = await prepare(file, server.origin);
-    const [khronos, three] = await page.evaluate(
-      async (view) => [await window.reference.khronos(view), await window.reference.three(view)],
-      view,
-    );
+    const { camera, view } = await prepare(file);
     return {
       gaitway: await drawGaitway(file, hdr, camera, folder, words({})),
-      khronos: withSrgbCurve(await decoded(khronos)),
-      three: await decoded(three),
+      khronos: withSrgbCurve(await decoded(await drawInPage("khronos", file, view))),
+      three: await decoded(await drawInPage("three", file, view)),
     };
   };
 
@@ -100,9 +110,9 @@ export async function startReference(environment = roomImage()) {
    * @returns {Promise<Record<"gaitway" | "vrm", Picture>>}
    */
   const drawAvatar = async (file, shown = {}) => {
-    const { camera, view } = await prepare(file, server.origin, shown);
-    const vrm = await page.evaluate((view) => window.reference.vrm(view), view);
-    return { gaitway: await drawGaitway(file, hdr, camera, folder, words(shown)), vrm: await decoded(vrm) };
+    const { camera, view } = await prepare(file, shown);
+    const vrm = await decoded(await drawInPage("vrm", file, view));
+    return { gaitway: await drawGaitway(file, hdr, camera, folder, words(shown)), vrm };
   };
   const close = async () => {
     await browser.close();
@@ -113,11 +123,11 @@ export async function startReference(environment = roomImage()) {
 }
 
 /**
+ * Returns the camera, and the view with addresses from the server's root.
  * @param {string} file
- * @param {string} origin
  * @param {Shown} [shown]
  */
-async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, look, timeSecs } = {}) {
+async function prepare(file, { yaw, bounds: part, hasKey, expressions, look, timeSecs } = {}) {
   const { bounds, lights } = await inspect(file);
   const camera = cameraFor(part ?? bounds, yaw);
   const relative = path.relative(dataFile(""), file);
@@ -125,8 +135,8 @@ async function prepare(file, origin, { yaw, bounds: part, hasKey, expressions, l
   const { eye, target, distance } = camera;
   /** @type {View} */
   const view = {
-    model: origin + model,
-    environment: `${origin}/made/environment.hdr`,
+    model,
+    environment: "/made/environment.hdr",
     hasLights: lights > 0,
     size: SIZE,
     eye,
