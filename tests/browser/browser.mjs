@@ -54,19 +54,36 @@ export const USES_GRAPHICS_CARD = process.env.GAITWAY_GPU === "1";
 /** Domains keep the GPU after a test crashes its process. */
 export const FLAGS = ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--disable-domain-blocking-for-3d-apis", ...(USES_GRAPHICS_CARD ? GRAPHICS_CARD : SOFTWARE)];
 
+/** Composes pages without the graphics API. */
+const OFF_SCREEN = "--disable-gpu-compositing";
+
 const TIMEOUT_MS = 60_000;
 
-/** Pages of one site share a process, and thereby compiled programs. */
-export function launch() {
-  return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...FLAGS, "--process-per-site"] });
+/**
+ * `isOffScreen`: the tests' pages are at rest, and nobody looks at the screen itself, only at the program's own pictures. On a software
+ * renderer, the browser composes a page as slowly as the program draws it. Without that, WebGPU's canvas stays blank on the screen, and
+ * nothing slows down a clip that plays.
+ * @typedef {{ isOffScreen?: boolean }} LaunchOptions
+ */
+
+/**
+ * Starts a browser in which pages of one site share a process, and thereby compiled programs.
+ * @param {LaunchOptions} [options]
+ */
+export function launch({ isOffScreen = false } = {}) {
+  const args = [...FLAGS, ...(isOffScreen && !USES_GRAPHICS_CARD ? [OFF_SCREEN] : []), "--process-per-site"];
+  return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args });
 }
 
-/** Starts the two servers and a browser. */
-export async function startSite() {
+/**
+ * Starts the two servers and a browser.
+ * @param {LaunchOptions} [options]
+ */
+export async function startSite(options) {
   if (!fs.existsSync(path.join(dist, "index.html"))) throw new Error(`no built page in ${dist}: run \`cargo xtask build\``);
   const site = await serve({ "/some/folder/": dist });
   const data = hasData ? await serve({ "/": dataFile("") }, { "access-control-allow-origin": "*" }) : null;
-  const browser = await launch();
+  const browser = await launch(options);
   const address = `${site.origin}/some/folder/`;
   const shared = await sharedContext(browser);
   return {

@@ -24,7 +24,7 @@ for (const renderer of BACK_ENDS)
   describe(`checking an export on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => void (site = await startSite()));
+    before(async () => void (site = await startSite({ isOffScreen: true })));
     after(() => site?.close());
 
     /**

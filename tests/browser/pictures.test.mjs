@@ -82,7 +82,7 @@ function colorDifference({ width, height, rgba }, rgb) {
 describe("pictures", { skip: skipWithoutData }, () => {
   /** @type {import("./browser.mjs").Site} */
   let site;
-  before(async () => (site = await startSite()));
+  before(async () => (site = await startSite({ isOffScreen: true })));
   after(() => site?.close());
 
   /** @type {Shown[]} */

@@ -65,7 +65,7 @@ for (const renderer of BACK_ENDS)
   describe(`stage on ${renderer}`, { skip: skipWithoutData }, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => void (site = await startSite()));
+    before(async () => void (site = await startSite({ isOffScreen: true })));
     after(() => site?.close());
 
     /**
