@@ -137,10 +137,11 @@ impl Plugin for Mirror {
 }
 
 /// Lists the contents of a tree in reading order. Each entry is an object with `id`, `role` (an ARIA role; `text` for plain text,
-/// `group` for a menu or list, `dialog` for what lies over everything), `name` and `rect` (left, top, width and height in points),
-/// and where they apply: `in` (the `id` of the innermost group or dialog around it), `value`, `description`, `now`, `min` and `max`,
-/// `checked` (`true`, `false` or `mixed`), `expanded`, `disabled`, `focusable`, `level`, `at` and `of` (its place in a list and the
-/// list's length, from 1), `row` (equal in the cells of a table's row), `list` (the name of the group of radio buttons that it is in).
+/// `group` for a menu or list, `section` for controls with a common name, `dialog` for what lies over everything), `name` and `rect`
+/// (left, top, width and height in points), and where they apply: `in` (the `id` of the innermost group, section or dialog around
+/// it), `value`, `description`, `now`, `min` and `max`, `checked` (`true`, `false` or `mixed`), `expanded`, `disabled`, `focusable`,
+/// `level`, `at` and `of` (its place in a list and the list's length, from 1), `row` (equal in the cells of a table's row), `list`
+/// (the name of the group of radio buttons that it is in).
 pub fn entries(update: &TreeUpdate) -> Vec<Value> {
     let nodes = update.nodes.iter().map(|(id, node)| (*id, node)).collect();
     let mut list = List { nodes, entries: Vec::new(), row: None, radio_group: None };
@@ -201,7 +202,7 @@ impl<'a> List<'a> {
             }
         }
         let (group, is_in_control) = match role {
-            Some("group" | "dialog") => (Some(id), false),
+            Some("group" | "section" | "dialog") => (Some(id), false),
             Some(_) => (group, true),
             None => (group, is_in_control),
         };
@@ -293,6 +294,7 @@ fn aria_role(node: &Node) -> Option<&'static str> {
         Role::Image => "img",
         Role::Dialog if node.label().is_some() => "dialog",
         Role::Menu | Role::Dialog | Role::ListBox => "group",
+        Role::Group if node.label().is_some() => "section",
         Role::MenuItem | Role::ListBoxOption => "button",
         _ if node.supports_action(Action::Click) && node.label().is_some() => "button",
         _ => return None,

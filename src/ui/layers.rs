@@ -34,8 +34,10 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let added_id = ui.scope_id().with("added layer");
     let added: Option<usize> = ui.data(|data| data.get_temp(added_id));
     for (index, layer) in layers.iter_mut().enumerate().rev() {
+        let name = text::layer(index + 1, title_of(model, layer));
+        let can_rise = index + 1 < before.len();
         let done = ui.push_id(("layer", index), |ui| {
-            controls::card(ui, |ui| card(ui, shown, model, layer, index + 1 < before.len()))
+            controls::group(ui, &name, |ui| controls::card(ui, |ui| card(ui, shown, model, layer, can_rise)))
         });
         let (chooser, how) = done.inner;
         if added == Some(index) && chooser.has_focus() {
@@ -88,6 +90,10 @@ fn name_of(model: &Model, clip: usize) -> String {
     }
 }
 
+fn title_of<'a>(model: &'a Model, layer: &'a ClipLayer) -> &'a str {
+    clip_of_layer(model, layer).and_then(|clip| model.clip_titles().get(clip)).unwrap_or(&layer.clip)
+}
+
 /// Returns the chooser of the clip, and how the layer is moved, if it is.
 fn card(
     ui: &mut Ui,
@@ -100,7 +106,7 @@ fn card(
     let clip = clip_of_layer(model, layer);
     let titles = model.clip_titles();
     let row = ui.horizontal(|ui| {
-        let shown = clip.and_then(|clip| titles.get(clip)).unwrap_or(&layer.clip);
+        let shown = title_of(model, layer);
         let buttons = controls::button_width(ui, text::RAISE_LAYER) + icon_size(ui, BUTTON_SIZE).x;
         let width = ui.available_width() - buttons - 2.0 * ui.spacing().item_spacing.x;
         let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);

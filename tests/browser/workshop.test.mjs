@@ -305,12 +305,13 @@ for (const renderer of BACK_ENDS)
       await control(page, "button", "Add layer").press("Enter");
       await until(page, async () => (await window.gaitway.state()).layers.length === 1);
       await control(page, "button", /^Layer's clip/).press("Enter");
-      const wave = page.locator("#mirror > [role=group]").getByRole("button", { name: "Wave" });
+      const wave = page.locator("#mirror > [role=group]").getByRole("button", { name: "Wave", exact: true });
       await wave.waitFor({ state: "attached" });
       await wave.press("Enter");
       await wave.waitFor({ state: "detached" });
       await until(page, () => /^Layer's clip/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
       const upperBody = "torso:head:left-arm:right-arm";
+      await page.locator("#mirror").getByRole("group", { name: "Layer 1: Wave" }).getByLabel("Layer weight value").waitFor({ state: "attached" });
       await enter(page, "Layer weight value", "0,5", "layers", `Wave:weight:0.5,mask:${upperBody}`);
       await enter(page, "Layer start value", "0.25", "layers", `Wave:weight:0.5,start:0.25,mask:${upperBody}`);
       await control(page, "radio", "Add to rest").press("Enter");

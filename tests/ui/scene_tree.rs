@@ -19,7 +19,7 @@ fn the_tree_shows_all_joints_and_chooses_one() {
     assert_eq!(commands, [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label(&text::local_transform(Some("LeftLowerArm"))).is_some());
     assert!(harness.query_all_by_label_contains(text::POSITION).count() >= 2, "local and world");
-    assert_eq!(press(&mut harness, text::DESELECT_JOINT), [Command::SelectJoint(None)]);
+    assert_eq!(press(&mut harness, text::DESELECT), [Command::SelectJoint(None)]);
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn folding_a_joint_hides_what_hangs_on_it() {
 fn nodes_are_found_by_name() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, "Hips");
-    let card = |harness: &Harness<'_, Bench>| harness.get_by_label(text::DESELECT_JOINT).rect().top();
+    let card = |harness: &Harness<'_, Bench>| harness.get_by_label(text::DESELECT).rect().top();
     let before = card(&harness);
     harness.get_by_label(text::SEARCH_NODES).click();
     harness.run();

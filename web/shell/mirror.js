@@ -6,12 +6,14 @@
 /** @typedef {Map<Node, ChildNode>} Ends The last element placed in each parent. */
 
 /** Tags by role; everything else is a button. */
-const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", dialog: "div", img: "div", progressbar: "div" };
+const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", section: "div", dialog: "div", img: "div", progressbar: "div" };
 /** The role that ARIA requires around another one. */
 const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "radiogroup", gridcell: "grid" });
 /** Accessible names of these lists; radio buttons bring their group's. */
 const NAMES = { tablist: "Inspector", tree: "Nodes", grid: "Joints and their sources" };
 const IN_LIST = Object.values(LISTS).map((role) => `[role=${role}]`).join();
+/** Roles of entries that contain others. */
+const CONTAINERS = ["group", "section", "dialog"];
 /** Roles of list entries that an arrow key chooses, not only reaches. */
 const CHOSEN_BY_ARROWS = ["tab", "radio"];
 /** Keys that an element handles itself, by its kind. */
@@ -140,10 +142,12 @@ export class Mirror {
       // The browser's own field for numbers knows one decimal separator, which depends on the language.
       if (role === "spinbutton") [element.role, element.inputMode] = [role, "decimal"];
     } else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
-    else if (role !== "button" && role !== "text") element.setAttribute("role", role);
+    else if (role !== "button" && role !== "text") element.setAttribute("role", role === "section" ? "group" : role);
     if (role === "dialog") element.ariaModal = "true";
     if (role === "img" && focusable) element.tabIndex = 0;
     [element.dataset.id, element.dataset.role] = [id, role];
+    // What is in it answers for itself.
+    if (CONTAINERS.includes(role)) return element;
     element.addEventListener("focus", () => {
       if (this.#isFollowing) return;
       this.#wanted = id;

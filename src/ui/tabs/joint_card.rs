@@ -86,7 +86,7 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card
             name(ui, shown, asset, joint, card, out);
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button_sized(ui, Icon::Close, text::DESELECT_JOINT, false, CLOSE_SIZE).clicked() {
+            if icon_button_sized(ui, Icon::Close, text::DESELECT, false, CLOSE_SIZE).clicked() {
                 out.commands.push(Command::SelectJoint(None));
             }
             if card.renaming.is_none() && controls::small_button(ui, text::RENAME).clicked() {

@@ -87,6 +87,11 @@ pub const LAYER_SPEED: &str = "Layer speed";
 /// Slider: where on the timeline the clip begins.
 pub const LAYER_START: &str = "Layer start";
 
+/// Returns the name of a layer's controls; layers are counted from the bottom, from 1.
+pub fn layer(number: usize, clip: &str) -> String {
+    format!("Layer {number}: {clip}")
+}
+
 /// Returns the label of a mode.
 pub fn layer_mode(mode: LayerMode) -> &'static str {
     match mode {

@@ -25,8 +25,8 @@ pub const HIDDEN_NODE: &str = "Hidden";
 pub const SHOW_ALL: &str = "Show all";
 /// Tooltip of an eye.
 pub const ALT_SOLO: &str = "Alt-click to solo";
-/// Close button of the selected joint's card.
-pub const DESELECT_JOINT: &str = "Deselect joint";
+/// Close button of the selected node's card.
+pub const DESELECT: &str = "Deselect";
 /// Shown in the viewport while joints are posed manually.
 pub const POSING: &str = "Posing manually";
 /// Button beside it that stops that.

@@ -226,10 +226,19 @@ fn segments<T: Copy + PartialEq>(
     row: Segments<'_, T>,
 ) -> Option<T> {
     let Segments::Choice { topic, .. } = row else { return segments_in(ui, chosen, choices, row) };
-    let group = egui::UiBuilder::new().accessibility_role(Role::RadioGroup);
+    grouped(ui, Role::RadioGroup, topic, |ui| segments_in(ui, chosen, choices, row))
+}
+
+/// Groups controls for assistive technology, under a name that tells them from other controls with the same names.
+pub fn group<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    grouped(ui, Role::Group, name, contents)
+}
+
+fn grouped<R>(ui: &mut Ui, role: Role, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let group = egui::UiBuilder::new().accessibility_role(role);
     ui.scope_builder(group, |ui| {
-        ui.ctx().accesskit_node_builder(ui.unique_id(), |node| node.set_label(topic));
-        segments_in(ui, chosen, choices, row)
+        ui.ctx().accesskit_node_builder(ui.unique_id(), |node| node.set_label(name));
+        contents(ui)
     })
     .inner
 }
@@ -311,6 +320,8 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
         egui::Slider::new(&mut bar, settings.range.0..=settings.range.1)
             .show_value(false)
             .logarithmic(settings.logarithmic)
+            // From 0, where such a slider is at rest, egui can't fill it.
+            .trailing_fill(settings.range.0 >= 0.0)
             .clamping(egui::SliderClamping::Never),
     );
     response.widget_info(|| WidgetInfo::slider(true, bar, label));
