@@ -28,7 +28,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
     controls::hint(ui, text::ABOUT_LAYERS);
-    let adds = ui.button(text::ADD_LAYER).clicked();
+    let add = ui.button(text::ADD_LAYER);
     ui.add_space(4.0);
     // A layer that was just added gets the focus. That scrolls to its chooser, so the whole card scrolls into view afterwards.
     let added_id = ui.scope_id().with("added layer");
@@ -55,10 +55,16 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
     match moved {
         Some((index, Moved::Raised)) => layers.swap(index, index + 1),
-        Some((index, Moved::Removed)) => drop(layers.remove(index)),
+        Some((index, Moved::Removed { by_key })) => {
+            layers.remove(index);
+            // What is nearest to the button that goes with the layer belongs to something else.
+            if by_key {
+                add.request_focus();
+            }
+        }
         None => {}
     }
-    if adds {
+    if add.clicked() {
         // Another clip than the one that plays, if there is one.
         let playing = shown.clip_index();
         let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
@@ -71,16 +77,15 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if layers != *before {
         out.commands.push(Command::SetLayers(layers));
     }
-    if !model.body().slots.0.is_empty() {
-        controls::section(ui, capitals!(text::PINS));
-        controls::hint(ui, text::ABOUT_PINS);
-    }
 }
 
 /// How the user moves a layer in the stack.
 enum Moved {
     Raised,
-    Removed,
+    /// `by_key`: not with the pointer.
+    Removed {
+        by_key: bool,
+    },
 }
 
 fn name_of(model: &Model, clip: usize) -> String {
@@ -126,8 +131,9 @@ fn card(
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
         }
-        if icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, false, BUTTON_SIZE).clicked() {
-            moved = Some(Moved::Removed);
+        let remove = icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, false, BUTTON_SIZE);
+        if remove.clicked() {
+            moved = Some(Moved::Removed { by_key: !remove.clicked_by(egui::PointerButton::Primary) });
         }
         chooser
     });

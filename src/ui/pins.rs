@@ -1,24 +1,76 @@
-//! Tracks under the timeline: when pins with times hold, and what.
+//! The list of all pins in the Motion tab, and tracks under the timeline: when pins with times hold, and what.
 
-use egui::Ui;
+use egui::{Ui, vec2};
 
-use super::{Shown, text, tracks};
-use crate::retarget::{PinGoal, PinTimes};
-use crate::state::title;
+use super::icons::{Icon, icon_button_sized, icon_size};
+use super::widgets::controls::{self, capitals};
+use super::{Output, Shown, text, tracks};
+use crate::retarget::{Pin, PinGoal, PinTimes};
+use crate::state::{Command, title};
+
+const BUTTON_SIZE: f32 = 28.0;
+
+/// A pin and what it is called.
+struct Named {
+    /// Number of the pinned joint in the file.
+    number: usize,
+    pin: Pin,
+    joint: String,
+    /// Name of the joint that it is pinned to.
+    goal: Option<String>,
+}
+
+impl Named {
+    fn what(&self) -> String {
+        text::pin_to(&self.joint, self.pin.goal, self.goal.as_deref())
+    }
+}
+
+fn pins<'a>(shown: &Shown<'a>) -> impl Iterator<Item = Named> + use<'a> {
+    let Shown { library, state, .. } = *shown;
+    let pins = library.active().into_iter().flat_map(|model| state.edits.pins.iter().map(move |pin| (model, pin)));
+    pins.filter_map(|(model, (&number, &pin))| {
+        let joint_of = |number| model.asset.skeleton.joint_of_source(number);
+        let name = |number| Some(title(Some(state), &model.asset, joint_of(number)?).into_owned());
+        let goal = if let PinGoal::Joint(other, _) = pin.goal { name(other) } else { None };
+        Some(Named { number, pin, joint: name(number)?, goal })
+    })
+}
 
 /// The pins with times: what is pinned to what, in short and in full.
 fn timed<'a>(shown: &Shown<'a>) -> impl Iterator<Item = ([String; 2], PinTimes)> + use<'a> {
-    let Shown { library, state, .. } = *shown;
-    let pins = library.active().into_iter().flat_map(|model| state.edits.pins.iter().map(move |pin| (model, pin)));
-    pins.filter_map(|(model, (&joint, pin))| {
-        let times = pin.times?;
-        let name = |joint| Some(title(Some(state), &model.asset, model.asset.skeleton.joint_of_source(joint)?));
-        let joint = name(joint)?;
-        let goal = if let PinGoal::Joint(other, _) = pin.goal { name(other) } else { None };
-        let goal = goal.as_deref();
-        let short = text::pin_name(tracks::short(&joint), pin.goal, goal.map(tracks::short));
-        Some(([short, text::pin_to(&joint, pin.goal, goal)], times))
+    pins(shown).filter_map(|named| {
+        let times = named.pin.times?;
+        let goal = named.goal.as_deref().map(tracks::short);
+        Some(([text::pin_name(tracks::short(&named.joint), named.pin.goal, goal), named.what()], times))
     })
+}
+
+/// Says where joints are pinned, and lists all pins: a row selects its joint.
+pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let has_body = shown.library.active().is_some_and(|model| !model.body().slots.0.is_empty());
+    let mut pins = pins(shown).peekable();
+    if !has_body && pins.peek().is_none() {
+        return;
+    }
+    controls::section(ui, capitals!(text::PINS));
+    controls::hint(ui, text::ABOUT_PINS);
+    for named in pins {
+        let is_selected = shown.state.selection.joint == Some(named.number);
+        let row = |ui: &mut Ui| {
+            let button = icon_size(ui, BUTTON_SIZE);
+            let size = vec2(ui.available_width() - button.x - ui.spacing().item_spacing.x, button.y);
+            let row = ui.allocate_ui(size, |ui| controls::list_row(ui, &named.what(), "", is_selected)).inner;
+            if row.clicked() {
+                out.commands.push(Command::SelectJoint((!is_selected).then_some(named.number)));
+            }
+            let remove = text::remove_pin(&named.joint);
+            if icon_button_sized(ui, Icon::Close, &remove, false, BUTTON_SIZE).clicked() {
+                out.commands.push(Command::SetPin { joint: named.number, pin: None });
+            }
+        };
+        ui.push_id(("pin", named.number), |ui| ui.horizontal(row));
+    }
 }
 
 /// Returns the width that the names of the pins take at the left of the timeline; 0 if there are none.

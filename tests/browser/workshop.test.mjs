@@ -309,7 +309,13 @@ for (const renderer of BACK_ENDS)
       await wave.waitFor({ state: "attached" });
       await wave.press("Enter");
       await wave.waitFor({ state: "detached" });
-      await until(page, () => /^Layer's clip/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
+      /** @param {string} name */
+      const whenFocused = (name) => until(page, (name) => document.activeElement?.getAttribute("aria-label") === name, name);
+      await whenFocused("Layer's clip Wave");
+      await page.keyboard.press("Enter");
+      await whenFocused("Wave");
+      await page.keyboard.press("Escape");
+      await whenFocused("Layer's clip Wave");
       const upperBody = "torso:head:left-arm:right-arm";
       await page.locator("#mirror").getByRole("group", { name: "Layer 1: Wave" }).getByLabel("Layer weight value").waitFor({ state: "attached" });
       await enter(page, "Layer weight value", "0,5", "layers", `Wave:weight:0.5,mask:${upperBody}`);
@@ -325,6 +331,10 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual(layered, linked);
       const plain = await joints(page, { layers: null });
       assert.ok(furthestJoint(layered, plain, ["RightHand"]) > 0.02 && furthestJoint(layered, plain, ["Head", "LeftFoot"]) < ROUNDING);
+      await apply(page, { layers: expected });
+      await control(page, "button", "Remove layer").press("Enter");
+      await whenFocused("Add layer");
+      assert.deepEqual((await state(page)).layers, []);
     });
 
     onPage("pins are made in the Scene tab: a foot to a point, a head to the camera", { link: () => `${WALKER}&t=0.3` }, async (page) => {

@@ -1,5 +1,7 @@
 //! The part of the Motion tab that edits the clip.
 
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::TimeRange;
@@ -133,4 +135,56 @@ fn the_range_becomes_a_new_clip_which_can_be_removed() {
     press(&mut harness, text::REMOVE_COPY);
     assert_eq!(row(&harness, "Walk part 1"), None);
     assert!(harness.query_by_label(text::REMOVE_COPY).is_none(), "the original can't be removed");
+}
+
+/// Where a finger goes down on a slider or its number, to where it moves, in steps. Returns what that does.
+fn swipe(harness: &mut Harness<'_, Bench>, from: Pos2, by: Vec2) -> Vec<Command> {
+    let touch = |phase, pos| Event::Touch { device_id: TouchDeviceId(1), id: TouchId(1), phase, pos, force: None };
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.state_mut().commands.clear();
+    // As the browser does, the finger moves the pointer too.
+    harness.event(Event::PointerMoved(from));
+    harness.event(button(from, true));
+    harness.event(touch(TouchPhase::Start, from));
+    harness.run();
+    for step in 1..=4 {
+        let at = from + by * (step as f32 / 4.0);
+        harness.event(Event::PointerMoved(at));
+        harness.event(touch(TouchPhase::Move, at));
+        harness.run();
+    }
+    harness.event(button(from + by, false));
+    harness.event(Event::PointerGone);
+    harness.event(touch(TouchPhase::End, from + by));
+    harness.run();
+    std::mem::take(&mut harness.state_mut().commands)
+}
+
+/// The panel is nearly as wide as a phone, and most of it is sliders.
+#[test]
+fn a_finger_on_a_slider_scrolls_up_and_down_and_drags_sideways() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Motion.label());
+    let slider = |harness: &Harness<'_, Bench>| harness.get_by_role_and_label(Role::Slider, text::BAKED_SPEED).rect();
+    let number = |harness: &Harness<'_, Bench>| harness.get_by_label(&text::value_of(text::BAKED_SPEED)).rect();
+    for place in [slider, number] {
+        let before = place(&harness);
+        assert_eq!(swipe(&mut harness, before.center(), vec2(4.0, -40.0)), []);
+        let moved = place(&harness).top() - before.top();
+        assert!((moved + 40.0).abs() < 1.0, "scrolled by {moved}");
+        let scrolled = place(&harness).center();
+        assert_eq!(swipe(&mut harness, scrolled, vec2(-4.0, 40.0)), []);
+        assert!((place(&harness).top() - before.top()).abs() < 1.0, "scrolled back");
+        let commands = swipe(&mut harness, before.center(), vec2(40.0, 4.0));
+        assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
+        assert_eq!(place(&harness).top(), before.top(), "stays");
+    }
+    let tapped = slider(&harness).left_center() + vec2(20.0, 0.0);
+    let commands = swipe(&mut harness, tapped, Vec2::ZERO);
+    assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
 }

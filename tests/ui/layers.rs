@@ -128,3 +128,20 @@ fn hundreds_of_layers_leave_most_of_the_window_to_the_viewport() {
     let taken = before - harness.state().viewport.height();
     assert!(taken > 100.0 && taken < 0.3 * WIDE[1], "{taken}");
 }
+
+#[test]
+fn removing_a_layer_by_key_leaves_the_focus_at_the_button_that_adds_one() {
+    let mut harness = sample_bench(WIDE);
+    let layer = |clip: &str| ClipLayer { clip: clip.to_owned(), ..ClipLayer::default() };
+    harness.state_mut().editor.apply(Command::SetLayers(vec![layer("Idle"), layer("Wave")]));
+    press(&mut harness, Tab::Motion.label());
+    for left in [vec![layer("Wave")], vec![]] {
+        scrolled_to(&mut harness, text::ADD_LAYER);
+        harness.get_all_by_label(text::REMOVE_LAYER).last().expect("a layer").focus();
+        harness.run();
+        harness.key_press(egui::Key::Enter);
+        harness.run();
+        assert_eq!(layers(&harness), left);
+        assert!(harness.get_by_label(text::ADD_LAYER).is_focused());
+    }
+}

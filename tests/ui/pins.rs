@@ -8,7 +8,7 @@ use gaitway::app::mirror::entries;
 use gaitway::editor::Export;
 use gaitway::retarget::{Pin, PinGoal, PinTimes};
 use gaitway::state::Command;
-use gaitway::ui::{Saved, UiAction, text};
+use gaitway::ui::{Saved, Tab, UiAction, text};
 use glam::Vec3;
 
 use crate::bench::{Bench, NARROW, WIDE, drag, painted, press, sample_bench};
@@ -235,4 +235,23 @@ fn a_pinned_clip_can_be_saved() {
     choice(&mut harness, text::PIN, text::PIN_TO_POINT);
     crate::header::choose(&mut harness, text::EXPORT, text::SAVE_GLB);
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+}
+
+/// So that nobody has to remember which joints are pinned.
+#[test]
+fn the_motion_tab_lists_pins_which_are_selected_and_removed_there() {
+    let mut harness = sample_bench(WIDE);
+    let goals = [(LEFT_HAND, PinGoal::Joint(HEAD, Vec3::ZERO)), (HEAD, PinGoal::Camera)];
+    for (joint, goal) in goals {
+        let pin = Some(Pin { goal, times: None });
+        harness.state_mut().editor.apply(Command::SetPin { joint, pin });
+    }
+    press(&mut harness, Tab::Motion.label());
+    let row = text::pin_to("LeftHand", goals[0].1, Some("Head"));
+    assert_eq!(reach(&mut harness, &row), [Command::SelectJoint(Some(LEFT_HAND))]);
+    assert_eq!(reach(&mut harness, &row), [Command::SelectJoint(None)]);
+    assert!(harness.query_by_label(&text::pin_to("Head", PinGoal::Camera, None)).is_some());
+    let removed = Command::SetPin { joint: LEFT_HAND, pin: None };
+    assert_eq!(reach(&mut harness, &text::remove_pin("LeftHand")), [removed]);
+    assert!(harness.query_by_label(&row).is_none() && pin_of(&harness, LEFT_HAND).is_none());
 }

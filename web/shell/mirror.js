@@ -174,8 +174,8 @@ export class Mirror {
   }
 
   /**
-   * Moves the focus to where the user expects it: into a menu that opens, back to what opened a menu that closes, to where the
-   * program has moved its own, or else to what is nearest to where it was.
+   * Moves the focus to where the user expects it: into a menu that opens, in a chooser to what is chosen, to where the program has
+   * its own, back to what opened a menu that closes, or else to what is nearest to where it was.
    * @param {HTMLElement} before What had the focus.
    * @param {HTMLElement | null} menu What has just opened.
    * @param {string} focus
@@ -183,13 +183,20 @@ export class Mirror {
    */
   #keepFocus(before, menu, focus, hadTree) {
     if (this.#wanted === focus) this.#wanted = null;
-    const first = menu === null ? undefined : stopsIn(menu)[0];
+    const stops = menu === null ? [] : stopsIn(menu);
+    const isChooser = this.#opener?.dataset.role === "combobox";
+    const first = (isChooser ? stops.find(({ ariaPressed }) => ariaPressed === "true") : undefined) ?? stops[0];
     const hasMoved = this.#wanted === null && focus !== this.#focused;
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
     const selected = hadTree ? null : this.root.querySelector("[role=treeitem][aria-selected=true]");
-    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? nearest(stopsIn(this.root), before));
-    const target = first ?? (next.isConnected ? next : fallback);
+    /** @type {() => HTMLElement | undefined} */
+    const fallback = () => {
+      const all = stopsIn(this.root);
+      const own = all.find(({ dataset }) => dataset.id === focus);
+      return own ?? (this.#opener?.isConnected ? this.#opener : (selected ?? nearest(all, before)));
+    };
+    const target = first ?? (next.isConnected ? next : fallback());
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();
     if (this.#isFollowing) this.#wanted = null;

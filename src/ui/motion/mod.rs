@@ -17,7 +17,7 @@ use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized, icon_size};
-use super::{HostState, Output, Shown, UiAction, UiState, change, clips, controls, layers, style};
+use super::{HostState, Output, Shown, UiAction, UiState, change, clips, controls, layers, pins, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
@@ -305,6 +305,7 @@ fn body(
 fn clip(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     change::section(ui, shown, out);
     layers::section(ui, shown, out);
+    pins::section(ui, shown, out);
 }
 
 /// Height of the buttons that edit the whole map.

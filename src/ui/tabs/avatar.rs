@@ -48,28 +48,28 @@ fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// Fields for the coordinates of a point; returns whether it was changed. Their accessible names begin with the topic.
 pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
-    let mut is_changed = false;
+    let before = *point;
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0).min(80.0);
         for (coordinate, name) in [(&mut point.x, "X "), (&mut point.y, "Y "), (&mut point.z, "Z ")] {
-            let field = egui::DragValue::new(coordinate)
-                .speed(0.02)
-                .max_decimals(2)
-                .prefix(name)
-                .suffix(" m")
-                .custom_parser(controls::read_number);
-            // Values that round to zero have no sign.
-            let field = field.custom_formatter(|value, decimals| {
-                let value = egui::emath::round_to_decimals(value, 2) + 0.0;
-                egui::emath::format_with_decimals_in_range(value, decimals)
+            let field = controls::number(ui, [width, 26.0], coordinate, |field| {
+                field
+                    .speed(0.02)
+                    .max_decimals(2)
+                    .prefix(name)
+                    .suffix(" m")
+                    .custom_parser(controls::read_number)
+                    // Values that round to zero have no sign.
+                    .custom_formatter(|value, decimals| {
+                        let value = egui::emath::round_to_decimals(value, 2) + 0.0;
+                        egui::emath::format_with_decimals_in_range(value, decimals)
+                    })
+                    .update_while_editing(false)
             });
-            let field = field.update_while_editing(false);
-            let field = controls::sized(ui, [width, 26.0], field);
             controls::named(&field, || text::labelled(topic, name.trim_end()));
-            is_changed |= field.changed();
         }
     });
-    is_changed
+    *point != before
 }
 
 /// Shows a slider per expression. It follows the clip until the user moves it.

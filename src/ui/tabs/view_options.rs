@@ -85,12 +85,10 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     }
     ui.horizontal(|ui| {
         for (edge, name) in [(0, "Width in pixels"), (1, "Height in pixels")] {
-            let value = &mut settings.size[edge];
-            let field = egui::DragValue::new(value)
-                .range(16..=MAX_PICTURE_SIZE)
-                .suffix(" px")
-                .custom_parser(controls::read_number);
-            controls::sized(ui, [90.0, 26.0], field).accessible_name(name);
+            controls::number(ui, [90.0, 26.0], &mut settings.size[edge], |field| {
+                field.range(16..=MAX_PICTURE_SIZE).suffix(" px").custom_parser(controls::read_number)
+            })
+            .accessible_name(name);
         }
     });
     if controls::switch(ui, text::TRANSPARENT_BACKGROUND, settings.transparent) {

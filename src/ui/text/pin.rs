@@ -54,6 +54,11 @@ pub fn pin_to(joint: &str, goal: PinGoal, other: Option<&str>) -> String {
     }
 }
 
+/// Returns the name of the button that removes a joint's pin.
+pub fn remove_pin(joint: &str) -> String {
+    format!("Remove pin of {joint}")
+}
+
 /// Returns the accessible name and tooltip of that track. `pin` is from [`pin_to`], `when` from [`pin_times`].
 pub fn pin_track(pin: &str, when: &str) -> String {
     format!("{pin}. {when}")

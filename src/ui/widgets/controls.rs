@@ -69,6 +69,50 @@ pub fn sized(ui: &mut Ui, [width, height]: [f32; 2], control: impl egui::Widget)
     ui.add_sized([width, height], control)
 }
 
+/// Adds a field for a number, which `setup` describes.
+pub fn number<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    size: [f32; 2],
+    value: &mut N,
+    setup: impl for<'a> FnOnce(egui::DragValue<'a>) -> egui::DragValue<'a>,
+) -> Response {
+    let before = *value;
+    let field = sized(ui, size, setup(egui::DragValue::new(value)));
+    if is_swiped(ui, &field) {
+        *value = before;
+    }
+    field
+}
+
+/// Returns whether a finger on this control moves up or down, or may be about to: then it doesn't drag the control, but scrolls
+/// what that is in, as from anywhere else.
+fn is_swiped(ui: &Ui, response: &Response) -> bool {
+    /// In points; less is a tap.
+    const MIN_DISTANCE: f32 = 6.0;
+    let id = response.id.with("is swiped");
+    if !response.is_pointer_button_down_on() {
+        // It may just have been lifted.
+        return ui.data_mut(|data| data.remove_temp(id)).unwrap_or(false);
+    }
+    let (moved, delta, is_finger) = ui.input(|input| {
+        let pointer = &input.pointer;
+        let moved = pointer.press_origin().zip(pointer.latest_pos()).map(|(from, to)| to - from);
+        (moved.unwrap_or_default(), pointer.delta(), input.any_touches())
+    });
+    if !is_finger {
+        return false;
+    }
+    let decided = ui.data(|data| data.get_temp(id));
+    let is_swiped = decided.or((moved.length() >= MIN_DISTANCE).then(|| moved.y.abs() > moved.x.abs()));
+    let Some(is_swiped) = is_swiped else { return true };
+    ui.data_mut(|data| data.insert_temp(id, is_swiped));
+    if is_swiped {
+        let by = if decided.is_some() { delta } else { moved };
+        ui.scroll_with_delta_animation(vec2(0.0, by.y), egui::style::ScrollAnimation::none());
+    }
+    is_swiped
+}
+
 /// A small button beside a title, enlarged for fingers.
 pub fn small_button(ui: &mut Ui, label: &str) -> Response {
     let height = row_height(ui, 0.0);
@@ -325,7 +369,8 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
             .clamping(egui::SliderClamping::Never),
     );
     response.widget_info(|| WidgetInfo::slider(true, bar, label));
-    if response.changed() {
+    let is_swiped = is_swiped(ui, &response);
+    if response.changed() && !is_swiped {
         new = bar;
     }
     // The knob is as high as the slider, but fingers can press anywhere in the row.
@@ -377,9 +422,8 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
         // When a field loses the focus, egui sets the number that it shows, rounded and clamped, even if nothing was typed.
         let shown = egui::emath::round_to_decimals(before, settings.decimals);
         let typed = move |text: &str| read_number(text).filter(|&typed| typed != shown);
-        let field = ui.add_sized(
-            [field_width, height],
-            egui::DragValue::new(value)
+        let field = number(ui, [field_width, height], value, |field| {
+            field
                 .speed((max - min) / 300.0)
                 .range(min..=max)
                 // A link's value may lie outside and stays until it is edited.
@@ -388,8 +432,8 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
                 // What is typed is one edit, not one per key.
                 .update_while_editing(false)
                 .custom_parser(typed)
-                .suffix(settings.suffix),
-        );
+                .suffix(settings.suffix)
+        });
         if *value != before {
             // Arrow keys don't stop at the range.
             *value = value.clamp(min, max);
