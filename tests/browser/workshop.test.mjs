@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, control, controls, eventually, resize, savedBy, startSite, state, toggleInspector, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, centreOf, control, controls, eventually, resize, savedBy, startSite, state, toggleInspector, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
 
 const WALKER = "model=sample:walker&clip=Walk&play=0";
 /** Height of the walker, and duration of its walk. */
@@ -335,6 +335,37 @@ for (const renderer of BACK_ENDS)
       await control(page, "button", "Remove layer").press("Enter");
       await whenFocused("Add layer");
       assert.deepEqual((await state(page)).layers, []);
+    });
+
+    onPage("a finger on a slider scrolls up and down and drags sideways", { link: () => WALKER }, async (page) => {
+      await page.setViewportSize({ width: 390, height: 844 });
+      const session = await page.context().newCDPSession(page);
+      /** @type {(x: number, y: number, across: number, down: number) => Promise<void>} */
+      const swipe = async (x, y, across, down) => {
+        /** @type {(type: "touchStart" | "touchMove" | "touchEnd", share?: number) => Promise<void>} */
+        const touch = async (type, share) => {
+          const touchPoints = share === undefined ? [] : [{ x: x + share * across, y: y + share * down }];
+          await session.send("Input.dispatchTouchEvent", { type, touchPoints });
+        };
+        await touch("touchStart", 0);
+        for (const share of [0.25, 0.5, 0.75, 1]) await touch("touchMove", share);
+        await touch("touchEnd");
+        await untilStill(page);
+      };
+      await untilStill(page);
+      const { x, y } = await centreOf(control(page, "button", "Inspector"));
+      await swipe(x, y, 0, 0);
+      await control(page, "tab", "Motion").press("Enter");
+      await untilStill(page);
+      const speed = page.locator("#mirror").getByRole("slider", { name: "Clip speed" });
+      const before = await centreOf(speed);
+      await swipe(before.x - 60, before.y, 0, -100);
+      const scrolled = await centreOf(speed);
+      assert.ok(Math.abs(before.y - 100 - scrolled.y) < 2, `scrolled from ${before.y} to ${scrolled.y}`);
+      assert.deepEqual((await state(page)).change, []);
+      await swipe(scrolled.x - 60, scrolled.y, 80, 4);
+      assert.match((await state(page)).change.join(), /^Walk:speed:/);
+      assert.deepEqual(await centreOf(speed), scrolled);
     });
 
     onPage("pins are made in the Scene tab: a foot to a point, a head to the camera", { link: () => `${WALKER}&t=0.3` }, async (page) => {

@@ -8,9 +8,9 @@ use gaitway::anim::TimeRange;
 use gaitway::editor::Export;
 use gaitway::retarget::ClipChanges;
 use gaitway::state::{ClipChoice, Command};
-use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, WIDE, motion_bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, sample_bench};
 use crate::header::choose;
 
 #[test]
@@ -137,9 +137,13 @@ fn the_range_becomes_a_new_clip_which_can_be_removed() {
     assert!(harness.query_by_label(text::REMOVE_COPY).is_none(), "the original can't be removed");
 }
 
-/// Where a finger goes down on a slider or its number, to where it moves, in steps. Returns what that does.
+fn touch(phase: TouchPhase, pos: Pos2) -> Event {
+    Event::Touch { device_id: TouchDeviceId(1), id: TouchId(1), phase, pos, force: None }
+}
+
+/// Moves a finger over the screen, as the browser does: it presses and lifts a pointer, each in a frame of its own, before it tells
+/// that there is a finger. Returns what that does.
 fn swipe(harness: &mut Harness<'_, Bench>, from: Pos2, by: Vec2) -> Vec<Command> {
-    let touch = |phase, pos| Event::Touch { device_id: TouchDeviceId(1), id: TouchId(1), phase, pos, force: None };
     let button = |pos, pressed| Event::PointerButton {
         pos,
         button: PointerButton::Primary,
@@ -147,17 +151,19 @@ fn swipe(harness: &mut Harness<'_, Bench>, from: Pos2, by: Vec2) -> Vec<Command>
         modifiers: Modifiers::NONE,
     };
     harness.state_mut().commands.clear();
-    // As the browser does, the finger moves the pointer too.
-    harness.event(Event::PointerMoved(from));
+    harness.event(button(from, true));
+    harness.step();
     harness.event(button(from, true));
     harness.event(touch(TouchPhase::Start, from));
-    harness.run();
+    harness.step();
     for step in 1..=4 {
         let at = from + by * (step as f32 / 4.0);
         harness.event(Event::PointerMoved(at));
         harness.event(touch(TouchPhase::Move, at));
-        harness.run();
+        harness.step();
     }
+    harness.event(button(from + by, false));
+    harness.step();
     harness.event(button(from + by, false));
     harness.event(Event::PointerGone);
     harness.event(touch(TouchPhase::End, from + by));
@@ -168,23 +174,31 @@ fn swipe(harness: &mut Harness<'_, Bench>, from: Pos2, by: Vec2) -> Vec<Command>
 /// The panel is nearly as wide as a phone, and most of it is sliders.
 #[test]
 fn a_finger_on_a_slider_scrolls_up_and_down_and_drags_sideways() {
-    let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::Motion.label());
     let slider = |harness: &Harness<'_, Bench>| harness.get_by_role_and_label(Role::Slider, text::BAKED_SPEED).rect();
     let number = |harness: &Harness<'_, Bench>| harness.get_by_label(&text::value_of(text::BAKED_SPEED)).rect();
-    for place in [slider, number] {
-        let before = place(&harness);
-        assert_eq!(swipe(&mut harness, before.center(), vec2(4.0, -40.0)), []);
-        let moved = place(&harness).top() - before.top();
-        assert!((moved + 40.0).abs() < 1.0, "scrolled by {moved}");
-        let scrolled = place(&harness).center();
-        assert_eq!(swipe(&mut harness, scrolled, vec2(-4.0, 40.0)), []);
-        assert!((place(&harness).top() - before.top()).abs() < 1.0, "scrolled back");
-        let commands = swipe(&mut harness, before.center(), vec2(40.0, 4.0));
+    for size in [WIDE, NARROW] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.layout.sheet = Some(Sheet::Inspector);
+        harness.state_mut().panels.layout.tab = Tab::Motion;
+        // The finger that has opened the panel.
+        for phase in [TouchPhase::Start, TouchPhase::End] {
+            harness.event(touch(phase, Pos2::ZERO));
+        }
+        harness.run();
+        for place in [slider, number] {
+            let before = place(&harness);
+            assert_eq!(swipe(&mut harness, before.center(), vec2(4.0, -40.0)), [], "on {size:?}");
+            let moved = place(&harness).top() - before.top();
+            assert!((moved + 40.0).abs() < 1.0, "scrolled by {moved} on {size:?}");
+            let scrolled = place(&harness).center();
+            assert_eq!(swipe(&mut harness, scrolled, vec2(-4.0, 40.0)), [], "on {size:?}");
+            assert!((place(&harness).top() - before.top()).abs() < 1.0, "scrolled back");
+            let commands = swipe(&mut harness, before.center(), vec2(40.0, 4.0));
+            assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
+            assert_eq!(place(&harness).top(), before.top(), "stays");
+        }
+        let tapped = slider(&harness).left_center() + vec2(20.0, 0.0);
+        let commands = swipe(&mut harness, tapped, Vec2::ZERO);
         assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
-        assert_eq!(place(&harness).top(), before.top(), "stays");
     }
-    let tapped = slider(&harness).left_center() + vec2(20.0, 0.0);
-    let commands = swipe(&mut harness, tapped, Vec2::ZERO);
-    assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
 }

@@ -91,16 +91,20 @@ fn is_swiped(ui: &Ui, response: &Response) -> bool {
     const MIN_DISTANCE: f32 = 6.0;
     let id = response.id.with("is swiped");
     if !response.is_pointer_button_down_on() {
-        // It may just have been lifted.
-        return ui.data_mut(|data| data.remove_temp(id)).unwrap_or(false);
+        let is_lifted = response.interact_pointer_pos().is_some();
+        return is_lifted && ui.data(|data| data.get_temp(id)).unwrap_or(false);
     }
-    let (moved, delta, is_finger) = ui.input(|input| {
+    let (moved, delta) = ui.input(|input| {
         let pointer = &input.pointer;
         let moved = pointer.press_origin().zip(pointer.latest_pos()).map(|(from, to)| to - from);
-        (moved.unwrap_or_default(), pointer.delta(), input.any_touches())
+        (moved.unwrap_or_default(), pointer.delta())
     });
-    if !is_finger {
-        return false;
+    if ui.input(|input| input.pointer.any_pressed()) {
+        ui.data_mut(|data| data.remove::<bool>(id));
+    }
+    if !ui.input(egui::InputState::any_touches) {
+        // The browser tells that something is pressed before it tells that it is a finger.
+        return moved.length() < MIN_DISTANCE && ui.input(egui::InputState::has_touch_screen);
     }
     let decided = ui.data(|data| data.get_temp(id));
     let is_swiped = decided.or((moved.length() >= MIN_DISTANCE).then(|| moved.y.abs() > moved.x.abs()));
