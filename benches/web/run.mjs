@@ -8,7 +8,7 @@ import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, USES_GRAPHICS_CARD, until, untilStill, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
-import { dataFile, dist, hasData, repository } from "../../tests/three/data.mjs";
+import { dataFile, dist, hasData, repository, targetFolder } from "../../tests/three/data.mjs";
 import { serve } from "../../xtask/site/server.mjs";
 import { measureDecoders } from "./decoders.mjs";
 import { measureFirstFrames } from "./first.mjs";
@@ -108,7 +108,7 @@ async function measureCharacters() {
  * @returns {Map<number, string>}
  */
 function nativeCharacters() {
-  const folder = path.join(path.resolve(repository, process.env.CARGO_TARGET_DIR ?? "target"), "release/deps");
+  const folder = path.join(targetFolder, "release/deps");
   const built = fs.existsSync(folder) ? fs.readdirSync(folder).filter((name) => /^characters-[0-9a-f]{16}(\.exe)?$/.test(name)) : [];
   if (built.length === 0) return new Map();
   const [newest] = built.map((name) => path.join(folder, name)).sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs);

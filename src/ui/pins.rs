@@ -1,5 +1,7 @@
 //! The list of all pins in the Motion tab, and tracks under the timeline: when pins with times hold, and what.
 
+use std::borrow::Cow;
+
 use egui::{Ui, vec2};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
@@ -11,27 +13,27 @@ use crate::state::{Command, title};
 const BUTTON_SIZE: f32 = 28.0;
 
 /// A pin and what it is called.
-struct Named {
+struct Named<'a> {
     /// Number of the pinned joint in the file.
     number: usize,
     pin: Pin,
-    joint: String,
+    joint: Cow<'a, str>,
     /// Name of the joint that it is pinned to.
-    goal: Option<String>,
+    goal: Option<Cow<'a, str>>,
 }
 
-impl Named {
+impl Named<'_> {
     fn what(&self) -> String {
         text::pin_to(&self.joint, self.pin.goal, self.goal.as_deref())
     }
 }
 
-fn pins<'a>(shown: &Shown<'a>) -> impl Iterator<Item = Named> + use<'a> {
+/// Those of the pins that `wanted` accepts.
+fn pins<'a>(shown: &Shown<'a>, wanted: fn(&Pin) -> bool) -> impl Iterator<Item = Named<'a>> + use<'a> {
     let Shown { library, state, .. } = *shown;
     let pins = library.active().into_iter().flat_map(|model| state.edits.pins.iter().map(move |pin| (model, pin)));
-    pins.filter_map(|(model, (&number, &pin))| {
-        let joint_of = |number| model.asset.skeleton.joint_of_source(number);
-        let name = |number| Some(title(Some(state), &model.asset, joint_of(number)?).into_owned());
+    pins.filter(move |(_, (_, pin))| wanted(pin)).filter_map(|(model, (&number, &pin))| {
+        let name = |number| Some(title(Some(state), &model.asset, model.asset.skeleton.joint_of_source(number)?));
         let goal = if let PinGoal::Joint(other, _) = pin.goal { name(other) } else { None };
         Some(Named { number, pin, joint: name(number)?, goal })
     })
@@ -39,7 +41,7 @@ fn pins<'a>(shown: &Shown<'a>) -> impl Iterator<Item = Named> + use<'a> {
 
 /// The pins with times: what is pinned to what, in short and in full.
 fn timed<'a>(shown: &Shown<'a>) -> impl Iterator<Item = ([String; 2], PinTimes)> + use<'a> {
-    pins(shown).filter_map(|named| {
+    pins(shown, |pin| pin.times.is_some()).filter_map(|named| {
         let times = named.pin.times?;
         let goal = named.goal.as_deref().map(tracks::short);
         Some(([text::pin_name(tracks::short(&named.joint), named.pin.goal, goal), named.what()], times))
@@ -49,7 +51,7 @@ fn timed<'a>(shown: &Shown<'a>) -> impl Iterator<Item = ([String; 2], PinTimes)>
 /// Says where joints are pinned, and lists all pins: a row selects its joint.
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let has_body = shown.library.active().is_some_and(|model| !model.body().slots.0.is_empty());
-    let mut pins = pins(shown).peekable();
+    let mut pins = pins(shown, |_| true).peekable();
     if !has_body && pins.peek().is_none() {
         return;
     }

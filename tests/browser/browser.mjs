@@ -60,9 +60,9 @@ const OFF_SCREEN = "--disable-gpu-compositing";
 const TIMEOUT_MS = 60_000;
 
 /**
- * `isOffScreen`: the tests' pages are at rest, and nobody looks at the screen itself, only at the program's own pictures. On a software
- * renderer, the browser composes a page as slowly as the program draws it. Without that, WebGPU's canvas stays blank on the screen, and
- * nothing slows down a clip that plays.
+ * `isOffScreen`: pages aren't composed by the graphics API, which takes a software renderer as long as the program's own drawing.
+ * WebGPU's canvas is then blank on the screen, so tests can look at the program's pictures only, and nothing slows down a clip that
+ * plays, so their pages should be at rest.
  * @typedef {{ isOffScreen?: boolean }} LaunchOptions
  */
 

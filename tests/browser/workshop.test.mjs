@@ -389,6 +389,10 @@ for (const renderer of BACK_ENDS)
           assert.ok(largestAngle(pinned, before, ["Head"]) > 5);
         }
       }
+      await control(page, "tab", "Motion").press("Enter");
+      await control(page, "button", "Remove pin of Head").press("Enter");
+      await until(page, async () => (await window.gaitway.state()).pin.length === 1);
+      await until(page, () => document.activeElement?.getAttribute("aria-label") === "Remove pin of LeftFoot");
     });
 
     onPage("clips are cut out of one, listed, saved and in the link", { link: () => `${WALKER}&range=0.25,0.75` }, async (page) => {

@@ -3,7 +3,10 @@
 import crypto from "node:crypto";
 import fs from "node:fs";
 import path from "node:path";
-import { repository } from "../three/data.mjs";
+import { targetFolder } from "../three/data.mjs";
+
+/** Pictures of older versions are deleted after a month. */
+const MAX_UNUSED_MS = 30 * 24 * 60 * 60 * 1000;
 
 /** Everything that a picture depends on. @typedef {(string | Buffer)[]} Origin */
 
@@ -12,13 +15,19 @@ import { repository } from "../three/data.mjs";
  * @param {Origin} shared What all pictures depend on.
  */
 export function keptPictures(shared) {
-  const folder = path.join(process.env.CARGO_TARGET_DIR ?? path.join(repository, "target"), "reference-pictures");
+  const folder = path.join(targetFolder, "reference-pictures");
   fs.mkdirSync(folder, { recursive: true });
+  for (const file of fs.readdirSync(folder).map((name) => path.join(folder, name)))
+    if (Date.now() - fs.statSync(file).mtimeMs > MAX_UNUSED_MS) fs.rmSync(file, { force: true });
   const of = hash(shared);
   /** @type {(origin: Origin, draw: () => Promise<string>) => Promise<string>} */
   return async (origin, draw) => {
     const file = path.join(folder, hash([of, ...origin]));
-    if (fs.existsSync(file)) return fs.readFileSync(file, "utf8");
+    if (fs.existsSync(file)) {
+      const now = new Date();
+      fs.utimesSync(file, now, now);
+      return fs.readFileSync(file, "utf8");
+    }
     const picture = await draw();
     // Never half a picture, even if the run is stopped.
     const part = `${file}.${process.pid}`;

@@ -6,6 +6,9 @@ import { fileURLToPath } from "node:url";
 
 export const repository = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../..");
 
+/** Where cargo builds. */
+export const targetFolder = path.resolve(repository, process.env.CARGO_TARGET_DIR ?? "target");
+
 /** The built page. */
 export const dist = process.env.GAITWAY_DIST ?? path.join(repository, "dist");
 

@@ -2,14 +2,13 @@
 import { execFile } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
-import { repository } from "./data.mjs";
+import { targetFolder } from "./data.mjs";
 
 /** The binary: GAITWAY_CLI, or whatever cargo built last. */
 export const program = (() => {
   if (process.env.GAITWAY_CLI) return process.env.GAITWAY_CLI;
-  const target = process.env.CARGO_TARGET_DIR ?? path.join(repository, "target");
   const name = process.platform === "win32" ? "gaitway.exe" : "gaitway";
-  const built = ["release", "debug"].map((profile) => path.join(target, profile, name)).filter((file) => fs.existsSync(file));
+  const built = ["release", "debug"].map((profile) => path.join(targetFolder, profile, name)).filter((file) => fs.existsSync(file));
   if (built.length === 0) throw new Error("no gaitway binary: run `cargo build`, or set GAITWAY_CLI");
   return built.sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs)[0];
 })();

@@ -186,17 +186,12 @@ export class Mirror {
     const stops = menu === null ? [] : stopsIn(menu);
     const isChooser = this.#opener?.dataset.role === "combobox";
     const first = (isChooser ? stops.find(({ ariaPressed }) => ariaPressed === "true") : undefined) ?? stops[0];
-    const hasMoved = this.#wanted === null && focus !== this.#focused;
+    const hasMoved = !before.isConnected || (this.#wanted === null && focus !== this.#focused);
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
     const selected = hadTree ? null : this.root.querySelector("[role=treeitem][aria-selected=true]");
-    /** @type {() => HTMLElement | undefined} */
-    const fallback = () => {
-      const all = stopsIn(this.root);
-      const own = all.find(({ dataset }) => dataset.id === focus);
-      return own ?? (this.#opener?.isConnected ? this.#opener : (selected ?? nearest(all, before)));
-    };
-    const target = first ?? (next.isConnected ? next : fallback());
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? nearest(stopsIn(this.root), before));
+    const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) target?.focus();
     if (this.#isFollowing) this.#wanted = null;
@@ -292,7 +287,8 @@ function numberIn(text) {
 }
 
 /**
- * Returns the element in whose direction the eye would go from one that is gone; the viewport only if there is nothing else.
+ * Returns the element in whose direction the eye would go from one that is gone; the viewport only if there is nothing else. A
+ * button leads to a button: keys that were meant for it would change a number.
  * @param {HTMLElement[]} stops
  * @param {HTMLElement} gone
  */
@@ -305,9 +301,10 @@ function nearest(stops, gone) {
     const [otherX, otherY] = centre(element);
     return element.dataset.role === "img" ? Infinity : Math.hypot(otherX - x, otherY - y);
   };
+  const buttons = gone.dataset.role === "button" ? stops.filter(({ dataset }) => dataset.role === "button") : [];
   /** @type {HTMLElement | undefined} */
   let best;
-  for (const stop of stops) if (best === undefined || distance(stop) < distance(best)) best = stop;
+  for (const stop of buttons.length > 0 ? buttons : stops) if (best === undefined || distance(stop) < distance(best)) best = stop;
   return best;
 }
 

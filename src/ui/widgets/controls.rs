@@ -373,8 +373,7 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
             .clamping(egui::SliderClamping::Never),
     );
     response.widget_info(|| WidgetInfo::slider(true, bar, label));
-    let is_swiped = is_swiped(ui, &response);
-    if response.changed() && !is_swiped {
+    if !is_swiped(ui, &response) && response.changed() {
         new = bar;
     }
     // The knob is as high as the slider, but fingers can press anywhere in the row.
