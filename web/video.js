@@ -1,9 +1,10 @@
-// Encodes a video frame by frame, however long each takes to draw, or an archive with an image of each. A part of the page
+// Encodes a video or GIF frame by frame, however long each takes to draw, or an archive with an image of each. A part of the page
 // that is downloaded when it is first used. Uses WebCodecs, and MediaRecorder where that is missing.
 //! Contains Mediabunny (MPL-2.0), unmodified; its source code: https://github.com/Vanilagy/mediabunny
 //! Contains fflate (MIT), Copyright (c) 2023 Arjun Barrett
 import { Zip, ZipPassThrough } from "fflate";
 import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampleSource, WebMOutputFormat, getFirstEncodableVideoCodec } from "mediabunny";
+import { animatedGif } from "./gif.js";
 
 /**
  * @typedef {object} Video
@@ -12,13 +13,13 @@ import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampl
  * @property {number} framesPerSec
  * @property {number} frameCount
  * @property {boolean} isTransparent
- * @property {boolean} asImages An archive of PNGs instead of a video.
+ * @property {string} format "video", "gif", or "images" for an archive of PNGs.
  * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight
  *   alpha.
  * @property {AbortSignal} signal
  */
 
-/** @typedef {{ blob: Blob, extension: "mp4" | "webm" | "zip" }} EncodedVideo */
+/** @typedef {{ blob: Blob, extension: "mp4" | "webm" | "gif" | "zip" }} EncodedVideo */
 
 /** @typedef {import("mediabunny").VideoCodec} Codec */
 
@@ -55,7 +56,8 @@ const bitsPerSec = ({ width, height, framesPerSec }) => Math.ceil(BITS_PER_PIXEL
  * @returns {Promise<EncodedVideo>}
  */
 export async function encode(video) {
-  if (video.asImages) return encodeImages(video);
+  if (video.format === "images") return encodeImages(video);
+  if (video.format === "gif") return encodeGif(video);
   const { width, height, isTransparent } = video;
   const canEncode = typeof VideoEncoder !== "undefined";
   const quality = new Quality({ bitrate: bitsPerSec(video) });
@@ -124,6 +126,16 @@ async function encodeImages(video) {
   }
   zip.end();
   return { blob: new Blob(chunks), extension: "zip" };
+}
+
+/**
+ * @param {Video} video
+ * @returns {Promise<EncodedVideo>}
+ */
+async function encodeGif(video) {
+  const gif = animatedGif(video);
+  for (let index = 0; index < video.frameCount; index++) gif.add(await nextFrame(video, index));
+  return { blob: new Blob([gif.finish()]), extension: "gif" };
 }
 
 /**

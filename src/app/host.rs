@@ -5,8 +5,9 @@ use crate::editor::ExportedFile;
 use crate::files::Role;
 use crate::library::ModelId;
 use crate::state::ViewerState;
+use crate::ui::RecordingFormat;
 
-/// A video, or a sequence of images, to record.
+/// One loop of a clip to record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Video {
     /// File name without its extension, which depends on what the host can encode.
@@ -19,8 +20,8 @@ pub struct Video {
     pub frame_count: u32,
     /// Keeps the frames' alpha.
     pub transparent: bool,
-    /// Saves PNGs in an archive instead of a video.
-    pub as_images: bool,
+    /// What the frames become.
+    pub format: RecordingFormat,
 }
 
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.

@@ -1,4 +1,4 @@
-//! Recording one loop of the clip as a video or as images. The host asks for one frame after the other and encodes it, so the
+//! Recording one loop of the clip as a video, a GIF or images. The host asks for one frame after the other and encodes it, so the
 //! result is the same however long a frame takes. What is on screen stays as it is.
 
 use super::save::saved;
@@ -7,38 +7,53 @@ use crate::editor::AWAITS_IMAGES;
 use crate::library::ModelId;
 use crate::render::read_pixels;
 use crate::state::{Background, LoopFrames};
-use crate::ui::{RecordingProgress, VideoSettings};
+use crate::ui::{RecordingFormat, RecordingProgress, VideoSettings};
 
 pub(super) struct Recording {
     frames: LoopFrames,
     model: ModelId,
     size: [u32; 2],
     transparent: bool,
-    as_images: bool,
+    format: RecordingFormat,
     /// Says if the size differs from the requested one.
     remark: Option<String>,
 }
 
+/// Of a GIF's longer edge, in pixels. GIFs hardly compress: four seconds at this size take about 6 MB.
+const MAX_GIF_SIZE: u32 = 640;
+/// Frames per second. The times of a GIF's frames are in hundredths of a second, and browsers slow down frames shorter than two.
+const MAX_GIF_RATE: u32 = 30;
+
+/// Returns the size with the same proportions whose longer edge is at most `max`.
+fn within(size: [u32; 2], max: u32) -> [u32; 2] {
+    let longer = size[0].max(size[1]).max(max);
+    size.map(|edge| (edge * max + longer / 2) / longer)
+}
+
 impl App {
     pub(super) fn start_recording(&mut self, settings: VideoSettings) {
+        let VideoSettings { format, .. } = settings;
+        let (size, frames_per_sec) = match format {
+            RecordingFormat::Gif => (within(settings.size, MAX_GIF_SIZE), settings.frames_per_sec.min(MAX_GIF_RATE)),
+            RecordingFormat::Video | RecordingFormat::Images => (settings.size, settings.frames_per_sec),
+        };
         // Most codecs take only even sizes.
-        let size = self.viewport.picture_size(settings.size).map(|edge| (edge & !1).max(2));
+        let size = self.viewport.picture_size(size).map(|edge| (edge & !1).max(2));
         let (library, state) = (self.editor.library(), self.editor.state());
         let Some(model) = library.active() else { return };
         if model.awaits_images() {
-            return self.fail_to_record(settings.as_images, AWAITS_IMAGES);
+            return self.fail_to_record(format, AWAITS_IMAGES);
         }
         let aspect = size[0] as f32 / size[1] as f32;
-        let Some(frames) = LoopFrames::new(library, state, aspect, settings.frames_per_sec) else { return };
-        let VideoSettings { frames_per_sec, as_images, .. } = settings;
+        let Some(frames) = LoopFrames::new(library, state, aspect, frames_per_sec) else { return };
         let transparent = settings.transparent || state.display.background == Background::Transparent;
         let (frame_count, model) = (frames.count(), model.id);
         let name = self.editor.file_stem();
-        let video = Video { name, size, frames_per_sec, frame_count, transparent, as_images };
+        let video = Video { name, size, frames_per_sec, frame_count, transparent, format };
         match self.host.record(video, &self.inbox) {
             Ok(()) => {
                 let remark = (size != settings.size).then(|| format!("It is {} × {} pixels.", size[0], size[1]));
-                self.recording = Some(Recording { frames, model, size, transparent, as_images, remark });
+                self.recording = Some(Recording { frames, model, size, transparent, format, remark });
                 self.panels.host.recording = Some(RecordingProgress { frames_done: 0, frame_count });
             }
             Err(error) => self.add_error(&error),
@@ -75,12 +90,16 @@ impl App {
         match saved_name {
             Ok(Some(name)) => self.toast(saved(&name, recording.remark.as_deref())),
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
-            Err(error) => self.fail_to_record(recording.as_images, &error),
+            Err(error) => self.fail_to_record(recording.format, &error),
         }
     }
 
-    fn fail_to_record(&mut self, as_images: bool, error: &str) {
-        let what = if as_images { "images" } else { "video" };
+    fn fail_to_record(&mut self, format: RecordingFormat, error: &str) {
+        let what = match format {
+            RecordingFormat::Video => "video",
+            RecordingFormat::Gif => "GIF",
+            RecordingFormat::Images => "images",
+        };
         self.add_error(&format!("Couldn't record the {what}: {error}"));
     }
 }

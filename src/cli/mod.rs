@@ -324,8 +324,8 @@ struct RenderArguments {
     input: Files,
     #[command(flatten)]
     motion: MotionArguments,
-    /// The image to write; `-` for standard output. With --frames, a new folder for images, or a video (.mp4, .webm; needs
-    /// ffmpeg).
+    /// The image to write; `-` for standard output. With --frames, a new folder for images, or a video or GIF (.mp4, .webm,
+    /// .gif; needs ffmpeg).
     #[arg(long, value_name = "PNG|FOLDER|VIDEO")]
     out: PathBuf,
     /// Renders one loop of the clip, with the loop mode and speed of the view, at this many frames per second.

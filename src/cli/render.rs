@@ -44,7 +44,7 @@ fn render_picture(arguments: &RenderArguments, editor: &Editor, disk: &Disk) -> 
 fn render_frames(arguments: &RenderArguments, frames_per_sec: u32, editor: &Editor, disk: &Disk) -> Outcome {
     let (library, state, size) = (editor.library(), editor.state(), arguments.size);
     if is_standard_output(&arguments.out) {
-        return Err(Failure::expected("a folder, or a file ending in .mp4 or .webm", "-").at("--out"));
+        return Err(Failure::expected("a folder, or a file ending in .mp4, .webm or .gif", "-").at("--out"));
     }
     let frames = LoopFrames::new(library, state, aspect(size), frames_per_sec)
         .ok_or_else(|| Failure::new("nothing moves").with_hint("choose a clip with --clip").at("--frames"))?;

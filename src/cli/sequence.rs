@@ -1,4 +1,4 @@
-//! Where `gaitway render --frames` puts its pictures: a folder of PNGs, or a video that ffmpeg encodes. An encoder of our own
+//! Where `gaitway render --frames` puts its pictures: a folder of PNGs, or a video or GIF that ffmpeg encodes. An encoder of our own
 //! would be larger than the rest of the program, and ffmpeg has every codec.
 
 use std::fs;
@@ -11,8 +11,8 @@ use super::failure::{Failure, Outcome};
 use super::output::{check_output, write_output};
 use crate::files::{Disk, create_temporary, describe, encode_png};
 
-/// File extensions for a video.
-const VIDEO_EXTENSIONS: &[&str] = &["mp4", "webm"];
+/// File extensions for what ffmpeg encodes.
+const ENCODED_EXTENSIONS: &[&str] = &["mp4", "webm", "gif"];
 
 /// The pictures of a sequence, all of one size.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ pub(super) struct Format {
     pub size: [u32; 2],
     pub frames_per_sec: u32,
     pub frame_count: u32,
-    /// Whether the background is transparent, which a .webm and PNGs can be.
+    /// Whether the background is transparent, which all but an .mp4 can be.
     pub is_transparent: bool,
 }
 
@@ -31,10 +31,10 @@ pub(super) enum Sequence<'a> {
 }
 
 impl<'a> Sequence<'a> {
-    /// An output with a video's extension becomes a video, every other one a folder, which must be new or empty.
+    /// An output with the extension of a video or GIF becomes one, every other one a folder, which must be new or empty.
     pub fn create(out: &'a Path, format: Format, disk: &Disk) -> Outcome<Self> {
         if out.extension().is_some() && !out.is_dir() {
-            check_output(out, VIDEO_EXTENSIONS, disk)?;
+            check_output(out, ENCODED_EXTENSIONS, disk)?;
             return Encoder::start(out, format).map(Self::Video);
         }
         let failed = |problem| Failure::new(describe(&problem)).in_file(out.display());
@@ -71,6 +71,56 @@ impl<'a> Sequence<'a> {
     }
 }
 
+/// What ffmpeg writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Container {
+    Mp4,
+    WebM,
+    Gif,
+}
+
+/// Frames per second: players slow down GIFs whose frames are shorter than 2 hundredths of a second.
+const MAX_GIF_RATE: u32 = 50;
+
+impl Container {
+    /// By the file extension, one of [`ENCODED_EXTENSIONS`].
+    fn of(out: &Path) -> Self {
+        let is = |expected: &str| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected));
+        if is("mp4") {
+            Self::Mp4
+        } else if is("gif") {
+            Self::Gif
+        } else {
+            Self::WebM
+        }
+    }
+
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Mp4 => "mp4",
+            Self::WebM => "webm",
+            Self::Gif => "gif",
+        }
+    }
+
+    /// Arguments for how the frames are encoded.
+    fn arguments(self, is_transparent: bool) -> Vec<&'static str> {
+        // Players take standard definition for BT.601 and everything else for BT.709, unless the file says which it is.
+        let colors = "-vf scale=out_color_matrix=bt709 -colorspace bt709 -color_primaries bt709 -color_trc bt709";
+        let codec = match (self, is_transparent) {
+            (Self::Mp4, _) => "-c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart",
+            (Self::WebM, true) => "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuva420p",
+            (Self::WebM, false) => "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuv420p",
+            // A palette for each frame, dithered with a pattern that stays where it is.
+            (Self::Gif, _) => {
+                "-vf split[a][b];[a]palettegen=stats_mode=single[palette];[b][palette]paletteuse=new=1:dither=bayer:bayer_scale=2"
+            }
+        };
+        let colors = if self == Self::Gif { "" } else { colors };
+        colors.split_whitespace().chain(codec.split_whitespace()).collect()
+    }
+}
+
 /// A running ffmpeg. It writes to a temporary file, since an .mp4 is completed at its beginning.
 pub(super) struct Encoder<'a> {
     out: &'a Path,
@@ -84,45 +134,31 @@ pub(super) struct Encoder<'a> {
 impl<'a> Encoder<'a> {
     fn start(out: &'a Path, format: Format) -> Outcome<Self> {
         let Format { size: [width, height], frames_per_sec, is_transparent, .. } = format;
-        let is_mp4 = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mp4"));
-        if width % 2 != 0 || height % 2 != 0 {
-            // Both store colours at half the resolution.
+        let container = Container::of(out);
+        if container != Container::Gif && (width % 2 != 0 || height % 2 != 0) {
+            // Videos store colours at half the resolution.
             return Err(
                 Failure::expected("an even width and height for a video", format!("{width}x{height}")).at("--size")
             );
         }
-        if is_mp4 && is_transparent {
+        if container == Container::Gif && frames_per_sec > MAX_GIF_RATE {
+            let failure = Failure::expected(format!("at most {MAX_GIF_RATE} for a .gif"), frames_per_sec.to_string());
+            return Err(failure.at("--frames"));
+        }
+        if container == Container::Mp4 && is_transparent {
             let failure = Failure::new("an .mp4 can't be transparent");
             return Err(failure
-                .with_hint("choose .webm, a folder of PNGs, or another background")
+                .with_hint("choose .webm, .gif, a folder of PNGs, or another background")
                 .in_file(out.display()));
         }
-        let extension = if is_mp4 { "mp4" } else { "webm" };
-        let temporary = TemporaryFile::new(&format!("video.{extension}"))?;
+        let temporary = TemporaryFile::new(&format!("frames.{}", container.extension()))?;
         let size = format!("{width}x{height}");
         let rate = frames_per_sec.to_string();
-        let codec: &[&str] = match (is_mp4, is_transparent) {
-            (true, _) => &["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
-            (false, true) => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-pix_fmt", "yuva420p"],
-            (false, false) => &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-pix_fmt", "yuv420p"],
-        };
         let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s:v", &size, "-r", &rate, "-i", "-"];
-        // Players take standard definition for BT.601 and everything else for BT.709, unless the file says which it is.
-        let colors = [
-            "-vf",
-            "scale=out_color_matrix=bt709",
-            "-colorspace",
-            "bt709",
-            "-color_primaries",
-            "bt709",
-            "-color_trc",
-            "bt709",
-        ];
         let started = Command::new("ffmpeg")
             .args(["-hide_banner", "-loglevel", "error"])
             .args(input)
-            .args(colors)
-            .args(codec)
+            .args(container.arguments(is_transparent))
             .arg(&temporary.path)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
@@ -162,7 +198,7 @@ impl<'a> Encoder<'a> {
         let said = self.said.join().unwrap_or_default();
         match (status, fs::read(&self.temporary.path)) {
             (Ok(status), Ok(video)) if status.success() && !video.is_empty() => {
-                write_output(self.out, &video, VIDEO_EXTENSIONS, disk)
+                write_output(self.out, &video, ENCODED_EXTENSIONS, disk)
             }
             _ => Err(Failure::new(format!("ffmpeg couldn't encode the video: {said}")).in_file(self.out.display())),
         }

@@ -29,7 +29,7 @@ use crate::state::{ViewerState, active_clip, clip_secs};
 
 pub use gestures::{begin_gestures, end_gestures};
 pub use keys::{KEY_TABLE, KeyHelp};
-pub use output::{Output, Saved, UiAction, VideoSettings};
+pub use output::{Output, RecordingFormat, Saved, UiAction, VideoSettings};
 pub use tabs::Tab;
 pub use viewport::awaited::title_and_hint;
 pub use viewport::help::Help;

@@ -40,7 +40,7 @@ pub enum UiAction {
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
-    /// Record one loop of the clip, as a video or as images.
+    /// Record one loop of the clip.
     Record(VideoSettings),
     /// Discard the recording.
     CancelRecording,
@@ -85,6 +85,28 @@ pub struct VideoSettings {
     pub frames_per_sec: u32,
     /// Leaves out the background of the view.
     pub transparent: bool,
-    /// Saves the frames as images in an archive instead of a video.
-    pub as_images: bool,
+    /// What the frames become.
+    pub format: RecordingFormat,
+}
+
+/// What the frames of a recording become.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordingFormat {
+    /// MP4 or WebM.
+    Video,
+    /// An animated GIF.
+    Gif,
+    /// An archive of PNGs.
+    Images,
+}
+
+impl RecordingFormat {
+    /// Its key in the calls of the page's script.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Video => "video",
+            Self::Gif => "gif",
+            Self::Images => "images",
+        }
+    }
 }

@@ -295,9 +295,9 @@ impl Host for PageHost {
     fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {
         let (shell, inbox) = (self.shell.clone(), inbox.clone());
         wasm_bindgen_futures::spawn_local(async move {
-            let Video { name, size: [width, height], frames_per_sec, frame_count, transparent, as_images } = video;
+            let Video { name, size: [width, height], frames_per_sec, frame_count, transparent, format } = video;
             let recorded =
-                shell.record(&name, width, height, frames_per_sec, frame_count, transparent, as_images).await;
+                shell.record(&name, width, height, frames_per_sec, frame_count, transparent, format.key()).await;
             let recorded = recorded.map(|name| name.as_string()).map_err(|error| text_of(&error));
             inbox.send(Message::Recorded(recorded));
         });

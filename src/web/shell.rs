@@ -26,7 +26,7 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);
 
-    /// Records a video from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its file name, or
+    /// Records a video, GIF or images from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its file name, or
     /// to nothing if it was cancelled.
     #[wasm_bindgen(method, catch)]
     pub async fn record(
@@ -37,7 +37,7 @@ extern "C" {
         frames_per_sec: u32,
         frame_count: u32,
         transparent: bool,
-        as_images: bool,
+        format: &str,
     ) -> Result<JsValue, JsValue>;
 
     /// Ends the recording without saving it.

@@ -54,6 +54,9 @@ fn a_recording_that_fails_or_is_cancelled_says_so() {
     desk.scroll_and_press(text::RECORD_IMAGES);
     desk.send(Message::Recorded(Err("the disk is full".to_owned())));
     assert!(desk.problem().expect("an error").ends_with("Couldn't record the images: the disk is full"));
+    desk.scroll_and_press(text::RECORD_GIF);
+    desk.send(Message::Recorded(Err("there is no memory left".to_owned())));
+    assert!(desk.problem().expect("an error").ends_with("Couldn't record the GIF: there is no memory left"));
     record(&mut desk, "720p");
     desk.send(Message::Recorded(Ok(None)));
     assert!(desk.shows("Recording cancelled."));

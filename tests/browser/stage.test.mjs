@@ -179,6 +179,53 @@ for (const renderer of BACK_ENDS)
       assert.ok(new Set(pictures.map(({ sum }) => sum)).size > 6, "it moves");
     });
 
+    /**
+     * Decodes a GIF in the page.
+     * @param {import("./browser.mjs").TestPage} page
+     * @param {Buffer} file
+     */
+    const decodedGif = (page, file) =>
+      page.evaluate(async (base64) => {
+        const decoder = new ImageDecoder({ type: "image/gif", data: await (await fetch(`data:image/gif;base64,${base64}`)).arrayBuffer() });
+        await Promise.all([decoder.completed, decoder.tracks.ready]);
+        const track = decoder.tracks.selectedTrack;
+        const frames = [];
+        for (let frameIndex = 0; frameIndex < (track?.frameCount ?? 0); frameIndex++) {
+          const { image } = await decoder.decode({ frameIndex });
+          const { displayWidth: width, displayHeight: height, duration } = image;
+          const context = new OffscreenCanvas(width, height).getContext("2d");
+          if (context === null) throw new Error("no 2D context");
+          context.drawImage(image, 0, 0);
+          const { data } = context.getImageData(0, 0, width, height);
+          const alphas = data.filter((_, at) => at % 4 === 3);
+          const colors = new Set(new Uint32Array(data.buffer)).size;
+          frames.push({ width, height, millis: (duration ?? 0) / 1000, colors, shown: alphas.filter((alpha) => alpha === 255).length, hidden: alphas.filter((alpha) => alpha === 0).length, text: data.join() });
+          image.close();
+        }
+        return { frames, playsForever: track?.repetitionCount === Infinity };
+      }, file.toString("base64"));
+
+    for (const isTransparent of [false, true])
+      onPage(`a GIF of one loop has every frame${isTransparent ? ", without a background" : ""}`, async (page) => {
+        await apply(page, { range: "0.1,0.5" });
+        await openCameraTab(page);
+        await chooseSize(page, 320, 180);
+        if (isTransparent) await leaveOutBackground(page);
+        const { name, bytes } = await savedBy(page, "Record one loop as a GIF");
+        assert.equal(name, "Soldier-walk.gif");
+        const { frames, playsForever } = await decodedGif(page, bytes);
+        assert.ok(playsForever);
+        // 30 frames per second, in hundredths of a second.
+        assert.deepEqual(frames.map(({ millis }) => millis), [30, 40, 30, 30, 40, 30, 30, 40, 30, 30, 40, 30]);
+        assert.equal(new Set(frames.map(({ text }) => text)).size, 12, "it moves");
+        for (const { width, height, colors, shown, hidden } of frames) {
+          assert.deepEqual([width, height, shown + hidden], [320, 180, 320 * 180]);
+          assert.ok(colors > 128 && colors <= 256, `${colors} colours`);
+          assert.ok(isTransparent ? hidden > shown && shown > 2000 : hidden === 0, `${shown} pixels shown`);
+        }
+        assert.deepEqual(page.troubles, []);
+      });
+
     /** @type {{ name: string, extension: string, isTransparent?: boolean, before?: () => void }[]} */
     const videos = [
       { name: "a video of one loop has every frame", extension: "mp4" },

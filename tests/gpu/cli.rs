@@ -178,7 +178,7 @@ fn the_frames_of_a_loop_become_a_video() {
         return;
     }
     let folder = Folder::new("video");
-    for name in ["walk.mp4", "walk.webm"] {
+    for name in ["walk.mp4", "walk.webm", "walk.gif"] {
         let out = folder.path(name);
         let output = render(&[&WALKING[..], &["--out", &out]].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -187,11 +187,11 @@ fn the_frames_of_a_loop_become_a_video() {
         assert_eq!(decoded.stdout.len(), WALKING_FRAMES * 8 * 8 * 3, "{name}");
     }
     let refused = |arguments: &[&str]| refusal(&render(&[&WALKING[..], arguments].concat()));
-    let gif = folder.path("walk.gif");
-    let found = refused(&["--out", &gif]);
-    assert_eq!(found, format!("error: {gif}: file extension: expected .mp4 or .webm, found .gif"));
+    let avi = folder.path("walk.avi");
+    let found = refused(&["--out", &avi]);
+    assert_eq!(found, format!("error: {avi}: file extension: expected .mp4 or .webm or .gif, found .avi"));
     let found = refused(&["--out", "-"]);
-    assert_eq!(found, "error: --out: expected a folder, or a file ending in .mp4 or .webm, found -");
+    assert_eq!(found, "error: --out: expected a folder, or a file ending in .mp4, .webm or .gif, found -");
     let clear = folder.path("clear.mp4");
     let found = refused(&["--out", &clear, "--view", "background=transparent"]);
     assert!(found.starts_with(&format!("error: {clear}: an .mp4 can't be transparent; ")), "{found}");

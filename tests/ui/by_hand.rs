@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
-use gaitway::ui::{RecordingProgress, Saved, Sheet, Tab, UiAction, VideoSettings, text};
+use gaitway::ui::{RecordingFormat, RecordingProgress, Saved, Sheet, Tab, UiAction, VideoSettings, text};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, painted, press, press_key, sample_bench};
 use crate::motion::reach;
@@ -190,17 +190,19 @@ fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::Camera.label());
     let rate = text::labelled(text::FRAME_RATE, &text::frames_per_sec(60));
-    for label in
-        [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD, text::RECORD_IMAGES]
-    {
+    let settings = [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate];
+    for label in settings.into_iter().chain([text::RECORD, text::RECORD_GIF, text::RECORD_IMAGES]) {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
         press(&mut harness, label);
     }
     let picture = Saved::Picture { size: [1080, 1080], transparent: true };
-    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true, as_images: false };
-    let images = VideoSettings { as_images: true, ..video };
-    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video), UiAction::Record(images)]);
+    let format = RecordingFormat::Video;
+    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true, format };
+    let gif = VideoSettings { format: RecordingFormat::Gif, ..video };
+    let images = VideoSettings { format: RecordingFormat::Images, ..video };
+    let recordings = [video, gif, images].map(UiAction::Record);
+    assert_eq!(harness.state().actions, [&[UiAction::Save(picture)], &recordings[..]].concat());
 }
 
 #[test]

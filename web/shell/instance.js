@@ -215,7 +215,7 @@ function callsFor(bindings) {
     gallery: showGallery,
     setModal: (isOpen) => isCurrent() && setInert(isOpen),
     save: download,
-    record: (name, width, height, framesPerSec, frameCount, isTransparent, asImages) => record(name, { width, height, framesPerSec, frameCount, isTransparent, asImages, frame: bindings.video_frame }),
+    record: (name, width, height, framesPerSec, frameCount, isTransparent, format) => record(name, { width, height, framesPerSec, frameCount, isTransparent, format, frame: bindings.video_frame }),
     cancelRecording,
     validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),
     share,

@@ -1,4 +1,4 @@
-// Files for the user to keep: downloads, and videos and sequences of images, which a downloaded part encodes.
+// Files for the user to keep: downloads, and recordings, which a downloaded part encodes.
 import { messageOf } from "./dom.js";
 import { keepOffline } from "./offline.js";
 import { parts } from "./parts.js";
@@ -12,7 +12,7 @@ let recording = new AbortController();
 export const cancelRecording = () => recording.abort();
 
 /**
- * Records a video, or a sequence of images, and downloads it. Resolves to its file name; to nothing if cancelled.
+ * Records a video, a GIF or images, and downloads the file. Resolves to its file name; to nothing if cancelled.
  * @param {string} name
  * @param {Omit<import("../video.js").Video, "signal">} video
  */

@@ -8,7 +8,7 @@ use crate::state::{
     ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
 use crate::ui::controls::{self, SliderSettings, capitals};
-use crate::ui::{Output, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
+use crate::ui::{Output, RecordingFormat, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
 
 /// Settings of saved images and videos.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,15 +32,20 @@ impl PictureSettings {
         Saved::Picture { size: self.size, transparent: self.transparent }
     }
 
-    /// Returns the label, the tooltip and the action of the two buttons that record with these settings: a video, or images.
-    pub fn recordings(&self) -> [(&'static str, &'static str, UiAction); 2] {
+    /// Returns the label, the tooltip and the action of the buttons that record with these settings.
+    pub fn recordings(&self) -> [(&'static str, &'static str, UiAction); 3] {
         let Self { size, transparent, frames_per_sec } = *self;
         [
-            (false, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
-            (true, text::RECORD_IMAGES, "Renders the played range once, frame by frame, as PNGs in a .zip."),
+            (RecordingFormat::Video, text::RECORD, "Renders the played range once, frame by frame, as MP4 or WebM."),
+            (RecordingFormat::Gif, text::RECORD_GIF, text::ABOUT_GIF),
+            (
+                RecordingFormat::Images,
+                text::RECORD_IMAGES,
+                "Renders the played range once, frame by frame, as PNGs in a .zip.",
+            ),
         ]
-        .map(|(as_images, label, tooltip)| {
-            let settings = VideoSettings { size, frames_per_sec, transparent, as_images };
+        .map(|(format, label, tooltip)| {
+            let settings = VideoSettings { size, frames_per_sec, transparent, format };
             (label, tooltip, UiAction::Record(settings))
         })
     }

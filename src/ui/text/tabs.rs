@@ -332,6 +332,11 @@ pub const SAVE_IMAGE: &str = "Save image (PNG)";
 pub const FRAME_RATE: &str = "Frame rate";
 /// Button that records a video.
 pub const RECORD: &str = "Record one loop";
+/// Button that records an animated GIF.
+pub const RECORD_GIF: &str = "Record one loop as a GIF";
+/// Tooltip of the button.
+pub const ABOUT_GIF: &str =
+    "Renders the played range once, frame by frame, as an animated GIF, reduced so that it stays small enough to send.";
 /// Button that saves the frames of such a video as images.
 pub const RECORD_IMAGES: &str = "Save one loop as images";
 /// Title of the progress of a video, or of images, being recorded.
