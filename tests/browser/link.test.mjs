@@ -9,7 +9,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -268,7 +268,7 @@ for (const renderer of BACK_ENDS)
 
     onPage("shares what it still lacks along with the view", () => "model=sample:pilot&motion=file:walk.bvh&clip=run&fov=20&play=0&camera=10,5,30,9,1,9", async (page) => {
       await page.keyboard.press("Escape");
-      await page.locator("#mirror").getByText(/^This link needs walk\.bvh\. Open it to see the shared view\.$/).waitFor({ state: "attached" });
+      await page.locator("#mirror").getByText(/^This link needs walk\.bvh\. Open a file with that name to see the shared view\.$/).waitFor({ state: "attached" });
       await page.keyboard.press("Control+o");
       assert.match(await page.locator("#open-what").innerText(), /^This link needs walk\.bvh\./);
       await page.keyboard.press("Escape");
@@ -351,7 +351,7 @@ for (const renderer of BACK_ENDS)
     /** Embeds a page with the fox in another one. `call` is that one's, and `withheld` checks that it learns nothing. */
     async function embedded() {
       fs.writeFileSync(path.join(folder, "index.html"), AROUND);
-      const context = await site.browser.newContext({ viewport: { width: 700, height: 500 } });
+      const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, deviceScaleFactor: PIXEL_RATIO });
       const page = await context.newPage();
       page.setDefaultTimeout(60_000);
       const inside = `${site.address}?renderer=${renderer}#${fragment([["model", site.data(FOX)], ["embed", 1], ["play", 0]])}`;
@@ -418,6 +418,35 @@ for (const renderer of BACK_ENDS)
         assert.equal((await call("pose")).result.meshes[0].positions.length, 3 * FOX_VERTICES);
       } finally {
         await context.close();
+      }
+    });
+
+    test("leaves the keyboard to the page around it until the user comes in", async () => {
+      /** @param {string} link */
+      const inside = (link) => `${site.address.replace("127.0.0.1", "localhost")}?renderer=${renderer}#${fragment([["model", link], ["embed", 1], ["play", 0]])}`;
+      for (const { model, dialog } of [{ model: "sample:walker" }, { model: "file:Mine.glb", dialog: "#bring" }, { model: `${CLOSED}/a.glb`, dialog: "#missing" }]) {
+        const html = `<!doctype html><title>Around</title><input><div style="height: 900px"></div><iframe width="640" height="440" src="${inside(model).replaceAll("&", "&amp;")}"></iframe>`;
+        fs.writeFileSync(path.join(folder, "writing.html"), html);
+        const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, deviceScaleFactor: PIXEL_RATIO });
+        try {
+          const page = await context.newPage();
+          await page.goto(`${servers.own.origin}/writing.html`);
+          await page.locator("input").focus();
+          const frame = page.frames()[1];
+          await until(frame, () => window.gaitway !== undefined);
+          await frame.evaluate(async () => void (await window.gaitway.ready));
+          if (dialog !== undefined) await frame.locator(dialog).waitFor({ state: "visible" });
+          await page.keyboard.type("wgt");
+          assert.deepEqual(await page.evaluate(() => [document.activeElement?.tagName, document.querySelector("input")?.value, scrollY]), ["INPUT", "wgt", 0], model);
+          if (dialog === undefined) continue;
+          assert.equal(await frame.locator(`${dialog}:modal`).count(), 0);
+          await frame.locator(`${dialog} h1`).click();
+          await frame.locator(`${dialog}:modal`).waitFor();
+          await frame.locator(`${dialog} button[type=submit]`).first().click();
+          await frame.locator(dialog).waitFor({ state: "hidden" });
+        } finally {
+          await context.close();
+        }
       }
     });
 

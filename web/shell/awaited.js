@@ -1,6 +1,6 @@
 // Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a
 // model that couldn't be loaded, without asking for it.
-import { button, byId, dialog, listOf, showList } from "./dom.js";
+import { button, byId, dialog, listOf, showDialog, showList } from "./dom.js";
 import { companionWords, fileName } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
@@ -53,7 +53,8 @@ export function passOver() {
  */
 export function needOf({ missing, isOwn }) {
   const names = missing.map(({ name }) => fileName(name));
-  return `This link needs ${listOf(names)}. Open ${names.length === 1 ? "it" : "them"} to see the ${isOwn ? "view as it was" : "shared view"}.`;
+  const files = names.length === 1 ? "a file with that name" : "files with those names";
+  return `This link needs ${listOf(names)}. Open ${files} to see the ${isOwn ? "view as it was" : "shared view"}.`;
 }
 
 /**
@@ -110,6 +111,5 @@ export function showAwaited(others) {
   byId("bring-others").textContent = others === undefined ? "" : `${others} couldn't be opened.`;
   byId("bring-again").hidden = !current.isOwn;
   byId("bring-sender").hidden = current.isOwn;
-  dialog("bring").showModal();
-  button("bring-choose").focus();
+  showDialog("bring", button("bring-choose"));
 }

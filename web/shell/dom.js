@@ -55,7 +55,38 @@ export function listOf(names) {
 
 export const canvas = () => byId("stage").querySelector("canvas");
 
-export const focusCanvas = () => canvas()?.focus({ preventScroll: true });
+/**
+ * Whether another page embeds this one and has the keyboard. Until the user comes in, nothing here may take the focus: it would
+ * take what they type there, and scroll that page.
+ */
+export const isGuest = () => parent !== window && !document.hasFocus();
+
+/**
+ * Gives an element the focus, unless this page is a guest.
+ * @param {HTMLElement | null | undefined} element
+ */
+export function takeFocus(element) {
+  if (!isGuest()) element?.focus({ preventScroll: true });
+}
+
+export const focusCanvas = () => takeFocus(canvas());
+
+/**
+ * Opens a dialog that the user didn't ask for. Modal ones take the focus, so a guest's becomes modal once the user comes in.
+ * @param {string} id
+ * @param {HTMLElement} first What has the focus then.
+ */
+export function showDialog(id, first) {
+  const shown = dialog(id);
+  if (isGuest()) {
+    shown.open = true;
+    addEventListener("focus", () => shown.open && showDialog(id, first), { once: true });
+    return;
+  }
+  shown.open = false;
+  shown.showModal();
+  takeFocus(first);
+}
 
 /**
  * Waits for animation frames. A hidden page draws none, so each is waited for only briefly.

@@ -2,7 +2,7 @@
 import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
-import { button, byId, dialog, messageOf, showList } from "./dom.js";
+import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
 import { fileName, heldItems, heldMotionsAndLight, localFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
@@ -150,7 +150,7 @@ function showProblems(problems, { title, rest, without, again }) {
     dialog("missing").close();
     again();
   };
-  if (panel() === null && !dialog("missing").open) dialog("missing").showModal();
+  if (panel() === null && !dialog("missing").open) showDialog("missing", button("missing-again"));
 }
 
 addEventListener("popstate", ({ state }) => {

@@ -4,7 +4,7 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
-import { button, byId, focusCanvas, frames, isDialogOpen, messageOf, whenIdle } from "./dom.js";
+import { button, byId, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing, showMissingImages } from "./following.js";
@@ -123,6 +123,8 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   const canvas = newCanvas();
   mirror = new Mirror(bindings);
   byId("stage").replaceChildren(canvas, mirror.root);
+  // egui takes the focus when it starts, which nothing inert does.
+  byId("stage").inert = isGuest();
   [backend, current] = [renderer, bindings];
   canvas.addEventListener("webglcontextlost", () => current === bindings && stopped("The browser took the graphics context away."));
   /** @type {Promise<never>} */
@@ -250,7 +252,7 @@ function stopped(message) {
   session.app = current = null;
   showPanel("stopped");
   for (const dialog of document.querySelectorAll("dialog")) dialog.close();
-  button("stopped-again").focus();
+  takeFocus(button("stopped-again"));
   // Not from inside the instance's own call.
   setTimeout(() => {
     end(ended);
