@@ -12,7 +12,7 @@ use crate::retarget::{JointMapFile, MapError};
 /// What the user opens the files for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Role {
-    /// Files with meshes are models, others are motions.
+    /// Files with meshes are models, and so are those without clips. Others are motions.
     #[default]
     Any,
     /// A model is required; a motion by itself is shown as one.
@@ -131,8 +131,12 @@ pub(super) fn sort_noticing_images(
     for name in names {
         let on_images = &mut |images: &[Image]| on_images(&name, images);
         let asset = load_noticing_images(files, &name, &LoadOptions::default(), on_images)?;
-        let has_mesh = !asset.instances.is_empty();
-        if has_mesh && role != Role::Motion {
+        let is_model = match role {
+            Role::Any => !asset.instances.is_empty() || asset.clips.is_empty(),
+            Role::Model => !asset.instances.is_empty(),
+            Role::Motion => false,
+        };
+        if is_model {
             sorted.models.push((name, asset))
         } else {
             sorted.motions.push((name, asset))

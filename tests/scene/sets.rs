@@ -61,10 +61,19 @@ fn check(role: Role, files: &[(&str, &str)], expected: (Option<&str>, &[&str], b
 #[test]
 fn a_file_with_a_mesh_is_the_model() {
     let files = [("a.bvh", BVH), ("m.gltf", MESH), ("map.json", MAP), ("s.gltf", SKELETON), ("package.json", "{}")];
-    check(Role::Any, &files, (Some("m.gltf"), &["a.bvh", "s.gltf"], true));
+    check(Role::Any, &files, (Some("m.gltf"), &["a.bvh"], true));
     check(Role::Model, &files, (Some("m.gltf"), &["a.bvh", "s.gltf"], true));
     check(Role::Motion, &files, (None, &["a.bvh", "m.gltf", "s.gltf"], true));
     check(Role::Any, &[("map.json", MAP)], (None, &[], true));
+}
+
+#[test]
+fn a_skeleton_without_mesh_and_clips_is_a_model_unless_a_motion_is_wanted() {
+    check(Role::Any, &[("s.gltf", SKELETON)], (Some("s.gltf"), &[], false));
+    check(Role::Model, &[("s.gltf", SKELETON)], (Some("s.gltf"), &[], false));
+    check(Role::Motion, &[("s.gltf", SKELETON)], (None, &["s.gltf"], false));
+    let sorted = sort(&set(&[("m.gltf", MESH), ("s.gltf", SKELETON)]), Role::Any).expect("two models");
+    assert_eq!((sorted.models.len(), sorted.motions.len()), (2, 0));
 }
 
 #[test]
