@@ -102,6 +102,7 @@ impl Viewport {
         let state = ViewerState { display: Display { background, ..state.display }, ..state.clone() };
         let mut frame = Frame::default();
         evaluate(library, &state, aspect(size), &mut frame);
+        frame.remove_axes();
         self.needs_redraw = true;
         self.scene.draw_off_screen(&frame, size)
     }

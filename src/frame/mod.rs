@@ -56,6 +56,11 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Removes the axes of the selected joint, which belong to the interface and not into a picture.
+    pub fn remove_axes(&mut self) {
+        self.lines.retain(|line| !line.on_top);
+    }
+
     /// Local pose of the active model: the clip, blended, with everything set manually. Empty without a model.
     pub fn pose(&self) -> &Pose {
         &self.scratch.sampler.pose

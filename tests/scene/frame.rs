@@ -238,18 +238,13 @@ fn weights_take_the_place_of_a_channel_until_one_is_chosen() {
 fn overlays_are_drawn_if_enabled() {
     assert!(frame_of(&walker(), &ViewerState::default()).lines.is_empty());
     assert_eq!(frame_of(&walker(), &showing(|show| show.bounds = true)).lines.len(), 12);
-    assert_eq!(
-        frame_of(
-            &walker(),
-            &ViewerState {
-                selection: Selection { joint: Some(HEAD), ..Selection::default() },
-                ..ViewerState::default()
-            }
-        )
-        .lines
-        .len(),
-        3
-    );
+    let selection = Selection { joint: Some(HEAD), ..Selection::default() };
+    let mut state = showing(|show| show.bounds = true);
+    state.selection = selection;
+    let mut frame = frame_of(&walker(), &state);
+    assert_eq!(frame.lines.len(), 12 + 3);
+    frame.remove_axes();
+    assert_eq!(frame.lines.len(), 12, "the bounds stay");
     assert_eq!(frame_of(&walker(), &showing(|show| show.grid = false)).look.grid, None);
 }
 
