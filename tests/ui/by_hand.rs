@@ -3,6 +3,8 @@
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::frame::{pick_joint, pick_vertex};
+use gaitway::mesh::DeformedVertices;
 use gaitway::retarget::Verdict;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingFormat, RecordingProgress, Saved, Sheet, Tab, UiAction, VideoSettings, text};
@@ -48,6 +50,41 @@ fn place_of_joint(bench: &Bench) -> Pos2 {
     let at = view.projection_from_view * view.view_from_world * world.extend(1.0);
     let (x, y) = (0.5 + 0.5 * at.x / at.w, 0.5 - 0.5 * at.y / at.w);
     bench.viewport.min + vec2(x * bench.viewport.width(), y * bench.viewport.height())
+}
+
+#[test]
+fn a_click_on_the_surface_selects_the_joint_that_moves_it_most() {
+    let mut harness = sample_bench(WIDE);
+    let (place, joint) = {
+        let bench = harness.state();
+        let (frame, model) = (&bench.frame, bench.library().active().expect("a model"));
+        let mut scratch = DeformedVertices::default();
+        let mut far_from_bones = (0..10_000).filter_map(|cell| {
+            let part = 0.01 * vec2((cell % 100) as f32, (cell / 100) as f32);
+            let point = glam::vec2(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y);
+            let choice = pick_vertex(model, frame, &frame.characters[0], point, &mut scratch)?;
+            pick_joint(frame, point, 0.06)
+                .is_none()
+                .then_some((bench.viewport.min + part * bench.viewport.size(), choice))
+        });
+        let (place, choice) = far_from_bones.next().expect("the chest is wide");
+        let instance = &model.asset.instances[choice.instance];
+        let influences = &model.asset.meshes[instance.mesh].primitives[choice.primitive].influences;
+        let at = choice.vertex * influences.stride..(choice.vertex + 1) * influences.stride;
+        let strongest = at.max_by(|&a, &b| influences.weights[a].total_cmp(&influences.weights[b])).expect("a weight");
+        let skin = &model.asset.skins[instance.skin.expect("a skin")];
+        let joint = skin.joints()[influences.joints[strongest] as usize];
+        (place, model.asset.skeleton.source_index(joint))
+    };
+    assert_eq!(drag(&mut harness, place, place, PointerButton::Primary), [Command::SelectJoint(Some(joint))]);
+    let mut hidden = sample_bench(WIDE);
+    hidden.state_mut().change(|state| {
+        state.selection.joint = Some(SHIN);
+        state.display.show.mesh = false;
+    });
+    hidden.run();
+    let commands = drag(&mut hidden, place, place, PointerButton::Primary);
+    assert_eq!(commands, [Command::SelectJoint(None)], "a hidden surface isn't hit");
 }
 
 #[test]

@@ -90,6 +90,18 @@ pub fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiSta
     found.is_some()
 }
 
+/// Returns the joint, by its file's number, that moves the surface under a point most.
+pub fn joint_of_surface(shown: &Shown<'_>, rect: Rect, at: egui::Pos2) -> Option<usize> {
+    if !shown.state.display.show.mesh {
+        return None;
+    }
+    let choice = vertex_at(shown, rect, at, &mut DeformedVertices::default())?;
+    let model = shown.library.active()?;
+    let mut formula = VertexFormula::default();
+    vertex_formula(model, shown.frame.characters.first()?, choice, &mut formula);
+    Some(model.asset.skeleton.source_index(formula.terms.first()?.joint))
+}
+
 fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut DeformedVertices) -> Option<VertexChoice> {
     let model = shown.library.active()?;
     let panes = pane_rects(shown, rect);

@@ -6,14 +6,15 @@ use super::Canvas;
 use super::panes::{pane_at, to_ndc};
 use crate::frame::{PickedJoint, pick_joint};
 use crate::state::{Command, source_on_stage};
+use crate::ui::tabs::formula;
 use crate::ui::{Output, Shown, UiState, motion};
 
 /// How close to a bone a click selects its joint.
 const PICK_POINTS: f32 = 10.0;
 
-/// Hovering labels a joint, a click selects it, and a click beside all joints closes an open sheet, otherwise deselects. While
-/// the source is on the stage, the hovered joint is labelled on both skeletons, and a click on a source joint selects the joint
-/// mapped to it.
+/// Hovering labels a joint. A click selects it, or the joint that moves the surface there, and a click beside the model closes an
+/// open sheet, otherwise deselects. While the source is on the stage, the hovered joint is labelled on both skeletons, and a click
+/// on a source joint selects the joint mapped to it.
 pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
     if motion::clicking(canvas, local, out) {
         return;
@@ -33,7 +34,10 @@ pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) {
     local.viewport.hovered_joint = local.viewport.hovered.and_then(of_model);
     // A click beside an open menu only closes it.
     if response.clicked() && !local.had_popup {
-        let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
+        let clicked = response.interact_pointer_pos().and_then(|position| match at(position) {
+            Some(picked) => of_model(picked),
+            None => formula::joint_of_surface(shown, response.rect, position),
+        });
         if clicked.is_none() && local.layout.sheet.take().is_some() {
             return;
         }
