@@ -385,6 +385,8 @@ fn the_validator_reports_beside_the_warnings_and_leads_to_nodes() {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label("/nodes/0: hint").is_none(), "hints are collapsed");
+    let dot = harness.get_by_label(Tab::Info.label()).accesskit_node().description();
+    assert_eq!(dot.as_deref(), Some(&*text::labelled(text::KHRONOS_VALIDATOR, summary)));
     let edge = |label: &str| harness.get_by_label(label).rect().right();
     assert!(edge(&format!("Error: {long}")) <= edge(text::VALIDATE_AGAIN), "wrapped");
     press(&mut harness, "Hint: BAD");

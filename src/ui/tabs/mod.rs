@@ -17,7 +17,7 @@ mod view_options;
 
 use egui::Ui;
 
-use super::{Output, Shown, UiState, controls, motion, text};
+use super::{HostState, Output, Shown, UiState, Validation, controls, motion, text};
 use crate::library::Library;
 
 pub use formula::VertexProbe;
@@ -60,12 +60,26 @@ pub(super) fn has_motion_tab(library: &Library) -> bool {
     !library.motions().is_empty() || library.active().is_some_and(|model| model.clip_count() > 0)
 }
 
+/// Returns what the dot on the Info tab means: warnings about the file, and errors that the validator found.
+fn problems(shown: &Shown<'_>, host: &HostState) -> Option<String> {
+    let model = shown.library.active()?;
+    let warnings = Some(model.findings().len()).filter(|&count| count > 0).map(text::file_warnings);
+    let errors = match &host.validation {
+        Some((of, Validation::Done(report))) if *of == model.id && report.counts[0] > 0 => {
+            Some(text::labelled(text::KHRONOS_VALIDATOR, &text::validator_summary(report)))
+        }
+        _ => None,
+    };
+    let problems: Vec<String> = [warnings, errors].into_iter().flatten().collect();
+    (!problems.is_empty()).then(|| problems.join("; "))
+}
+
 /// Shows the tab bar and the open tab. The bar of tabs leaves `corner_width` free at its right.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, corner_width: f32, out: &mut Output) {
     let tabs = [Tab::Scene, Tab::Display, Tab::Info, Tab::Camera, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if has_motion_tab(shown.library) { tabs.len() } else { tabs.len() - 1 };
-    let findings = shown.library.active().map_or(0, |model| model.findings().len());
-    let badge = |tab| (tab == Tab::Info && findings > 0).then(|| text::file_warnings(findings));
+    let problems = problems(shown, &local.host);
+    let badge = |tab| if tab == Tab::Info { problems.clone() } else { None };
     ui.scope(|ui| {
         ui.set_max_width(ui.available_width() - corner_width);
         if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {

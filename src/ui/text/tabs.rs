@@ -356,7 +356,7 @@ pub fn frames_done(done: u32, count: u32) -> String {
 /// Section with the file's warnings and the lints.
 pub const WARNINGS: &str = "WARNINGS";
 /// Shown if there are none.
-pub const NO_WARNINGS: &str = "No problems found";
+pub const NO_WARNINGS: &str = "Gaitway's own checks found no problems.";
 
 /// Returns the title of the warnings with one code, such as `loop-open`: “Loop open”.
 pub fn warning_title(code: &str, count: usize) -> String {
