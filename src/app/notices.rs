@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::editor::Event;
-use crate::ui::Toast;
+use crate::ui::{Toast, text};
 
 impl App {
     /// Shows an error, replacing earlier ones. The page's shell has it already and announces it itself.
@@ -32,6 +32,7 @@ impl App {
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
         self.toast_steps = self.editor.undo_steps();
+        self.about_step = None;
         self.has_new_message = true;
     }
 
@@ -51,6 +52,7 @@ impl App {
                 Event::AboutView(text) if self.state().page.embed => self.toast(text),
                 Event::AboutView(text) => {
                     self.panels.messages.about_view = Some(text);
+                    self.about_step = None;
                     self.has_new_message = true;
                 }
                 Event::ViewOpened => {
@@ -70,7 +72,11 @@ impl App {
                     let has_focus = self.context.memory(|memory| memory.focused().is_some());
                     self.panels.on_map_started(has_focus);
                 }
-                Event::Stepped => self.panels.messages.toast = None,
+                Event::Stepped { is_undo } => {
+                    self.panels.messages.toast = None;
+                    self.about_step = Some(text::stepped(is_undo, self.editor.undo_steps()));
+                    self.has_new_message = true;
+                }
             }
         }
     }

@@ -35,6 +35,8 @@ pub struct App {
     pub(super) recording: Option<Recording>,
     /// Undo steps when the toast appeared.
     pub(super) toast_steps: usize,
+    /// What the last step of undo or redo did, for those who don't see it. `None` after a later notice.
+    pub(super) about_step: Option<String>,
     /// A notice or an error was added since the host last heard of a change.
     pub(super) has_new_message: bool,
     /// The last value passed to [`Host::modal_changed`].
@@ -83,6 +85,7 @@ impl App {
             screenshots: Vec::new(),
             recording: None,
             toast_steps: 0,
+            about_step: None,
             has_new_message: false,
             had_modal: false,
             last_motions: Vec::new(),
@@ -114,10 +117,11 @@ impl App {
         self.panels.messages.problem()
     }
 
-    /// The notice that the user sees, the one that goes away if there are two.
+    /// The notice that the user sees, the one that goes away if there are two, or what was undone or redone last.
     pub fn notice(&self) -> Option<&str> {
         let messages = &self.panels.messages;
-        messages.toast.as_ref().map(|toast| &*toast.text).or(messages.about_view.as_deref())
+        let toast = messages.toast.as_ref().map(|toast| &*toast.text);
+        toast.or(self.about_step.as_deref()).or(messages.about_view.as_deref())
     }
 
     /// Opens `contents`, in `view` if given.

@@ -29,5 +29,8 @@ pub enum Event {
     /// The user is about to edit a joint map.
     MapStarted,
     /// A step of the history was undone or redone: notices about other steps no longer apply.
-    Stepped,
+    Stepped {
+        /// It was undone.
+        is_undo: bool,
+    },
 }

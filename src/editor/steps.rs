@@ -52,7 +52,7 @@ impl Editor {
         let before = self.before_step(self.history.would_undo_retargeting(&self.state));
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, "Redo");
+            self.finish_step(before, true);
         }
         done
     }
@@ -62,7 +62,7 @@ impl Editor {
         let before = self.before_step(self.history.would_redo_retargeting(&self.state));
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
-            self.finish_step(before, "Undo");
+            self.finish_step(before, false);
         }
         done
     }
@@ -75,10 +75,10 @@ impl Editor {
         }
     }
 
-    fn finish_step(&mut self, before: BeforeStep, opposite: &str) {
+    fn finish_step(&mut self, before: BeforeStep, is_undo: bool) {
         let BeforeStep { names: before, playing, view } = before;
         (self.needs_redraw, self.is_changed) = (true, true);
-        self.events.push(Event::Stepped);
+        self.events.push(Event::Stepped { is_undo });
         let problems = self.retarget();
         self.report(problems);
         let after = self.loaded_names();
@@ -88,7 +88,7 @@ impl Editor {
         } else {
             self.waiting_clip = None;
         }
-        if let Some(text) = step_notice(&before, &after, opposite) {
+        if let Some(text) = step_notice(&before, &after, if is_undo { "Redo" } else { "Undo" }) {
             self.notify(text);
         }
         self.hold_view(view);

@@ -7,7 +7,7 @@ import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { dist } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
-import { BACK_ENDS, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, colorsOf, control, drop, meanDifference, picture, resize, startSite, state, until, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
@@ -60,7 +60,7 @@ for (const renderer of BACK_ENDS)
     const card = (page, name) => page.locator(`#gallery-scenes a >> nth=${scenes.findIndex((scene) => scene.name === name)}`);
 
     test("fetches the program and the sample once, side by side", async () => {
-      const context = await site.browser.newContext({ viewport: DESKTOP, serviceWorkers: "block" });
+      const context = await site.browser.newContext({ viewport: DESKTOP, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block" });
       const page = watched(await context.newPage());
       const session = await context.newCDPSession(page);
       await session.send("Network.enable");
@@ -144,6 +144,21 @@ for (const renderer of BACK_ENDS)
       assert.equal(await gallery(page).isVisible(), true);
       await page.goBack();
       await whenModel(page, scenes[0].model);
+    });
+
+    onFirstScreen("a card can be dragged onto the viewport, and its address pasted", { viewport: DESKTOP }, async (page) => {
+      const address = await card(page, scenes[1].name).evaluate((card) => (card instanceof HTMLAnchorElement ? card.href : ""));
+      await page.evaluate((address) => {
+        const transfer = new DataTransfer();
+        transfer.setData("text/uri-list", address);
+        const where = { clientX: innerWidth / 2, clientY: innerHeight / 3, bubbles: true, cancelable: true, composed: true };
+        for (const type of ["dragenter", "dragover", "drop"]) document.elementFromPoint(where.clientX, where.clientY)?.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
+      }, address);
+      await whenModel(page, scenes[1].model);
+      await page.keyboard.press("Control+o");
+      await page.locator("#open-url").fill(new URL(`#${linkOf(scenes[2])}`, page.url()).href);
+      await page.locator("#open-url").press("Enter");
+      await whenModel(page, scenes[2].model);
     });
 
     onFirstScreen("on a phone held sideways, the samples are there only when asked for", { viewport: SIDEWAYS }, async (page) => {

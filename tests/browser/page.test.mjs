@@ -278,7 +278,7 @@ for (const renderer of BACK_ENDS) {
     const whenLacking = (page, name) => until(page, (name) => document.querySelector("#problem")?.textContent?.includes(name) === true, name);
     /** @type {(page: import("./browser.mjs").TestPage, name: string) => Promise<void>} */
     const whenWhole = async (page, name) => {
-      await until(page, (name) => document.querySelector("#news")?.textContent?.startsWith(`Opened ${name}: `) && document.querySelector("#problem")?.textContent === "", name);
+      await until(page, (name) => document.querySelector("#news")?.textContent?.startsWith(`Opened ${name}.`) && document.querySelector("#problem")?.textContent === "", name);
       await eventually(async () => (await controls(page, "button", `Close ${name}`).count()) === 1, "it replaces the one without its image");
     };
 

@@ -50,11 +50,11 @@ export function forgetProblem() {
 }
 
 /**
- * Announces the current view and writes it to the address bar. Returns the model's name.
- * @returns {string}
+ * Announces the current view and writes it to the address bar. Returns the model's name and the app's notice.
+ * @returns {{ model: string, notice: string | null }}
  */
 export function summarize() {
-  if (session.app === null) return "";
+  if (session.app === null) return { model: "", notice: null };
   /** @type {{ model: string, clip: string | null, playing: boolean, notice: string | null, problem: string | null }} */
   const { model, clip, playing, notice, problem } = JSON.parse(session.app.summary());
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
@@ -67,7 +67,7 @@ export function summarize() {
   markCard(session.link, session.isLocal);
   document.title = model === "" ? "Gaitway" : `${model} – Gaitway`;
   recordView();
-  return model;
+  return { model, notice };
 }
 
 addEventListener("pagehide", cancelSummary);

@@ -32,14 +32,13 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
   await running();
   // What a link waits for is shown as the link says, in the link's entry of the history.
-  const isAwaited = completable()?.wanted.some((file) => hasFile(wanted, file)) ?? false;
+  const isAwaited = completable()?.wanted.some((file) => fileAmong(wanted, file) !== undefined) ?? false;
   const isInEntry = isAwaited && awaited() !== null;
   if (isInEntry) beginFollowing();
   try {
     const { shown, document } = await load(wanted, role, isPrivate, isByHand && !isAwaited);
     forgetProblem();
     const hint = await completeLink(wanted, shown);
-    // In place of the app's notice, which says less.
     announce(shown, summarize(), document);
     if (isByHand && hint !== undefined) session.app?.notify(hint);
     return document;
@@ -67,6 +66,11 @@ let openedCount = 0;
  */
 export async function openByHand(items, options) {
   if (items.length === 0) return;
+  const link = ownLink(items);
+  if (link !== undefined && options?.as !== "motion") {
+    location.hash = link;
+    return hideGallery();
+  }
   openedCount += 1;
   const number = openedCount;
   try {
@@ -83,12 +87,22 @@ export async function openByHand(items, options) {
 }
 
 /**
+ * Returns the link if the user gives a URL of this page, such as a card of the gallery.
+ * @param {Openable[]} items
+ */
+function ownLink([item]) {
+  if (typeof item !== "string" || !URL.canParse(item)) return undefined;
+  const { origin, pathname, hash } = new URL(item);
+  return origin === location.origin && pathname === location.pathname && hash !== "" ? hash : undefined;
+}
+
+/**
  * Keeps what a link needs besides its model until the model arrives: nothing can be shown of it before. Returns whether that is so.
  * @param {Item[]} items
  */
 async function keptForModel(items) {
   const missing = awaited()?.missing ?? [];
-  const roles = missing.filter((file) => hasFile(items, file)).map(({ role }) => role);
+  const roles = missing.filter((file) => fileAmong(items, file) !== undefined).map(({ role }) => role);
   if (roles.length === 0 || roles.includes("model") || !missing.some(({ role }) => role === "model")) return false;
   keep(items);
   await completeLink(items);
@@ -96,11 +110,20 @@ async function keptForModel(items) {
 }
 
 /**
- * Whether a file of a link is among items, by its bare name.
+ * Returns a file of a link among items, by its bare name, or a copy of it.
  * @param {Item[]} items
  * @param {import("./types.d.ts").LinkedFile} file
  */
-const hasFile = (items, { name }) => items.some((item) => fileName(nameOf(item)) === fileName(name));
+function fileAmong(items, { name }) {
+  const wanted = fileName(name);
+  return items.find((item) => fileName(nameOf(item)) === wanted) ?? items.find((item) => withoutCopy(fileName(nameOf(item))) === withoutCopy(wanted));
+}
+
+/**
+ * Removes what browsers and systems add to the names of copies: “walk (1).bvh”, “walk copy.bvh”, “walk - Copy (2).bvh”.
+ * @param {string} name
+ */
+const withoutCopy = (name) => name.replace(/(?: - Copy| copy(?: \d+)?)?(?: ?\(\d+\))?(?=\.[^.]*$)/, "");
 
 /**
  * Turns anything that `gaitway.open` takes, alone or in a list, into items.
@@ -130,20 +153,22 @@ function toItems(items) {
 const isNamedFile = (item) => item !== null && typeof item === "object" && "name" in item && typeof item.name === "string" && "content" in item && item.content instanceof Blob;
 
 /**
+ * Tells screen readers what the app says about what was opened, and what can be seen of it.
  * @param {"model" | "motion" | "light" | "map"} shown
- * @param {string} model The name of the active model.
+ * @param {{ model: string, notice: string | null }} summary
  * @param {InspectDocument} document
  */
-function announce(shown, model, { clips, borrowed_clips: borrowed, joints, triangles }) {
+function announce(shown, { model, notice }, { clips, borrowed_clips: borrowed, joints, triangles }) {
   /** @type {(count: number, noun: string) => string} */
   const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
   const texts = {
-    model: `Opened ${model}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
-    motion: `Borrowed motion: ${counted(borrowed?.length ?? 0, "clip")} available.`,
-    light: "The image lights the scene.",
-    map: "Joint map applied.",
+    model: [`Opened ${model}.`, `${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`],
+    motion: ["Borrowed the motion.", `${counted(borrowed?.length ?? 0, "borrowed clip")}.`],
+    light: ["The image lights the scene."],
+    map: ["Joint map applied."],
   };
-  sayNews(texts[shown]);
+  const [opened, ...contents] = texts[shown];
+  sayNews([notice ?? opened, ...contents].join(" "));
 }
 
 /**
@@ -155,7 +180,7 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
 async function completeLink(items, shown) {
   const waiting = completable();
   if (waiting === null) return;
-  const arrived = waiting.wanted.map((file) => items.find((item) => hasFile([item], file)));
+  const arrived = waiting.wanted.map((file) => fileAmong(items, file));
   if (arrived.every((item) => item === undefined)) {
     if (shown === "model") return passOver();
     return void showAwaited(shown === undefined ? namesOf(items) : undefined);

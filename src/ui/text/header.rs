@@ -54,3 +54,9 @@ pub const BORROW: &str = "Borrow";
 pub fn borrow_from(model: &str) -> String {
     format!("Borrow the motion of {model}")
 }
+
+/// Tells screen readers that a step was undone or redone, and how many can be undone now.
+pub fn stepped(is_undo: bool, undo_steps: usize) -> String {
+    let done = if is_undo { "Undone" } else { "Redone" };
+    format!("{done}. Steps left to undo: {undo_steps}.")
+}

@@ -20,7 +20,7 @@ fn notices_say_how_to_go_back() {
     editor.undo();
     let undone = editor.take_events();
     assert_eq!(notices(&undone), ["Removed motion Walk. Redo brings it back."]);
-    assert_eq!(undone[0], Event::Stepped, "earlier notices are outdated");
+    assert_eq!(undone[0], Event::Stepped { is_undo: true }, "earlier notices are outdated");
 }
 
 #[test]
