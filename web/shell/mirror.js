@@ -1,5 +1,6 @@
 // The panels as transparent HTML over the canvas, one element over each control, for keyboards and screen readers: they can't
 // look into a canvas. The program lists the elements (src/app/mirror.rs) and is told what the user does with them.
+import { takeFocus } from "./dom.js";
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 /** @typedef {import("./types.d.ts").MirrorEntry} MirrorEntry */
@@ -141,8 +142,7 @@ export class Mirror {
       element.type = role === "slider" ? "range" : "text";
       // The browser's own field for numbers knows one decimal separator, which depends on the language.
       if (role === "spinbutton") [element.role, element.inputMode] = [role, "decimal"];
-    } else if (role === "combobox") element.setAttribute("aria-haspopup", "listbox");
-    else if (role !== "button" && role !== "text") element.setAttribute("role", role === "section" ? "group" : role);
+    } else if (role !== "button" && role !== "combobox" && role !== "text") element.setAttribute("role", role === "section" ? "group" : role);
     if (role === "dialog") element.ariaModal = "true";
     if (role === "img" && focusable) element.tabIndex = 0;
     [element.dataset.id, element.dataset.role] = [id, role];
@@ -193,7 +193,7 @@ export class Mirror {
     const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? nearest(stopsIn(this.root), before));
     const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
-    if (target !== document.activeElement) target?.focus();
+    if (target !== document.activeElement) takeFocus(target);
     if (this.#isFollowing) this.#wanted = null;
     this.#isFollowing = false;
   }
@@ -208,7 +208,9 @@ export class Mirror {
     if (next !== undefined) {
       if (event.type === "keydown") {
         next?.focus();
-        if (next !== null && CHOSEN_BY_ARROWS.includes(next.dataset.role ?? "")) next.click();
+        // In a menu, arrow keys also lead into and out of groups of radio buttons.
+        const isInGroup = next !== null && next.closest(IN_LIST) === /** @type {HTMLElement} */ (target).closest(IN_LIST);
+        if (isInGroup && CHOSEN_BY_ARROWS.includes(next.dataset.role ?? "")) next.click();
       }
       event.preventDefault();
       return;

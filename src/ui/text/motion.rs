@@ -189,9 +189,9 @@ pub fn joints_mapped(count: usize, sources: usize) -> String {
 
 // Undo and redo
 /// Button that undoes an edit of the map, with its key.
-pub const UNDO_KEY: &str = "Undo (Ctrl+Z)";
+pub const UNDO_KEY: &str = "Undo map edit (Ctrl+Z)";
 /// Button that redoes an edit of the map, with its key.
-pub const REDO_KEY: &str = "Redo (Ctrl+Y)";
+pub const REDO_KEY: &str = "Redo map edit (Ctrl+Y)";
 
 // Options
 /// Switch that plants the feet.
