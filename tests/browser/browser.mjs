@@ -25,7 +25,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {Backend} [renderer]
  * @property {string} [link] Empty for a first visit; without it, the walker, at rest: a playing clip keeps a software renderer busy.
  * @property {{ width: number, height: number }} [viewport]
- * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Otherwise half a pixel, in
+ * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Without it, the page is in
  *   the context that the pages of a test file share.
  * @property {() => void} [before] Runs in the page before its scripts.
  * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
@@ -39,8 +39,8 @@ export const BACK_ENDS = ["webgpu", "webgl2"];
 
 /** Small, since a software renderer draws it. */
 export const VIEWPORT = { width: 800, height: 600 };
-/** Pixels per CSS pixel: the same layout as with 1 takes a quarter of the pixels. */
-const PIXEL_RATIO = 0.5;
+/** Pixels per CSS pixel: the layout is the same as with 1, but a software renderer draws a sixteenth of the pixels. */
+export const PIXEL_RATIO = 0.25;
 
 /** Both back ends on the software renderer. */
 const SOFTWARE = ["--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -66,6 +66,8 @@ const TIMEOUT_MS = 60_000;
  * @typedef {{ isOffScreen?: boolean }} LaunchOptions
  */
 
+/** `pixelRatio`: pixels per CSS pixel, more than usual for pictures that are looked at closely. @typedef {{ pixelRatio?: number }} SiteOptions */
+
 /**
  * Starts a browser in which pages of one site share a process, and thereby compiled programs.
  * @param {LaunchOptions} [options]
@@ -77,15 +79,15 @@ export function launch({ isOffScreen = false } = {}) {
 
 /**
  * Starts the two servers and a browser.
- * @param {LaunchOptions} [options]
+ * @param {LaunchOptions & SiteOptions} [options]
  */
-export async function startSite(options) {
+export async function startSite({ isOffScreen, pixelRatio = PIXEL_RATIO } = {}) {
   if (!fs.existsSync(path.join(dist, "index.html"))) throw new Error(`no built page in ${dist}: run \`cargo xtask build\``);
   const site = await serve({ "/some/folder/": dist });
   const data = hasData ? await serve({ "/": dataFile("") }, { "access-control-allow-origin": "*" }) : null;
-  const browser = await launch(options);
+  const browser = await launch({ isOffScreen });
   const address = `${site.origin}/some/folder/`;
-  const shared = await sharedContext(browser);
+  const shared = await sharedContext(browser, pixelRatio);
   return {
     browser,
     /** URL of the page itself. */
@@ -109,10 +111,11 @@ export async function startSite(options) {
  * Returns a context for the pages of one test file. The browser compiles the program for the first of them, and the others share the
  * result as long as a page with it is open: that saves a third of what opening one takes.
  * @param {Browser} browser
+ * @param {number} deviceScaleFactor
  */
-async function sharedContext(browser) {
+async function sharedContext(browser, deviceScaleFactor) {
   // Service workers would store megabytes for each fresh profile; offline.test.mjs tests them.
-  const context = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block" });
+  const context = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor, serviceWorkers: "block" });
   /** Addresses whose program a page keeps alive. @type {Set<string>} */
   const held = new Set();
   return {
@@ -478,7 +481,7 @@ export async function untilStill(page) {
  */
 export async function resize(page, width, height) {
   await page.setViewportSize({ width, height });
-  await until(page, (width) => [...document.querySelectorAll("canvas")].some((canvas) => canvas.width === width * devicePixelRatio), width);
+  await until(page, (width) => [...document.querySelectorAll("canvas")].some((canvas) => Math.abs(canvas.width - width * devicePixelRatio) < 1), width);
   await untilStill(page);
 }
 

@@ -24,7 +24,7 @@ for (const renderer of BACK_ENDS)
   describe(`checking an export on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => void (site = await startSite({ isOffScreen: true })));
+    before(async () => void (site = await startSite({ isOffScreen: true, pixelRatio: 0.5 })));
     after(() => site?.close());
 
     /**

@@ -7,7 +7,7 @@ import { after, before, describe, test } from "node:test";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, VIEWPORT, launch, state, until, watched, whenReady } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, VIEWPORT, launch, state, until, watched, whenReady } from "./browser.mjs";
 
 const FOLDER = "/some/folder/";
 
@@ -49,7 +49,7 @@ describe("after a visit", () => {
 
   /** @param {string} address */
   async function visit(address) {
-    const context = await browser.newContext({ viewport: VIEWPORT });
+    const context = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor: PIXEL_RATIO });
     const page = watched(await context.newPage());
     await page.goto(address);
     await whenReady(page);
@@ -150,7 +150,7 @@ describe("after a visit", () => {
     const around = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-frame-"));
     fs.writeFileSync(path.join(around, "index.html"), `<!doctype html><title>around</title><iframe src="${site.origin}${FOLDER}#model=sample:walker&embed=1"></iframe>`);
     const outside = await serve({ "/": around });
-    const frameContext = await browser.newContext({ viewport: VIEWPORT });
+    const frameContext = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor: PIXEL_RATIO });
     const framing = await frameContext.newPage();
     await framing.addInitScript(() => {
       navigator.serviceWorker.register = async () => {

@@ -82,8 +82,26 @@ function colorDifference({ width, height, rgba }, rgb) {
 describe("pictures", { skip: skipWithoutData }, () => {
   /** @type {import("./browser.mjs").Site} */
   let site;
-  before(async () => (site = await startSite({ isOffScreen: true })));
+  /** One page for each back end, in which one model is opened after the other. @type {Map<string, import("./browser.mjs").TestPage>} */
+  const pages = new Map();
+  before(async () => {
+    site = await startSite({ isOffScreen: true, pixelRatio: 0.5 });
+    for (const renderer of BACK_ENDS) pages.set(renderer, await site.page({ renderer }));
+  });
   after(() => site?.close());
+
+  /**
+   * Opens a model in the page of a back end.
+   * @param {import("./browser.mjs").Backend} renderer
+   * @param {string} file
+   * @param {object} view
+   */
+  async function opened(renderer, file, view) {
+    const page = /** @type {import("./browser.mjs").TestPage} */ (pages.get(renderer));
+    await open(page, site.data(file));
+    await apply(page, { play: 0, ...view });
+    return page;
+  }
 
   /** @type {Shown[]} */
   const compared = [...MODELS, ...MORE_PICTURES, ...LIT_PICTURES];
@@ -91,13 +109,10 @@ describe("pictures", { skip: skipWithoutData }, () => {
     test(`${model.name}: the back ends and the command line agree`, async () => {
       const pictures = [];
       for (const renderer of BACK_ENDS) {
-        const page = await site.page({ renderer });
-        await open(page, site.data(model.file));
-        await apply(page, { clip: model.clip, t: model.t, play: 0 });
-        if (model.light !== undefined) await apply(page, { light: site.data(model.light), background: "environment" });
+        const light = model.light === undefined ? { light: "studio", background: "studio" } : { light: site.data(model.light), background: "environment" };
+        const page = await opened(renderer, model.file, { clip: model.clip, t: model.t, ...light });
         pictures.push(await picture(page));
         assert.deepEqual(page.troubles, []);
-        await page.finish();
       }
       assert.ok(colorsOf(pictures[0]) > 64, "something should be drawn");
       const difference = meanDifference(pictures[0], pictures[1]);
@@ -112,9 +127,7 @@ describe("pictures", { skip: skipWithoutData }, () => {
     for (const model of MODELS)
       test(`${model.name} on ${renderer}: silhouettes match the numbers`, async () => {
         const triangles = trianglesOf(dataFile(model.file));
-        const page = await site.page({ renderer });
-        await open(page, site.data(model.file));
-        await apply(page, { clip: model.clip, t: model.t, play: 0, show: "no-shadow", background: "transparent", fov: FOV_DEGREES });
+        const page = await opened(renderer, model.file, { clip: model.clip, t: model.t, show: "no-shadow", background: "transparent", fov: FOV_DEGREES });
         const camera = cameraFor(await pose(page), model.yaw, 12, FOV_DEGREES);
         /** @type {Uint8Array[]} */
         const drawn = [];
@@ -134,6 +147,5 @@ describe("pictures", { skip: skipWithoutData }, () => {
           if (model.blended) matches.forEach((match, other) => assert.ok(other === mode || match < matches[mode], `${skinning} looks like ${MODES[other]}`));
         });
         assert.deepEqual(page.troubles, []);
-        await page.finish();
       });
 });
