@@ -128,8 +128,12 @@ fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     }
 }
 
-/// Marks real joints that move a mesh themselves or through a joint below, and the ends of limbs. Without a skin, all of them.
+/// Marks real joints that move a mesh themselves or through a joint below, and the ends of limbs. Without a skin or a mesh, all.
 fn deforming(asset: &Asset, real: &[bool]) -> Vec<bool> {
+    // A skeleton alone, also one that a skin was made for, has nothing that could tell its bones from controls.
+    if asset.skins.is_empty() || asset.instances.is_empty() {
+        return real.to_vec();
+    }
     let skeleton = &asset.skeleton;
     let mut moves_mesh = vec![false; skeleton.len()];
     for instance in &asset.instances {
@@ -143,9 +147,6 @@ fn deforming(asset: &Asset, real: &[bool]) -> Vec<bool> {
                 moves_mesh[skin.joints()[usize::from(joint)].get()] = true;
             }
         }
-    }
-    if asset.skins.is_empty() {
-        return real.to_vec();
     }
     let (mut above, mut has_child) = (moves_mesh.clone(), vec![false; skeleton.len()]);
     for joint in skeleton.joints().rev().filter(|joint| real[joint.get()]) {
@@ -231,5 +232,16 @@ mod tests {
         assert_eq!(names_of(true), ["Hips", "Head", "Head_End", ""]);
         assert_eq!(names_of(false), ["IK", "Pole", ""]);
         assert!(rig.has_controls());
+    }
+
+    #[test]
+    fn a_skeleton_with_a_skin_and_no_mesh_has_no_controls() {
+        let joint = |parent| Joint { parent, ..Joint::default() };
+        let skeleton = Skeleton::new([None, Some(0), Some(1)].map(joint).to_vec()).expect("parents come first");
+        let joints: Vec<JointIndex> = skeleton.joints().collect();
+        let skin = Skin::new("Skin".to_owned(), joints, vec![Affine3A::IDENTITY; 3], 3).expect("as many matrices");
+        let parts = AssetParts { skeleton, skins: vec![skin], ..AssetParts::default() };
+        let rig = Rig::new(&Asset::new(parts).expect("indices in range"));
+        assert_eq!((rig.bones().len(), rig.has_controls()), (3, false));
     }
 }
