@@ -13,7 +13,7 @@ import { animatedGif } from "./gif.js";
  * @property {number} framesPerSec
  * @property {number} frameCount
  * @property {boolean} isTransparent
- * @property {string} format "video", "gif", or "images" for an archive of PNGs.
+ * @property {"video" | "gif" | "images"} format Images are PNGs in an archive.
  * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight
  *   alpha.
  * @property {AbortSignal} signal

@@ -31,15 +31,18 @@ impl App {
         let secs = SECS + SECS_PER_BYTE * text.len() as f64 + if undoable { Toast::UNDOABLE_SECS } else { 0.0 };
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
-        self.toast_steps = self.editor.undo_steps();
+        self.notice_steps = self.editor.undo_steps();
         self.about_step = None;
         self.has_new_message = true;
     }
 
-    /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes.
-    pub(super) fn expire_toast(&mut self) {
-        let steps = self.editor.undo_steps();
-        self.panels.messages.toast.take_if(|toast| toast.undoable && steps != self.toast_steps);
+    /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes, and forgets what was undone
+    /// or redone, so that the same is told again.
+    pub(super) fn expire_notices(&mut self) {
+        if self.editor.undo_steps() != self.notice_steps {
+            self.panels.messages.toast.take_if(|toast| toast.undoable);
+            self.about_step = None;
+        }
     }
 
     /// Shows the editor's events.
@@ -74,7 +77,8 @@ impl App {
                 }
                 Event::Stepped { is_undo } => {
                     self.panels.messages.toast = None;
-                    self.about_step = Some(text::stepped(is_undo, self.editor.undo_steps()));
+                    self.notice_steps = self.editor.undo_steps();
+                    self.about_step = Some(text::stepped(is_undo, self.notice_steps));
                     self.has_new_message = true;
                 }
             }

@@ -2,6 +2,7 @@
 //! result is the same however long a frame takes. What is on screen stays as it is.
 
 use super::save::saved;
+use super::viewport::fitted;
 use super::{App, Video};
 use crate::editor::AWAITS_IMAGES;
 use crate::library::ModelId;
@@ -21,20 +22,15 @@ pub(super) struct Recording {
 
 /// Of a GIF's longer edge, in pixels. GIFs hardly compress: four seconds at this size take about 6 MB.
 const MAX_GIF_SIZE: u32 = 640;
-/// Frames per second. The times of a GIF's frames are in hundredths of a second, and browsers slow down frames shorter than two.
+/// Frames per second. At 60, the next rate that can be chosen, frames would be shorter than the two hundredths of a second below which
+/// browsers slow GIFs down.
 const MAX_GIF_RATE: u32 = 30;
-
-/// Returns the size with the same proportions whose longer edge is at most `max`.
-fn within(size: [u32; 2], max: u32) -> [u32; 2] {
-    let longer = size[0].max(size[1]).max(max);
-    size.map(|edge| (edge * max + longer / 2) / longer)
-}
 
 impl App {
     pub(super) fn start_recording(&mut self, settings: VideoSettings) {
         let VideoSettings { format, .. } = settings;
         let (size, frames_per_sec) = match format {
-            RecordingFormat::Gif => (within(settings.size, MAX_GIF_SIZE), settings.frames_per_sec.min(MAX_GIF_RATE)),
+            RecordingFormat::Gif => (fitted(settings.size, MAX_GIF_SIZE), settings.frames_per_sec.min(MAX_GIF_RATE)),
             RecordingFormat::Video | RecordingFormat::Images => (settings.size, settings.frames_per_sec),
         };
         // Most codecs take only even sizes.

@@ -33,9 +33,9 @@ pub struct App {
     after_draw: Vec<Box<dyn FnOnce()>>,
     pub(super) screenshots: Vec<Reply<Vec<u8>>>,
     pub(super) recording: Option<Recording>,
-    /// Undo steps when the toast appeared.
-    pub(super) toast_steps: usize,
-    /// What the last step of undo or redo did, for those who don't see it. `None` after a later notice.
+    /// Undo steps when the toast appeared, or after the step of undo or redo that `about_step` tells.
+    pub(super) notice_steps: usize,
+    /// Tells those who don't see it that a step was undone or redone. `None` after a later notice or edit.
     pub(super) about_step: Option<String>,
     /// A notice or an error was added since the host last heard of a change.
     pub(super) has_new_message: bool,
@@ -84,7 +84,7 @@ impl App {
             after_draw: Vec::new(),
             screenshots: Vec::new(),
             recording: None,
-            toast_steps: 0,
+            notice_steps: 0,
             about_step: None,
             has_new_message: false,
             had_modal: false,
@@ -455,7 +455,7 @@ impl eframe::App for App {
         self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
         self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
         self.panels.host.has_gltf = self.editor.has_gltf();
-        self.expire_toast();
+        self.expire_notices();
         self.update_motions();
         self.update_drawn();
         let mut output = std::mem::take(&mut self.output);

@@ -114,7 +114,7 @@ impl Viewport {
 }
 
 /// Scales a size down to `max` pixels a side.
-fn fitted(size: [u32; 2], max: u32) -> [u32; 2] {
+pub(super) fn fitted(size: [u32; 2], max: u32) -> [u32; 2] {
     let factor = f64::from(max) / f64::from(size[0].max(size[1]).max(max));
     size.map(|side| ((f64::from(side) * factor).round() as u32).max(1))
 }

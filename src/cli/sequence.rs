@@ -12,7 +12,8 @@ use super::output::{check_output, write_output};
 use crate::files::{Disk, create_temporary, describe, encode_png};
 
 /// File extensions for what ffmpeg encodes.
-const ENCODED_EXTENSIONS: &[&str] = &["mp4", "webm", "gif"];
+const ENCODED_EXTENSIONS: &[&str] =
+    &[Container::Mp4.extension(), Container::WebM.extension(), Container::Gif.extension()];
 
 /// The pictures of a sequence, all of one size.
 #[derive(Debug, Clone, Copy)]
@@ -85,17 +86,12 @@ const MAX_GIF_RATE: u32 = 50;
 impl Container {
     /// By the file extension, one of [`ENCODED_EXTENSIONS`].
     fn of(out: &Path) -> Self {
-        let is = |expected: &str| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected));
-        if is("mp4") {
-            Self::Mp4
-        } else if is("gif") {
-            Self::Gif
-        } else {
-            Self::WebM
-        }
+        let is =
+            |container: &Self| out.extension().is_some_and(|found| found.eq_ignore_ascii_case(container.extension()));
+        [Self::Mp4, Self::Gif].into_iter().find(is).unwrap_or(Self::WebM)
     }
 
-    fn extension(self) -> &'static str {
+    const fn extension(self) -> &'static str {
         match self {
             Self::Mp4 => "mp4",
             Self::WebM => "webm",
@@ -104,20 +100,20 @@ impl Container {
     }
 
     /// Arguments for how the frames are encoded.
-    fn arguments(self, is_transparent: bool) -> Vec<&'static str> {
+    fn arguments(self, is_transparent: bool) -> impl Iterator<Item = &'static str> {
         // Players take standard definition for BT.601 and everything else for BT.709, unless the file says which it is.
-        let colors = "-vf scale=out_color_matrix=bt709 -colorspace bt709 -color_primaries bt709 -color_trc bt709";
-        let codec = match (self, is_transparent) {
-            (Self::Mp4, _) => "-c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart",
-            (Self::WebM, true) => "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuva420p",
-            (Self::WebM, false) => "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuv420p",
+        let bt709 = "-vf scale=out_color_matrix=bt709 -colorspace bt709 -color_primaries bt709 -color_trc bt709";
+        let [colors, codec] = match (self, is_transparent) {
+            (Self::Mp4, _) => [bt709, "-c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart"],
+            (Self::WebM, true) => [bt709, "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuva420p"],
+            (Self::WebM, false) => [bt709, "-c:v libvpx-vp9 -crf 24 -b:v 0 -pix_fmt yuv420p"],
             // A palette for each frame, dithered with a pattern that stays where it is.
-            (Self::Gif, _) => {
-                "-vf split[a][b];[a]palettegen=stats_mode=single[palette];[b][palette]paletteuse=new=1:dither=bayer:bayer_scale=2"
-            }
+            (Self::Gif, _) => [
+                "-vf split[a][b];[a]palettegen=stats_mode=single[palette];[b][palette]paletteuse=new=1:dither=bayer:bayer_scale=2",
+                "-c:v gif",
+            ],
         };
-        let colors = if self == Self::Gif { "" } else { colors };
-        colors.split_whitespace().chain(codec.split_whitespace()).collect()
+        colors.split_whitespace().chain(codec.split_whitespace())
     }
 }
 

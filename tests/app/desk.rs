@@ -162,6 +162,11 @@ impl Desk {
         self.app().problem()
     }
 
+    /// What screen readers are told.
+    pub fn notice(&self) -> Option<&str> {
+        self.app().notice()
+    }
+
     /// The source of the active model.
     pub fn active(&self) -> &str {
         &self.library().active().expect("a model").source

@@ -41,6 +41,20 @@ fn a_new_model_is_framed_and_a_previous_one_keeps_its_camera() {
 }
 
 #[test]
+fn each_step_of_undo_and_redo_is_told_even_if_the_words_are_the_same() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    for exposure in [1.0, 2.0] {
+        desk.command(Command::SetExposure(exposure));
+        assert_eq!(desk.notice(), None, "a later edit makes it new");
+        desk.undo();
+        assert_eq!(desk.notice(), Some(&*text::stepped(true, 0)));
+        desk.redo();
+        assert_eq!(desk.notice(), Some(&*text::stepped(false, 1)));
+        desk.undo();
+    }
+}
+
+#[test]
 fn following_starts_and_stops_without_a_jump() {
     let Some(mut desk) = desk("sample:mannequin") else { return };
     desk.open(&["sample:mannequin_run".into()]);

@@ -293,22 +293,27 @@ export async function picture(page) {
 }
 
 /**
- * Drops files on the page, as a person would.
+ * Drops files on the page, or a link, as a person would.
  * @param {Page | Frame} page
- * @param {{ name: string, url?: string, text?: string }[]} files
+ * @param {({ name: string, url?: string, text?: string } | { link: string })[]} items
  * @param {number} [across] Where, as a share of the page's width.
  */
-export function drop(page, files, across = 0.5) {
-  return page.evaluate(async ({ files, across }) => {
+export function drop(page, items, across = 0.5) {
+  return page.evaluate(async ({ items, across }) => {
     const transfer = new DataTransfer();
-    for (const { name, url, text = "" } of files) {
+    for (const item of items) {
+      if ("link" in item) {
+        transfer.setData("text/uri-list", item.link);
+        continue;
+      }
+      const { name, url, text = "" } = item;
       const content = url === undefined ? text : await (await fetch(url)).blob();
       transfer.items.add(new File([content], name));
     }
     const where = { clientX: innerWidth * across, clientY: innerHeight / 2, bubbles: true, cancelable: true, composed: true };
     const target = document.elementFromPoint(where.clientX, where.clientY);
     for (const type of ["dragenter", "dragover", "drop"]) target?.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
-  }, { files, across });
+  }, { items, across });
 }
 
 /**

@@ -148,12 +148,7 @@ for (const renderer of BACK_ENDS)
 
     onFirstScreen("a card can be dragged onto the viewport, and its address pasted", { viewport: DESKTOP }, async (page) => {
       const address = await card(page, scenes[1].name).evaluate((card) => (card instanceof HTMLAnchorElement ? card.href : ""));
-      await page.evaluate((address) => {
-        const transfer = new DataTransfer();
-        transfer.setData("text/uri-list", address);
-        const where = { clientX: innerWidth / 2, clientY: innerHeight / 3, bubbles: true, cancelable: true, composed: true };
-        for (const type of ["dragenter", "dragover", "drop"]) document.elementFromPoint(where.clientX, where.clientY)?.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
-      }, address);
+      await drop(page, [{ link: address }]);
       await whenModel(page, scenes[1].model);
       await page.keyboard.press("Control+o");
       await page.locator("#open-url").fill(new URL(`#${linkOf(scenes[2])}`, page.url()).href);

@@ -116,8 +116,11 @@ async function keptForModel(items) {
  */
 function fileAmong(items, { name }) {
   const wanted = fileName(name);
-  return items.find((item) => fileName(nameOf(item)) === wanted) ?? items.find((item) => withoutCopy(fileName(nameOf(item))) === withoutCopy(wanted));
+  return items.find((item) => bareName(item) === wanted) ?? items.find((item) => withoutCopy(bareName(item)) === withoutCopy(wanted));
 }
+
+/** @param {Item} item */
+const bareName = (item) => fileName(nameOf(item));
 
 /**
  * Removes what browsers and systems add to the names of copies: “walk (1).bvh”, “walk copy.bvh”, “walk - Copy (2).bvh”.
@@ -198,4 +201,4 @@ async function completeLink(items, shown) {
 }
 
 /** @param {Item[]} items */
-const namesOf = (items) => listOf(items.map((item) => fileName(nameOf(item))));
+const namesOf = (items) => listOf(items.map(bareName));

@@ -42,7 +42,7 @@ export interface ShellCalls {
   gallery(): void;
   setModal(isOpen: boolean): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
-  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean, format: string): Promise<string | undefined>;
+  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean, format: "video" | "gif" | "images"): Promise<string | undefined>;
   cancelRecording(): void;
   validate(model: number): Promise<string>;
   share(link: string): void;
