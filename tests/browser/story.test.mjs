@@ -1,7 +1,7 @@
 // End-to-end stories on both back ends: one person drops, corrects and shares; another opens the link.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
-import { skipWithoutData } from "../three/data.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, toggleInspector, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
@@ -148,8 +148,9 @@ for (const renderer of BACK_ENDS)
         await whenReady(other);
         await whenAsked(other);
         assert.deepEqual(await Promise.all(["#bring-sender", "#bring-again"].map((id) => other.locator(id).isVisible())), [false, true]);
-        await other.locator("#bring-later").click();
-        await drop(other, files);
+        const chooser = other.waitForEvent("filechooser");
+        await other.locator("#bring-choose").click();
+        await (await chooser).setFiles([SOLDIER, WALK].map(dataFile));
         await whenModel(other, "Soldier.glb");
         // The model is shown before the rest of the link, which is shown as it is: the Motion tab doesn't come forward.
         await until(other, async () => (await window.gaitway.state()).t === 1.5);

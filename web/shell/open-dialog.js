@@ -1,4 +1,4 @@
-// The dialog in which files, folders and URLs are chosen, and its keyboard shortcut.
+// The dialog in which files, folders and URLs are chosen, its keyboard shortcut, and how a link's files are chosen.
 import { awaited, needOf } from "./awaited.js";
 import { button, byId, dialog, field, focusCanvas, isDialogOpen } from "./dom.js";
 import { showGallery } from "./gallery.js";
@@ -77,10 +77,18 @@ byId("open-form").addEventListener("submit", (event) => {
   const url = field("open-url").value.trim();
   if (url !== "") openChosen([url]);
 });
-// The dialog that asks for a link's files leads here, or says what is missing. Escape leaves its value empty.
+// The dialog that asks for a link's files, or says what is missing. Escape leaves its value empty.
+button("bring-choose").addEventListener("click", () => field("bring-chosen").click());
+field("bring-chosen").addEventListener("change", () => {
+  const files = filesOf("bring-chosen");
+  // Choosing them again is a change, too.
+  field("bring-chosen").value = "";
+  if (files.length === 0) return;
+  dialog("bring").close("chosen");
+  openByHand(files);
+});
 dialog("bring").addEventListener("close", () => {
   const [{ returnValue }, asking] = [dialog("bring"), awaited()];
-  if (returnValue === "choose") return showOpenDialog();
   if ((returnValue === "later" || returnValue === "") && asking !== null) session.app?.notify(needOf(asking));
   if (document.activeElement === document.body) focusCanvas();
 });
