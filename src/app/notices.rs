@@ -75,10 +75,10 @@ impl App {
                     let has_focus = self.context.memory(|memory| memory.focused().is_some());
                     self.panels.on_map_started(has_focus);
                 }
-                Event::Stepped { is_undo } => {
+                Event::Stepped { is_undo, edited } => {
                     self.panels.messages.toast = None;
                     self.notice_steps = self.editor.undo_steps();
-                    self.about_step = Some(text::stepped(is_undo, self.notice_steps));
+                    self.about_step = Some(text::stepped(is_undo, edited, self.notice_steps));
                     self.has_new_message = true;
                 }
             }

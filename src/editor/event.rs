@@ -1,5 +1,7 @@
 //! Events that a shell presents to the user.
 
+use crate::state::Edited;
+
 /// Drained with [`super::Editor::take_events`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
@@ -32,5 +34,7 @@ pub enum Event {
     Stepped {
         /// It was undone.
         is_undo: bool,
+        /// What it changed. `None`: it brought something back or removed it, which a notice says.
+        edited: Option<Edited>,
     },
 }

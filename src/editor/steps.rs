@@ -4,7 +4,7 @@
 use super::motions::ClipIdentity;
 use super::{Editor, Event, short_name};
 use crate::library::ModelId;
-use crate::state::OrbitCamera;
+use crate::state::{Edited, OrbitCamera, ViewerState};
 
 impl Editor {
     /// Returns whether there is a step to undo.
@@ -69,6 +69,7 @@ impl Editor {
 
     fn before_step(&self, is_retargeting: bool) -> BeforeStep {
         BeforeStep {
+            state: self.state.clone(),
             names: self.loaded_names(),
             playing: if is_retargeting { self.retargeted_clip() } else { None },
             view: if is_retargeting { self.automatic_view() } else { None },
@@ -76,19 +77,21 @@ impl Editor {
     }
 
     fn finish_step(&mut self, before: BeforeStep, is_undo: bool) {
-        let BeforeStep { names: before, playing, view } = before;
+        let BeforeStep { state, names: before, playing, view } = before;
         (self.needs_redraw, self.is_changed) = (true, true);
-        self.events.push(Event::Stepped { is_undo });
+        let after = self.loaded_names();
+        let notice = step_notice(&before, &after, if is_undo { "Redo" } else { "Undo" });
+        let edited = if notice.is_none() { Edited::between(&state, &self.state) } else { None };
+        self.events.push(Event::Stepped { is_undo, edited });
         let problems = self.retarget();
         self.report(problems);
-        let after = self.loaded_names();
         let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
         if is_same_model {
             self.follow_clip(playing);
         } else {
             self.waiting_clip = None;
         }
-        if let Some(text) = step_notice(&before, &after, if is_undo { "Redo" } else { "Undo" }) {
+        if let Some(text) = notice {
             self.notify(text);
         }
         self.hold_view(view);
@@ -105,6 +108,7 @@ impl Editor {
 
 /// What a step may change. A step that opened or removed something restores its own clip and view.
 struct BeforeStep {
+    state: ViewerState,
     names: LoadedNames,
     /// What played before a step of retargeting.
     playing: Option<ClipIdentity>,

@@ -7,6 +7,7 @@ mod channel;
 mod clips;
 mod command;
 mod comparison;
+mod edited;
 mod framing;
 mod hidden;
 mod history;
@@ -33,6 +34,7 @@ pub use channel::Channel;
 pub use clips::{changes_of, clip_changes, clip_copies};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
+pub use edited::Edited;
 pub use framing::{
     DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
 };

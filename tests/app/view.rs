@@ -1,7 +1,7 @@
 //! Camera rules that involve the viewport: what stays in view while settings change.
 
 use gaitway::frame::travelled;
-use gaitway::state::{CameraChoice, Command, Inspect, OrbitCamera, Show};
+use gaitway::state::{CameraChoice, Command, Edited, Inspect, OrbitCamera, Show};
 use gaitway::ui::{Tab, text};
 use glam::Vec3;
 
@@ -47,9 +47,9 @@ fn each_step_of_undo_and_redo_is_told_even_if_the_words_are_the_same() {
         desk.command(Command::SetExposure(exposure));
         assert_eq!(desk.notice(), None, "a later edit makes it new");
         desk.undo();
-        assert_eq!(desk.notice(), Some(&*text::stepped(true, 0)));
+        assert_eq!(desk.notice(), Some(&*text::stepped(true, Some(Edited::Display), 0)));
         desk.redo();
-        assert_eq!(desk.notice(), Some(&*text::stepped(false, 1)));
+        assert_eq!(desk.notice(), Some(&*text::stepped(false, Some(Edited::Display), 1)));
         desk.undo();
     }
 }

@@ -194,7 +194,8 @@ for (const renderer of BACK_ENDS)
       await whenBorrowed(page, 1);
       assert.equal((await pose(page)).clip, "cmu_01_01");
       assert.equal((await state(page)).t, 1);
-      // The files that have arrived are still there after something else.
+      // Once the page has recorded them, the files that have arrived are still there after something else.
+      await until(page, () => document.querySelector("#live")?.textContent?.includes("cmu_01_01"));
       await apply(page, { model: "sample:walker", motion: null });
       await until(page, () => location.hash.includes("walker"));
       await page.goBack();
@@ -313,7 +314,7 @@ for (const renderer of BACK_ENDS)
         await page.keyboard.press("Control+z");
         await until(page, async (step) => JSON.stringify(await window.gaitway.state()) === step, JSON.stringify(step));
       }
-      await until(page, () => document.querySelector("#news")?.textContent === "Undone. Steps left to undo: 0.");
+      await until(page, () => document.querySelector("#news")?.textContent === "Undone: display. Steps left to undo: 0.");
       for (let edit = 0; edit < 50; edit++) await page.keyboard.press("Control+y");
       await until(page, async (last) => JSON.stringify(await window.gaitway.state()) === last, JSON.stringify(last));
     });

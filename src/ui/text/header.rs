@@ -1,5 +1,7 @@
 //! The header, its menus, and the box about the program.
 
+use crate::state::Edited;
+
 /// The program's name.
 pub const NAME: &str = "Gaitway";
 /// What the program does.
@@ -55,8 +57,28 @@ pub fn borrow_from(model: &str) -> String {
     format!("Borrow the motion of {model}")
 }
 
-/// Tells screen readers that a step was undone or redone, and how many can be undone now.
-pub fn stepped(is_undo: bool, undo_steps: usize) -> String {
+/// Tells screen readers what was undone or redone, and how many steps can be undone now.
+pub fn stepped(is_undo: bool, edited: Option<Edited>, undo_steps: usize) -> String {
     let done = if is_undo { "Undone" } else { "Redone" };
-    format!("{done}. Steps left to undo: {undo_steps}.")
+    let what = edited.map_or_else(String::new, |edited| format!(": {}", name_of(edited)));
+    format!("{done}{what}. Steps left to undo: {undo_steps}.")
+}
+
+fn name_of(edited: Edited) -> &'static str {
+    match edited {
+        Edited::JointMap => "joint map",
+        Edited::Retargeting => "retargeting",
+        Edited::MorphWeights => "morph targets",
+        Edited::Expressions => "expressions",
+        Edited::Pose => "manual pose",
+        Edited::Pins => "pins",
+        Edited::JointNames => "joint names",
+        Edited::Clips => "changes to clips",
+        Edited::Layers => "layers",
+        Edited::Variant => "material variant",
+        Edited::Hidden => "what is hidden",
+        Edited::UpAxis => "up axis",
+        Edited::Lighting => "lighting",
+        Edited::Display => "display",
+    }
 }

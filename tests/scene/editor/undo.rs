@@ -1,7 +1,8 @@
 //! Undo and the notices that offer it.
 
 use gaitway::editor::{Editor, Event};
-use gaitway::state::{Command, MapEdit, Show};
+use gaitway::retarget::Feet;
+use gaitway::state::{Command, Edited, Hidden, Inspect, KeyLight, MapEdit, Show, UpAxis};
 
 use super::{any, editor, id_of, notices, open, open_motion};
 
@@ -20,7 +21,30 @@ fn notices_say_how_to_go_back() {
     editor.undo();
     let undone = editor.take_events();
     assert_eq!(notices(&undone), ["Removed motion Walk. Redo brings it back."]);
-    assert_eq!(undone[0], Event::Stepped { is_undo: true }, "earlier notices are outdated");
+    assert_eq!(undone[0], Event::Stepped { is_undo: true, edited: None }, "earlier notices are outdated");
+}
+
+#[test]
+fn a_step_says_what_it_changed() {
+    let mut editor = editor("sample:pilot");
+    let commands = [
+        (Command::SetFeet(Some(Feet::Plant)), Edited::Retargeting),
+        (Command::SetPose { joint: 2, degrees: Some([0.0, 30.0, 0.0]) }, Edited::Pose),
+        (Command::RenameJoint { joint: 2, name: "spine".into() }, Edited::JointNames),
+        (Command::SetHidden(Hidden { nodes: [1].into(), ..Hidden::default() }), Edited::Hidden),
+        (Command::SetUp(UpAxis::Z), Edited::UpAxis),
+        (Command::SetKeyLight(Some(KeyLight::STUDIO)), Edited::Lighting),
+        (Command::SetExposure(1.0), Edited::Display),
+        (Command::SetInspect(Inspect { split: true, ..Inspect::default() }), Edited::Display),
+    ];
+    for (command, edited) in commands {
+        editor.apply(command);
+        editor.take_events();
+        editor.undo();
+        assert_eq!(editor.take_events()[0], Event::Stepped { is_undo: true, edited: Some(edited) });
+        editor.redo();
+        assert_eq!(editor.take_events()[0], Event::Stepped { is_undo: false, edited: Some(edited) });
+    }
 }
 
 #[test]
