@@ -114,20 +114,22 @@ fn card(
         let shown = title_of(model, layer);
         let buttons = controls::button_width(ui, text::RAISE_LAYER) + icon_size(ui, BUTTON_SIZE).x;
         let width = ui.available_width() - buttons - 2.0 * ui.spacing().item_spacing.x;
-        let combo = egui::ComboBox::from_id_salt("clip").width(width).truncate().selected_text(shown);
+        let mut picked = None;
         let choices = |ui: &mut Ui| {
             for (index, title) in titles.iter().enumerate() {
                 if controls::option(ui, clip == Some(index), title) {
-                    layer.clip = name_of(model, index);
+                    picked = Some(index);
                 }
             }
         };
         // The text of a combo box takes what is available, whatever its width.
-        let response = ui.scope(|ui| {
+        let chooser = ui.scope(|ui| {
             ui.set_max_width(width);
-            combo.show_ui(ui, choices).response
+            controls::chooser(ui, "clip", text::LAYER_CLIP, shown, choices)
         });
-        let chooser = response.inner.accessible_name(text::LAYER_CLIP);
+        if let Some(index) = picked {
+            layer.clip = name_of(model, index);
+        }
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
         }
@@ -135,7 +137,7 @@ fn card(
         if remove.clicked() {
             moved = Some(Moved::Removed { by_key: !remove.clicked_by(egui::PointerButton::Primary) });
         }
-        chooser
+        chooser.inner
     });
     let modes = LayerMode::ALL.map(|mode| (mode, text::layer_mode(mode)));
     layer.mode = controls::segmented_about(ui, text::LAYER_MODE, Some(layer.mode), &modes).unwrap_or(layer.mode);

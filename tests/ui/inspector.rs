@@ -302,6 +302,32 @@ fn lists_that_drop_down_fit_low_windows() {
 }
 
 #[test]
+fn a_chooser_opens_at_what_is_chosen_follows_the_focus_and_closes_without_it() {
+    let size = [1280.0, 320.0];
+    let mut harness = sample_bench(size);
+    let [first, .., last] = Channel::ALL;
+    harness.state_mut().change(|state| state.display.channel = last);
+    press(&mut harness, Tab::Display.label());
+    harness.get_by_label(text::CHANNEL).scroll_to_me();
+    harness.run();
+    press(&mut harness, text::CHANNEL);
+    // A switch of the tab is named Wireframe, too.
+    let role = harness.get_by_label(text::channel(Channel::Metallic)).accesskit_node().role();
+    let is_in_sight = |harness: &Harness<'_, Bench>, channel| {
+        let rect = harness.get_by_role_and_label(role, text::channel(channel)).rect();
+        rect.top() >= 0.0 && rect.bottom() <= size[1]
+    };
+    assert!(is_in_sight(&harness, last) && !is_in_sight(&harness, first));
+    harness.get_by_role_and_label(role, text::channel(first)).focus();
+    harness.run();
+    assert!(is_in_sight(&harness, first) && !is_in_sight(&harness, last));
+    harness.get_by_role_and_label(Role::CheckBox, "Grid").focus();
+    harness.run();
+    assert!(!egui::Popup::is_any_open(&harness.ctx));
+    assert!(harness.get_by_role_and_label(Role::CheckBox, "Grid").is_focused());
+}
+
+#[test]
 fn a_channel_without_data_says_so() {
     // The sample has colours and no texture coordinates, the other model neither.
     for (mut harness, lacks) in [(sample_bench(WIDE), [false, true]), (bench(WIDE, model_with_clips(1)), [true, true])]

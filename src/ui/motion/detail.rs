@@ -283,9 +283,7 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
 /// Chooses what this joint does without a source.
 fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Option<Unmapped>> {
     let mut pressed = None;
-    let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate();
-    let combo = combo.selected_text(&texts.policy);
-    let response = combo.show_ui(ui, |ui| {
+    controls::chooser(ui, "own policy", text::OWN_POLICY, &texts.policy, |ui| {
         if controls::option(ui, own.is_none(), &texts.default_policy) {
             pressed = Some(None);
         }
@@ -295,6 +293,5 @@ fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Opti
             }
         }
     });
-    response.response.accessible_name(text::OWN_POLICY);
     pressed
 }

@@ -64,17 +64,14 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, t
                 }
             });
         }
-        let combo = egui::ComboBox::from_id_salt("joint filter").width(ui.available_width()).truncate();
-        let combo = combo.height(controls::list_height(ui, 320.0));
-        let text = counted().find(|(filter, _)| *filter == table.filter).map_or("", |(_, text)| text);
-        let response = combo.selected_text(text).show_ui(ui, |ui| {
+        let chosen = counted().find(|(filter, _)| *filter == table.filter).map_or("", |(_, text)| text);
+        controls::chooser(ui, "joint filter", text::JOINT_FILTER, chosen, |ui| {
             for (filter, text) in counted() {
                 if controls::option(ui, filter == table.filter, text) {
                     table.filter = filter;
                 }
             }
         });
-        response.response.accessible_name(text::JOINT_FILTER);
     });
 }
 

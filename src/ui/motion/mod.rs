@@ -395,16 +395,13 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
     let palette = style::palette(ui);
     if let Some(name) = contents.motions.get(pairing.index) {
         ui.add_space(4.0);
-        let combo =
-            egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
-        let response = combo.show_ui(ui, |ui| {
+        controls::chooser(ui, "motion file", text::MOTION_FILE, name, |ui| {
             for (index, name) in contents.motions.iter().enumerate() {
                 if controls::option(ui, index == pairing.index, name) {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
             }
         });
-        response.response.accessible_name(text::MOTION_FILE);
     }
     controls::hint(ui, &contents.mapped);
     for text in &contents.remarks {

@@ -195,17 +195,13 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
     ui.horizontal(|ui| {
         let weak = style::palette(ui).weak_text;
         controls::sized(ui, [52.0, 28.0], egui::Label::new(RichText::new(label).color(weak)));
-        let combo = egui::ComboBox::from_id_salt(("rest", label))
-            .width(ui.available_width())
-            .selected_text(text::rest_choice(chosen));
-        let response = combo.show_ui(ui, |ui| {
+        controls::chooser(ui, ("rest", label), name, text::rest_choice(chosen), |ui| {
             for choice in RestChoice::ALL {
                 if controls::option(ui, choice == chosen, text::rest_choice(choice)) {
                     pressed = Some(choice);
                 }
             }
         });
-        response.response.accessible_name(name);
     });
     pressed
 }
@@ -239,12 +235,11 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
         let unmapped = Unmapped::Clip { clip: ClipRef::Index(clip), frozen };
         Command::SetUnmapped(Some(unmapped))
     };
-    let text = match playing {
+    let chosen = match playing {
         None => text::REST,
         Some((clip, _)) => pairing.clip_title(clip),
     };
-    let combo = egui::ComboBox::from_id_salt("unmapped").width(ui.available_width()).truncate().selected_text(text);
-    let response = combo.show_ui(ui, |ui| {
+    controls::chooser(ui, "unmapped", text::UNMAPPED_JOINTS, chosen, |ui| {
         if controls::option(ui, playing.is_none(), text::REST) {
             out.commands.push(Command::SetUnmapped(Some(Unmapped::Rest)));
         }
@@ -255,7 +250,6 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
             }
         }
     });
-    response.response.accessible_name(text::UNMAPPED_JOINTS);
     match playing {
         Some((clip, frozen)) => {
             if controls::switch(ui, text::HOLD_FIRST_KEY, frozen) {

@@ -123,19 +123,14 @@ fn overlays(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// The choice of what surfaces show.
 fn channel(ui: &mut Ui, now: Channel, out: &mut Output) {
-    let combo = egui::ComboBox::from_id_salt("channel").width(ui.available_width());
-    let combo = combo.height(controls::list_height(ui, 400.0));
-    let combo = combo.selected_text(text::labelled(text::CHANNEL, text::channel(now)));
-    let response = combo
-        .show_ui(ui, |ui| {
-            for channel in Channel::ALL {
-                if controls::option(ui, channel == now, text::channel(channel)) {
-                    out.commands.push(Command::SetChannel(channel));
-                }
+    let chosen = text::labelled(text::CHANNEL, text::channel(now));
+    controls::chooser(ui, "channel", text::CHANNEL, &chosen, |ui| {
+        for channel in Channel::ALL {
+            if controls::option(ui, channel == now, text::channel(channel)) {
+                out.commands.push(Command::SetChannel(channel));
             }
-        })
-        .response;
-    response.accessible_name(text::CHANNEL);
+        }
+    });
     ui.add_space(2.0);
 }
 

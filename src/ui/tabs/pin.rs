@@ -96,16 +96,14 @@ fn goal(
         PinGoal::Joint(other, _) => {
             let other = skeleton.joint_of_source(*other);
             let name = |joint| title(Some(shown.state), &model.asset, joint).into_owned();
-            let combo = egui::ComboBox::from_id_salt("pinned to").width(ui.available_width()).truncate();
-            let combo = combo.selected_text(other.map(name).unwrap_or_default());
-            let response = combo.show_ui(ui, |ui| {
+            let chosen = other.map(name).unwrap_or_default();
+            controls::chooser(ui, "pinned to", text::PINNED_TO, &chosen, |ui| {
                 for (joint, at) in others {
                     if controls::option(ui, other == Some(joint), &name(joint)) {
                         *goal = at;
                     }
                 }
             });
-            response.response.accessible_name(text::PINNED_TO);
         }
         PinGoal::Camera => return,
     }

@@ -154,9 +154,26 @@ fn keep_menu_focus(ui: &Ui, button: &Response, is_open: bool) {
     }
 }
 
-/// Returns the height of a list that drops down: `height`, if the window is that high. A higher one would be cut off.
-pub fn list_height(ui: &Ui, height: f32) -> f32 {
-    height.min(ui.ctx().content_rect().height() - 40.0)
+/// A list of [`option`]s that drops down from a button with the text of the chosen one, as wide as what is available. `name` is its
+/// accessible name. It takes and gives back the keyboard as menus do.
+pub fn chooser(
+    ui: &mut Ui,
+    id: impl egui::AsIdSalt,
+    name: &str,
+    chosen: &str,
+    options: impl FnOnce(&mut Ui),
+) -> Response {
+    /// A longer list scrolls.
+    const MAX_HEIGHT: f32 = 440.0;
+    // A higher list than the window would be cut off.
+    let height = MAX_HEIGHT.min(ui.ctx().content_rect().height() - 40.0);
+    let combo = egui::ComboBox::from_id_salt(id).width(ui.available_width()).height(height);
+    let list = combo.truncate().selected_text(chosen).show_ui(ui, |ui| {
+        options(ui);
+        follow_focus(ui);
+    });
+    keep_menu_focus(ui, &list.response, list.inner.is_some());
+    list.response.accessible_name(name)
 }
 
 /// A button that is on or off, in lists and groups.
@@ -171,9 +188,14 @@ pub fn choice(ui: &mut Ui, on: bool, label: &str) -> Response {
     response
 }
 
-/// An entry of a drop-down list; returns whether it was chosen. A click would close the list anyway, a key wouldn't.
+/// An entry of a [`chooser`], which opens where it is `on`; returns whether it was chosen. A click would close the list anyway, a key
+/// wouldn't.
 pub fn option(ui: &mut Ui, on: bool, label: &str) -> bool {
-    let is_chosen = choice(ui, on, label).clicked();
+    let response = choice(ui, on, label);
+    if on && ui.is_sizing_pass() {
+        response.scroll_to_me(Some(egui::Align::Center));
+    }
+    let is_chosen = response.clicked();
     if is_chosen {
         ui.close();
     }
