@@ -33,8 +33,12 @@ impl App {
             RecordingFormat::Gif => (fitted(settings.size, MAX_GIF_SIZE), settings.frames_per_sec.min(MAX_GIF_RATE)),
             RecordingFormat::Video | RecordingFormat::Images => (settings.size, settings.frames_per_sec),
         };
-        // Most codecs take only even sizes.
-        let size = self.viewport.picture_size(size).map(|edge| (edge & !1).max(2));
+        let size = self.viewport.picture_size(size);
+        let size = match format {
+            // Most codecs take only even sizes.
+            RecordingFormat::Video => size.map(|edge| (edge & !1).max(2)),
+            RecordingFormat::Gif | RecordingFormat::Images => size,
+        };
         let (library, state) = (self.editor.library(), self.editor.state());
         let Some(model) = library.active() else { return };
         if model.awaits_images() {
@@ -43,6 +47,7 @@ impl App {
         let aspect = size[0] as f32 / size[1] as f32;
         let Some(frames) = LoopFrames::new(library, state, aspect, frames_per_sec) else { return };
         let transparent = settings.transparent || state.display.background == Background::Transparent;
+        let frames = if transparent && format == RecordingFormat::Gif { frames.without_ground() } else { frames };
         let (frame_count, model) = (frames.count(), model.id);
         let name = self.editor.file_stem();
         let video = Video { name, size, frames_per_sec, frame_count, transparent, format };

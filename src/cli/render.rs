@@ -51,6 +51,7 @@ fn render_frames(arguments: &RenderArguments, frames_per_sec: u32, editor: &Edit
     let is_transparent = state.display.background == Background::Transparent;
     let format = Format { size, frames_per_sec, frame_count: frames.count(), is_transparent };
     let mut sequence = Sequence::create(&arguments.out, format, disk)?;
+    let frames = if is_transparent && sequence.has_hard_edges() { frames.without_ground() } else { frames };
     let mut studio = Studio::new(editor, size)?;
     for index in 0..frames.count() {
         sequence.add(&studio.draw(library, &frames.state(library, index))?, disk)?;

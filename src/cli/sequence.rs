@@ -49,6 +49,11 @@ impl<'a> Sequence<'a> {
         Ok(Self::Folder { folder: out, format, written: 0 })
     }
 
+    /// Whether transparent pixels are entirely so.
+    pub fn has_hard_edges(&self) -> bool {
+        matches!(self, Self::Video(Encoder { container: Container::Gif, .. }))
+    }
+
     /// Adds a picture: RGBA rows from the top, with straight alpha.
     pub fn add(&mut self, pixels: &[u8], disk: &Disk) -> Outcome {
         match self {
@@ -120,6 +125,7 @@ impl Container {
 /// A running ffmpeg. It writes to a temporary file, since an .mp4 is completed at its beginning.
 pub(super) struct Encoder<'a> {
     out: &'a Path,
+    container: Container,
     temporary: TemporaryFile,
     process: Child,
     input: ChildStdin,
@@ -175,7 +181,7 @@ impl<'a> Encoder<'a> {
             let _ = errors.read_to_end(&mut said);
             String::from_utf8_lossy(&said).trim().replace('\n', ", ")
         });
-        Ok(Self { out, temporary, process, input, said })
+        Ok(Self { out, container, temporary, process, input, said })
     }
 
     fn add(&mut self, pixels: &[u8]) -> Outcome {

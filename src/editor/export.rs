@@ -102,7 +102,7 @@ impl Editor {
         let clip = model.and_then(|model| model.clip_titles().get(clip?));
         let parts = [model.map(|model| stem(&model.source)), clip.cloned()];
         let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
-        let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ".contains(letter);
+        let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ()".contains(letter);
         name.chars().map(|letter| if is_plain(letter) { letter } else { '-' }).collect()
     }
 

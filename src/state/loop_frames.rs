@@ -42,6 +42,14 @@ impl LoopFrames {
         Some(Self { first, frames_per_sec, count })
     }
 
+    /// Leaves out the grid and the shadow: they are partly transparent, and would leave specks where pixels are either opaque or
+    /// transparent.
+    pub fn without_ground(mut self) -> Self {
+        let show = &mut self.first.display.show;
+        (show.grid, show.shadow) = (false, false);
+        self
+    }
+
     /// Returns the number of frames.
     pub fn count(&self) -> u32 {
         self.count

@@ -137,6 +137,8 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
                 title_and_hint(model).1
             } else if model.has_skeleton() {
                 text::NO_CLIPS
+            } else if model.asset.format == "obj" {
+                text::NO_SKELETON_OF_OBJ
             } else {
                 text::NO_SKELETON
             },

@@ -198,8 +198,16 @@ for (const renderer of BACK_ENDS)
           context.drawImage(image, 0, 0);
           const { data } = context.getImageData(0, 0, width, height);
           const alphas = data.filter((_, at) => at % 4 === 3);
+          /** @type {(x: number, y: number) => number} */
+          const shownAt = (x, y) => (x >= 0 && x < width && data[4 * (y * width + x) + 3] === 255 ? 1 : 0);
+          let specks = 0;
+          for (let at = 0; at < width * height; at++) {
+            const [x, y] = [at % width, Math.floor(at / width)];
+            const around = [-1, 0, 1].reduce((sum, dy) => sum + shownAt(x - 1, y + dy) + shownAt(x, y + dy) + shownAt(x + 1, y + dy), 0);
+            if (shownAt(x, y) === 1 && around < 4) specks += 1;
+          }
           const colors = new Set(new Uint32Array(data.buffer)).size;
-          frames.push({ width, height, millis: (duration ?? 0) / 1000, colors, shown: alphas.filter((alpha) => alpha === 255).length, hidden: alphas.filter((alpha) => alpha === 0).length, text: data.join() });
+          frames.push({ width, height, specks, millis: (duration ?? 0) / 1000, colors, shown: alphas.filter((alpha) => alpha === 255).length, hidden: alphas.filter((alpha) => alpha === 0).length, text: data.join() });
           image.close();
         }
         return { frames, playsForever: track?.repetitionCount === Infinity };
@@ -218,10 +226,11 @@ for (const renderer of BACK_ENDS)
         // 30 frames per second, in hundredths of a second.
         assert.deepEqual(frames.map(({ millis }) => millis), [30, 40, 30, 30, 40, 30, 30, 40, 30, 30, 40, 30]);
         assert.equal(new Set(frames.map(({ text }) => text)).size, 12, "it moves");
-        for (const { width, height, colors, shown, hidden } of frames) {
+        for (const { width, height, specks, colors, shown, hidden } of frames) {
           assert.deepEqual([width, height, shown + hidden], [320, 180, 320 * 180]);
           assert.ok(colors > 128 && colors <= 256, `${colors} colours`);
           assert.ok(isTransparent ? hidden > shown && shown > 2000 : hidden === 0, `${shown} pixels shown`);
+          console.log(`specks ${specks}`);
         }
         assert.deepEqual(page.troubles, []);
       });

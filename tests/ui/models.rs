@@ -1,11 +1,12 @@
 //! Several models at once, and undoing an open.
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::library::{Library, Model};
 use gaitway::samples;
 use gaitway::ui::{Tab, Toast, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench, bench_of, painted, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench, bench_of, painted, press, sample_bench};
 
 fn two_models() -> Library {
     let mut library = Library::default();
@@ -58,6 +59,25 @@ fn models_of_one_name_are_told_apart() {
     for name in ["Walker", "other.glb (1)", &text::close_model("other.glb (1)"), "other.glb (2)"] {
         assert_eq!(harness.query_all_by_label(name).count(), 1, "{name}");
     }
+}
+
+#[test]
+fn an_error_takes_the_place_of_a_toast_that_goes() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.messages.error = Some("broken.glb: it is not a GLB file".to_owned());
+    harness.run();
+    let place = |harness: &Harness<'_, Bench>| harness.get_by_label(text::DISMISS_ERROR).rect();
+    let before = place(&harness);
+    harness.state_mut().panels.messages.toast =
+        Some(Toast { text: "Opened Fox.".to_owned(), until_secs: 1e9, undoable: false });
+    // A toast waits for its end.
+    harness.step();
+    harness.step();
+    harness.step();
+    assert!(place(&harness).bottom() < before.bottom() - 20.0);
+    harness.state_mut().panels.messages.toast = None;
+    harness.run();
+    assert_eq!(place(&harness), before);
 }
 
 #[test]

@@ -103,7 +103,10 @@ fn cards(
             let card = &mut local.joint_card;
             controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, has_content, card, out));
         }
-        None => controls::hint(ui, "Select a joint here or in the viewport to see its transforms."),
+        None => {
+            let what = if model.has_skeleton() { "joint" } else { "node" };
+            controls::hint(ui, format!("Select a {what} here or in the viewport to see its transforms."));
+        }
     }
     if !vertex_first {
         vertex(ui, shown, model, local, out);

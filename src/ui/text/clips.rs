@@ -10,7 +10,9 @@ pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a 
     “Borrow motion…” to take another model's clips.";
 /// Shown for a model without clips that cannot borrow any.
 pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so it can't borrow any. Skin its mesh to a skeleton and export it \
-    again; for an .obj of the exercise, open its .skel and .attach as well.";
+    again.";
+/// The same for an .obj.
+pub const NO_SKELETON_OF_OBJ: &str = "An .obj has no skeleton by itself, so it can't borrow animations. If it has a .skel and an .attach, open them as well.";
 /// Button that opens the awaited model.
 pub const BRING: &str = "Choose files…";
 /// Stands below the awaited model's name, where others have their place.

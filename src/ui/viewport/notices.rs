@@ -77,17 +77,23 @@ impl Messages {
         }
         let width = (viewport.width() - 28.0).min(520.0);
         let bottom = viewport.bottom() - 14.0 - label_height(shown);
-        let area = Area::new(Id::unique("notices"))
+        let id = Id::unique("notices");
+        let height_before = ui.ctx().memory(|memory| memory.area_rect(id)).map(|rect| rect.height());
+        let area = Area::new(id)
             .order(Order::Foreground)
             .pivot(Align2::LEFT_BOTTOM)
             .fixed_pos(pos2(viewport.left() + 14.0, bottom));
-        area.show(ui.ctx(), |ui| {
+        let shown = area.show(ui.ctx(), |ui| {
             ui.set_max_width(width);
             self.show_progress(ui, width, out);
             self.show_error(ui, out);
             self.show_about_view(ui);
             self.show_toast(ui, width, out);
         });
+        // It was placed by its height before.
+        if height_before != Some(shown.response.rect.height()) {
+            ui.ctx().request_repaint();
+        }
     }
 
     fn expire_toast(&mut self, ui: &Ui) {
