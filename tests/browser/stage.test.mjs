@@ -230,7 +230,8 @@ for (const renderer of BACK_ENDS)
           assert.deepEqual([width, height, shown + hidden], [320, 180, 320 * 180]);
           assert.ok(colors > 128 && colors <= 256, `${colors} colours`);
           assert.ok(isTransparent ? hidden > shown && shown > 2000 : hidden === 0, `${shown} pixels shown`);
-          console.log(`specks ${specks}`);
+          // Tips of the character; with the grid, it was 26 and more.
+          assert.ok(specks <= 8, `${specks} specks`);
         }
         assert.deepEqual(page.troubles, []);
       });
