@@ -265,8 +265,11 @@ export async function whenReady(page) {
 export const state = (page) => page.evaluate(async () => await window.gaitway.state());
 /** @param {Page | Frame} page */
 export const stats = (page) => page.evaluate(async () => await window.gaitway.stats());
-/** @param {Page | Frame} page */
-export const pose = (page) => page.evaluate(async () => await window.gaitway.pose());
+/**
+ * As a text, since Playwright takes most of a second to hand over the numbers of 28,000 vertices.
+ * @type {(page: Page | Frame) => Promise<PoseDocument>}
+ */
+export const pose = async (page) => JSON.parse(await page.evaluate(async () => JSON.stringify(await window.gaitway.pose())));
 /** @type {(page: Page | Frame, partial: object) => Promise<void>} */
 export const apply = (page, partial) => page.evaluate(async (partial) => void (await window.gaitway.apply(partial)), partial);
 /** @type {(page: Page | Frame, ...urls: string[]) => Promise<import("../../web/shell/types.d.ts").InspectDocument>} */

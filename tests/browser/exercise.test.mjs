@@ -5,8 +5,8 @@ import { skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, apply, centreOf, controls, drop, meanDifference, open, toggleInspector, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
-/** Steps of a dragged slider. */
-const STEPS = 30;
+/** Steps of a dragged slider, and how far apart they are. */
+const [STEPS, STEP] = [12, 8];
 const KINDS = ["obj", "skel", "attach"];
 
 for (const renderer of BACK_ENDS) {
@@ -36,8 +36,7 @@ for (const renderer of BACK_ENDS) {
     const dropModel = (page, name) =>
       drop(page, KINDS.map((kind) => ({ name: `${name}.${kind}`, url: site.data(`mit6837/${name}.${kind}`) })));
 
-    // A slider moves by whole pixels.
-    onPage("three files dropped together are bent by a slider without stutter", { deviceScaleFactor: 1 }, async (page) => {
+    onPage("three files dropped together are bent by a slider without stutter", {}, async (page) => {
       await dropModel(page, "Model1");
       await whenShown(page, VERTICES);
       await toggleInspector(page);
@@ -64,7 +63,7 @@ for (const renderer of BACK_ENDS) {
       let before = (await state(page)).pose;
       for (let step = 1; step <= STEPS; step++) {
         // egui picks the roundest number within a point to either side; no two steps share one.
-        await page.mouse.move(handle.x + 3 * step, handle.y);
+        await page.mouse.move(handle.x + STEP * step, handle.y);
         // Each step is shown before the next one.
         await until(page, async (before) => (await window.gaitway.state()).pose !== before, before);
         before = (await state(page)).pose;

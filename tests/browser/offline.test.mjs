@@ -81,9 +81,13 @@ describe("after a visit", () => {
     test(`a part that was used works offline (${renderer})`, { skip: skipWithoutData }, async () => {
       const site = await serve({ [FOLDER]: dist });
       const { context, page } = await visit(`${site.origin}${FOLDER}?renderer=${renderer}`);
-      const bytes = [...fs.readFileSync(dataFile("compressed/Fox-gltfpack-meshopt.glb"))];
+      const base64 = fs.readFileSync(dataFile("compressed/Fox-gltfpack-meshopt.glb"), "base64");
       /** @param {import("playwright-core").Page} page */
-      const openFox = (page) => page.evaluate(async (bytes) => (await window.gaitway.open({ "fox.glb": new Uint8Array(bytes) })).joints, bytes);
+      const openFox = (page) =>
+        page.evaluate(async (base64) => {
+          const fox = await fetch(`data:model/gltf-binary;base64,${base64}`);
+          return (await window.gaitway.open({ "fox.glb": await fox.arrayBuffer() })).joints;
+        }, base64);
       const joints = await openFox(page);
       const stored = () => JSON.parse(document.querySelector('meta[name="gaitway-parts"]')?.getAttribute("content") ?? "{}").meshopt;
       await until(page, async (file) => (await caches.match(file)) !== undefined, await page.evaluate(stored));
