@@ -9,7 +9,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown, withLessPatience } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -60,10 +60,11 @@ for (const renderer of BACK_ENDS)
      * @param {string} name
      * @param {() => string} link
      * @param {(page: TestPage) => Promise<void>} body
+     * @param {() => void} [before] Runs in the page before its scripts.
      */
-    const onPage = (name, link, body) =>
+    const onPage = (name, link, body, before) =>
       test(name, async () => {
-        const page = await site.page({ renderer, link: link() });
+        const page = await site.page({ renderer, link: link(), before });
         try {
           await body(page);
         } finally {
@@ -119,11 +120,13 @@ for (const renderer of BACK_ENDS)
       },
     );
 
-    onPage("doesn't wait for a site that never answers", () => fragment([["model", site.data(FOX)], ["motion", `${servers.silent.origin}/walk.bvh`]]), async (page) => {
+    const silentMotion = () => fragment([["model", site.data(FOX)], ["motion", `${servers.silent.origin}/walk.bvh`]]);
+    const showsTheRest = async (/** @type {TestPage} */ page) => {
       await whenMissing(page);
       assert.match((await missing(page)).join(), /walk\.bvh: nothing has come from the site for 20 seconds/);
       assert.equal((await pose(page)).meshes[0].positions.length, 3 * FOX_VERTICES);
-    });
+    };
+    onPage("doesn't wait for a site that never answers", silentMotion, showsTheRest, withLessPatience);
 
     onPage("shows the motion's own skeleton when the model can't be loaded", () => fragment([["model", `${CLOSED}/a.glb`], ["motion", site.data(DANCE)], ["embed", "1"]]), async (page) => {
       await whenMissing(page);
