@@ -13,7 +13,7 @@ for (const renderer of BACK_ENDS) {
   describe(`exercise on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => (site = await startSite()));
+    before(async () => (site = await startSite({ isOffScreen: true })));
     after(() => site?.close());
 
     /**

@@ -75,7 +75,7 @@ for (const renderer of BACK_ENDS)
   describe(`keyboard and assistive technology on ${renderer}`, { skip: skipWithoutData }, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => (site = await startSite()));
+    before(async () => (site = await startSite({ isOffScreen: true })));
     after(async () => await site?.close());
 
     /**

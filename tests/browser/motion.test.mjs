@@ -40,7 +40,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
     describe(`on ${renderer}`, () => {
       /** @type {import("./browser.mjs").Site} */
       let site;
-      before(async () => (site = await startSite()));
+      before(async () => (site = await startSite({ isOffScreen: true })));
       after(() => site?.close());
 
       /**

@@ -202,7 +202,7 @@ for (const renderer of BACK_ENDS)
   describe(`workshop on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => (site = await startSite()));
+    before(async () => (site = await startSite({ isOffScreen: true })));
     after(() => site?.close());
 
     /**
