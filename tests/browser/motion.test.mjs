@@ -61,7 +61,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         });
 
       /** @param {import("./browser.mjs").Site} site */
-      const model = (site) => `model=${encodeURIComponent(site.data(XBOT))}`;
+      const model = (site) => `model=${encodeURIComponent(site.data(XBOT))}&play=0`;
 
       onPage("a dropped .bvh plays on the model that is shown", model, async (page) => {
         await apply(page, { clip: "", play: 1 });
