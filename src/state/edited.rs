@@ -36,9 +36,8 @@ pub enum Edited {
 }
 
 impl Edited {
-    /// Returns what an edit changed; `None` if nothing.
-    pub fn between(before: &ViewerState, after: &ViewerState) -> Option<Self> {
-        let (a, b) = (before, after);
+    /// Returns in what two states differ, the first group of those above; `None` if in none.
+    pub fn between(a: &ViewerState, b: &ViewerState) -> Option<Self> {
         [
             (a.retarget.map != b.retarget.map, Self::JointMap),
             (a.retarget != b.retarget, Self::Retargeting),

@@ -90,7 +90,10 @@ for (const renderer of BACK_ENDS)
           await whenPictureDiffers(page, await picture(page));
           // Paused, with the shape of the gallery's image. Later keys of a link win.
           await page.evaluate((calm) => void (location.hash = calm), `${linkOf(scene)}&play=0&turntable=0&embed=1`);
-          await until(page, async () => !(await window.gaitway.state()).play);
+          await until(page, async () => {
+            const { play, turntable } = await window.gaitway.state();
+            return !play && turntable === 0;
+          });
           const around = 700 - (await picture(page)).height / PIXEL_RATIO;
           await resize(page, STILL.width, STILL.height + around);
           const shown = await picture(page);

@@ -177,6 +177,7 @@ export interface State {
   change: string[];
   layers: string[];
   camera: string;
+  turntable: number;
   pose: string;
   pin: string[];
   names: string;
