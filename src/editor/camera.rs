@@ -1,9 +1,12 @@
 //! Camera rules: commands that depend on the viewport's shape, or that must not change what is in view.
 
+use glam::Vec3;
+
 use super::Editor;
 use crate::frame::{current_orbit, travelled};
 use crate::state::{
-    CameraChoice, Command, OrbitCamera, ViewerState, comparison, comparison_ratio, frame_all, resolve_camera,
+    CameraChoice, Command, OrbitCamera, ViewerState, active_clip, comparison, comparison_ratio, frame_all,
+    resolve_camera,
 };
 
 impl Editor {
@@ -89,6 +92,37 @@ impl Editor {
             }
             _ => None,
         }
+    }
+
+    /// Returns the active clip and where a camera that the user has moved and that follows the character finds it there. The automatic
+    /// camera finds it anyway.
+    pub(super) fn followed_place(&self) -> Option<(Option<usize>, Vec3)> {
+        let follows = self.state.camera_options.follow && matches!(self.state.camera, CameraChoice::Orbit(_));
+        follows.then(|| (self.active_clip(), self.automatic_target()))
+    }
+
+    /// Moves such a camera along if another clip is somewhere else: otherwise, it follows the character within a clip only.
+    pub(super) fn follow_to_place(&mut self, before: Option<(Option<usize>, Vec3)>) {
+        /// Of the camera's distance: what moves by less stays in view.
+        const MIN_SHIFT: f32 = 0.25;
+        let (Some((clip, before)), CameraChoice::Orbit(orbit)) = (before, self.state.camera) else { return };
+        if self.active_clip() == clip {
+            return;
+        }
+        let shift = (self.automatic_target() - before) * Vec3::new(1.0, 0.0, 1.0);
+        if shift.length() > MIN_SHIFT * orbit.distance && self.held_camera != Some(orbit) {
+            let target = orbit.target + shift;
+            self.record(Command::SetCamera(CameraChoice::Orbit(OrbitCamera { target, ..orbit })));
+        }
+    }
+
+    fn active_clip(&self) -> Option<usize> {
+        self.library.active().and_then(|model| active_clip(model, &self.state))
+    }
+
+    fn automatic_target(&self) -> Vec3 {
+        let automatic = ViewerState { camera: CameraChoice::Auto, ..self.state.clone() };
+        resolve_camera(&self.library, &automatic, self.aspect).target
     }
 
     pub(super) fn notify_follow(&mut self, command: &Command) {

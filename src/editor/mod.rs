@@ -156,6 +156,8 @@ impl Editor {
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
         let view_before = if is_map_edit { self.automatic_view() } else { None };
+        let may_choose_clip = is_map_edit || chooses_copy || matches!(command, Command::SetClip(_));
+        let followed = if may_choose_clip { self.followed_place() } else { None };
         self.notify_follow(&command);
         let command = self.prepare_camera(command);
         self.record(command);
@@ -176,6 +178,7 @@ impl Editor {
             self.follow_clip(playing);
             self.hold_view(view_before);
         }
+        self.follow_to_place(followed);
         if let Some((motion, before)) = rematched {
             self.notify_rematch(motion, &before);
         }

@@ -198,6 +198,13 @@ for (const renderer of BACK_ENDS)
       assert.match(link, /model=.*Soldier\.glb.*motion=.*cmu_01_01\.bvh/);
     });
 
+    onPage("high contrast leaves the mirror invisible", () => "play=0", async (page) => {
+      await page.emulateMedia({ forcedColors: "active" });
+      const visible = await page.evaluate(() => [...document.querySelectorAll("#mirror *")].filter((element) => getComputedStyle(element).color !== "rgba(0, 0, 0, 0)").map(({ outerHTML }) => outerHTML));
+      assert.equal(await page.evaluate(() => matchMedia("(forced-colors: active)").matches), true);
+      assert.deepEqual(visible, []);
+    });
+
     onPage("the panels are read and operated through the mirror", () => fragment([["model", site.data(SOLDIER)], ["motion", site.data(WALK)], ["play", 0]]), async (page) => {
       await control(page, "tab", "Scene").press("Enter");
       await eventually(async () => (await control(page, "tab", "Scene").getAttribute("aria-selected")) === "true");

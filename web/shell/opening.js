@@ -27,7 +27,7 @@ import { running, session } from "./session.js";
  * @returns {Promise<InspectDocument>}
  */
 export async function open(items, { as, isPrivate = true, isByHand = false } = {}) {
-  const given = toItems(items);
+  const given = asAwaited(toItems(items));
   // The page around this one completes none of the user's models.
   const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
   await running();
@@ -74,7 +74,7 @@ export async function openByHand(items, options) {
   openedCount += 1;
   const number = openedCount;
   try {
-    if (!(await keptForModel(toItems(items)))) await open(items, { ...options, isByHand: true });
+    if (!(await keptForModel(asAwaited(toItems(items))))) await open(items, { ...options, isByHand: true });
     hideGallery();
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
@@ -110,14 +110,27 @@ async function keptForModel(items) {
 }
 
 /**
- * Returns a file of a link among items, by its bare name, or a copy of it.
+ * Gives copies of files that a link waits for the names that it knows them by: clips may be named after their file.
+ * @param {Item[]} items
+ * @returns {Item[]}
+ */
+function asAwaited(items) {
+  const names = (completable()?.wanted ?? []).map(({ name }) => fileName(name));
+  const missing = names.filter((name) => items.every((item) => bareName(item) !== name));
+  return items.map((item) => {
+    const at = missing.findIndex((name) => withoutCopy(name) === withoutCopy(bareName(item)));
+    if (at < 0 || typeof item === "string") return item;
+    const [name] = missing.splice(at, 1);
+    return { ...item, name: item.name.slice(0, item.name.lastIndexOf("/") + 1) + name };
+  });
+}
+
+/**
+ * Returns a file of a link among items, by its bare name.
  * @param {Item[]} items
  * @param {import("./types.d.ts").LinkedFile} file
  */
-function fileAmong(items, { name }) {
-  const wanted = fileName(name);
-  return items.find((item) => bareName(item) === wanted) ?? items.find((item) => withoutCopy(bareName(item)) === withoutCopy(wanted));
-}
+const fileAmong = (items, { name }) => items.find((item) => bareName(item) === fileName(name));
 
 /** @param {Item} item */
 const bareName = (item) => fileName(nameOf(item));

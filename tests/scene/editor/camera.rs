@@ -77,11 +77,16 @@ fn open_by_hand(editor: &mut Editor, file: &str) -> Vec<Event> {
 
 /// The walker with a clip that moves it this far.
 fn runner(metres: f32) -> Contents {
+    runner_from(0.0, metres)
+}
+
+/// The same from somewhere along X.
+fn runner_from(x: f32, metres: f32) -> Contents {
     let asset = Arc::try_unwrap(samples::load("walker").expect("is generated").asset).expect("nobody else has it");
     let mut parts = asset.into_parts();
     let hips = parts.skeleton.find("Hips").expect("it has hips");
     let mut clip = ClipBuilder::new("Run", &parts.skeleton);
-    let keys = Keys::Translation(vec![Vec3::Y, Vec3::new(0.0, 1.0, metres)]);
+    let keys = Keys::Translation(vec![Vec3::new(x, 1.0, 0.0), Vec3::new(x, 1.0, metres)]);
     clip.channel(hips, Interpolation::Linear, &[0.0, 3.0], keys).expect("two keys");
     parts.clips = vec![clip.build()];
     let model = Model::new("runner.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());
@@ -109,6 +114,25 @@ fn the_camera_follows_what_travels_far_unless_the_user_says_otherwise() {
     editor.apply(Command::SetClip(ClipChoice::RestPose));
     editor.apply(Command::SetClip(ClipChoice::First));
     assert!(!follows(&editor), "the user's choice is kept");
+}
+
+#[test]
+fn a_camera_that_follows_goes_where_another_clip_is() {
+    let mut editor = editor("sample:pilot");
+    editor.open(Contents { is_by_hand: true, ..runner_from(6.0, 8.0) }, None, &mut any).expect("fits");
+    editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
+    let at_the_run = orbit(&editor);
+    assert!((at_the_run.target.x - 6.0).abs() < 0.5, "{at_the_run:?}");
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    let at_rest = orbit(&editor);
+    assert!(at_rest.target.x.abs() < 0.5, "{at_rest:?}");
+    assert_eq!(OrbitCamera { target: at_the_run.target, ..at_rest }, at_the_run, "nothing else changes");
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!((orbit(&editor).target - at_the_run.target).length() < 1e-4);
+    editor.apply(Command::SetFollow(false));
+    let still = orbit(&editor);
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    assert_eq!(orbit(&editor), still);
 }
 
 fn are_automatic(editor: &Editor) -> bool {
