@@ -153,14 +153,13 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
 
 /// Returns the path and text of every library source file, sorted, including those of the core package.
 fn all_sources() -> Vec<(String, String)> {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut all = Vec::new();
-    for root in [repository.join("crates/core/src"), repository.join("src")] {
+    for root in ["crates/core/src", "src"].map(Path::new) {
         let mut files = Vec::new();
-        sources(&root, &mut files);
+        sources(root, &mut files);
         assert!(files.len() > 10, "only {} sources found in {}", files.len(), root.display());
         all.extend(files.into_iter().map(|file| {
-            let path = file.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+            let path = file.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
             (path, fs::read_to_string(&file).unwrap())
         }));
     }

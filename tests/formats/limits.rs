@@ -1,7 +1,5 @@
 //! Small files that ask for a lot: every reader counts before it allocates, and the error names the limit.
 
-use std::path::Path;
-
 use gaitway::files::read_map;
 use gaitway::formats::limits::{
     Limit, MAX_ARCHIVE_FILES, MAX_FOLDER_DEPTH, MAX_FOLDER_FILES, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, MAX_JSON_OBJECTS,
@@ -107,8 +105,7 @@ fn pixels_of_all_images() {
 /// The table in docs/limits.md lists every limit with its current value.
 #[test]
 fn the_limits_are_those_of_the_documentation() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/limits.md");
-    let text = std::fs::read_to_string(path).expect("docs/limits.md");
+    let text = std::fs::read_to_string("docs/limits.md").expect("docs/limits.md");
     let counted = Limit::ALL.map(|limit| (limit.name(), limit.max_in_unit() as u64));
     let others = [
         ("MiB of files", MAX_READ_BYTES >> 20),

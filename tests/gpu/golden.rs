@@ -2,7 +2,6 @@
 //! before you commit it.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gaitway::asset::Asset;
@@ -107,13 +106,10 @@ fn walker_without(joint: &str) -> Model {
     Model::new(model.source, Asset::new(asset).expect("still valid"), model.images)
 }
 
-fn path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/gpu/golden/walker.png")
-}
+const PATH: &str = "tests/gpu/golden/walker.png";
 
 fn golden() -> Vec<u8> {
-    let path = path();
-    let golden = image::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).into_rgba8();
+    let golden = image::open(PATH).unwrap_or_else(|error| panic!("{PATH}: {error}")).into_rgba8();
     assert_eq!(golden.dimensions(), (SIZE[0], SIZE[1]));
     golden.into_raw()
 }
@@ -123,7 +119,7 @@ fn the_walker_looks_as_it_did() {
     let Some(gpu) = gpu() else { return };
     let pixels = draw(&gpu, walker());
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(path(), encode_png(SIZE[0], SIZE[1], &pixels).unwrap()).unwrap();
+        std::fs::write(PATH, encode_png(SIZE[0], SIZE[1], &pixels).unwrap()).unwrap();
     }
     let difference = Difference::between(&golden(), &pixels);
     assert!(difference.is_small(), "{difference}; run with UPDATE_GOLDEN=1 and look at the picture");

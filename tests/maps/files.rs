@@ -101,8 +101,7 @@ fn the_documented_example_is_read() {
         ..JointMapFile::default()
     };
     assert_eq!(map, expected);
-    let documented =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/joint-maps.md")).expect("the page");
+    let documented = std::fs::read_to_string("docs/joint-maps.md").expect("the page");
     assert!(documented.contains(EXAMPLE), "docs/joint-maps.md has another example");
 }
 

@@ -24,8 +24,7 @@ fn decode_as(mime: &'static str, bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
 
 /// One of `tests/support/ktx2`.
 fn ktx2(name: &str) -> Vec<u8> {
-    let path = format!("{}/tests/support/ktx2/{name}.ktx2", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read(path).expect("a file of the repository")
+    std::fs::read(format!("tests/support/ktx2/{name}.ktx2")).expect("a file of the repository")
 }
 
 /// The pixels that were encoded there.

@@ -299,8 +299,7 @@ fn clips_are_written_with_pins() {
     let (folder, motion) = folder("pins");
     let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
     let (model, out) = (path("model.glb"), path("out.glb"));
-    let dwarf = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/samples/dwarf.glb");
-    std::fs::copy(dwarf, &model).expect("a copy");
+    std::fs::copy("assets/samples/dwarf.glb", &model).expect("a copy");
     let done =
         run(&["retarget", "--model", &model, "--motion", &motion, "--pin", "leftHand=at:0.3,0.9,0.4", "--out", &out]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));

@@ -1,6 +1,6 @@
 //! Where tests find real files. They are not part of the repository.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Returns the folder named by `GAITWAY_DATA`, or else `../shared/data` beside the repository. Without it this prints
 /// `skipped: …` and returns none, so that the test passes; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
@@ -19,9 +19,9 @@ pub fn data_folder() -> Option<PathBuf> {
     None
 }
 
-/// The tested package may be in a subfolder of the repository.
+/// Cargo runs tests in the folder of their package, which may be a subfolder of the repository.
 #[allow(dead_code)]
-fn repository() -> &'static Path {
-    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-    package.ancestors().find(|folder| folder.join("Cargo.lock").is_file()).unwrap_or(package)
+fn repository() -> PathBuf {
+    let package = std::env::current_dir().expect("the folder of the package");
+    package.ancestors().find(|folder| folder.join("Cargo.lock").is_file()).unwrap_or(&package).to_owned()
 }
