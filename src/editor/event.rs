@@ -37,4 +37,11 @@ pub enum Event {
         /// What it changed. `None`: it brought something back or removed it, which a notice says.
         edited: Option<Edited>,
     },
+    /// The user chose which joint of a motion a joint of the model follows, or that it follows none.
+    SourceSet {
+        /// Name of the model's joint.
+        target: String,
+        /// Name of the motion's joint.
+        source: Option<String>,
+    },
 }

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::{Editor, Event, short_name};
+use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
 use crate::retarget::{JointMap, JointMapFile, MapError};
 use crate::state::{Command, MapEdit, MotionMap, NumberedMap, ViewerState, numbered_for, proposed_map};
@@ -137,6 +138,19 @@ impl Editor {
         let text = format!("Applied the joint map to {}.", names.join(", "));
         self.events.push(Event::Notice { text, undoable });
         Ok(())
+    }
+
+    /// Tells about a joint's new source.
+    pub(super) fn notify_source(&mut self, command: &Command) {
+        let &Command::SetSource { motion, target, source } = command else { return };
+        let name = |asset: &Asset, number: usize| {
+            asset.skeleton.joint_of_source(number).map(|joint| asset.skeleton.name(joint).to_owned())
+        };
+        let (Some(model), Some(motion)) = (self.library.active(), self.library.motions().get(motion)) else { return };
+        if let Some(target) = name(&model.asset, target) {
+            let source = source.and_then(|source| name(&motion.asset, source));
+            self.events.push(Event::SourceSet { target, source });
+        }
     }
 
     /// Returns the message about a map, with the name of its file if it has just been opened.

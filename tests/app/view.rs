@@ -55,6 +55,21 @@ fn each_step_of_undo_and_redo_is_told_even_if_the_words_are_the_same() {
 }
 
 #[test]
+fn a_new_source_of_a_joint_is_told() {
+    let Some(mut desk) = desk("sample:mannequin") else { return };
+    desk.open(&["sample:mannequin_run".into()]);
+    let skeleton = &desk.library().active().expect("a model").asset.skeleton;
+    let number = |name: &str| skeleton.source_index(skeleton.find(name).expect("a joint of the mannequin"));
+    let [neck, head] = ["mixamorig:Neck", "mixamorig:Head"].map(number);
+    for (source, told) in
+        [(Some(head), "mixamorig:Neck follows mixamorig:Head."), (None, "mixamorig:Neck has no source.")]
+    {
+        desk.command(Command::SetSource { motion: 0, target: neck, source });
+        assert_eq!(desk.notice(), Some(told));
+    }
+}
+
+#[test]
 fn following_starts_and_stops_without_a_jump() {
     let Some(mut desk) = desk("sample:mannequin") else { return };
     desk.open(&["sample:mannequin_run".into()]);

@@ -85,7 +85,8 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
         ui.add(egui::Label::new(RichText::new(&texts.standing).small().color(color)).wrap());
         source_field(ui, pairing, row, tab, out);
         ui.horizontal_wrapped(|ui| {
-            if ui.button(text::LIST_SOURCES).on_hover_text("All joints of the motion").clicked() {
+            let list = ui.button(text::LIST_SOURCES).on_hover_text("All joints of the motion");
+            if list.clicked() {
                 tab.picking = Some(Picking::new(pairing.index, row.number));
             }
             if source_is_shown(shown, pairing)
@@ -94,6 +95,10 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
                 tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
             }
             let clear = ui.add_enabled(row.source.is_some(), egui::Button::new(text::CLEAR_SOURCE));
+            if clear.has_focus() && clear.clicked() {
+                // It is disabled now.
+                list.request_focus();
+            }
             if clear.on_hover_text("Leave the joint unmapped").clicked() {
                 out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source: None });
             }

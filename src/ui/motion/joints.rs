@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
-use egui::{Align2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
@@ -42,6 +42,8 @@ pub(super) struct TableView {
     /// Number of the row whose details scroll into view, and the number of passes until then: the scrolling for `pressed` has to
     /// take effect first.
     revealed: Option<(usize, u8)>,
+    /// Number of the row whose details have the focus: it gets it when they close.
+    in_details: Option<usize>,
 }
 
 /// Whether the table can be ordered by parts of the body.
@@ -249,7 +251,8 @@ impl Table<'_, '_> {
             ui.ctx().request_repaint();
             tab.table.revealed = Some((row.number, 1));
         }
-        if std::mem::take(&mut tab.table.takes_focus) {
+        let is_left = chosen.is_none() && tab.table.in_details.take_if(|number| *number == row.number).is_some();
+        if std::mem::take(&mut tab.table.takes_focus) || is_left {
             ui.memory_mut(|memory| memory.request_focus(target_id(ui, row)));
         }
         match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
@@ -266,6 +269,12 @@ impl Table<'_, '_> {
         if let Some(texts) = detail.as_ref().filter(|_| is_chosen) {
             let about = detail::About { shown: self.shown, pairing: self.pairing, map: self.map, row, texts };
             let details = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response.rect;
+            // The key that closes them takes the focus away a pass earlier.
+            if !ui.input(|input| input.key_pressed(Key::Escape)) {
+                let focused = ui.memory(|memory| memory.focused()).and_then(|id| ui.ctx().read_response(id));
+                tab.table.in_details =
+                    focused.is_some_and(|focused| details.contains_rect(focused.rect)).then_some(row.number);
+            }
             if revealed.is_some_and(|(_, passes)| passes == 0) {
                 // If not all of it fits, the row itself stays in view.
                 let whole = details.with_min_y(top);

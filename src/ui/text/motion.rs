@@ -78,6 +78,11 @@ pub fn follows(target: &str, source: &str) -> String {
     format!("{target} follows {source}")
 }
 
+/// Tells screen readers which joint of the motion a joint of the model follows now, if any.
+pub fn source_set(target: &str, source: Option<&str>) -> String {
+    source.map_or_else(|| format!("{target} has no source."), |source| format!("{}.", follows(target, source)))
+}
+
 /// Returns a row of the table: the joint, its source and its state. In the accessible name, the reasons follow.
 pub fn row(target: &str, source: &str, state: &str) -> String {
     format!("{} ({state})", follows(target, source))

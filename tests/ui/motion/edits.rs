@@ -142,6 +142,19 @@ fn channels_of_a_source_can_be_ignored() {
     assert_eq!(reach(&mut harness, text::USE_ALL_CHANNELS), [edit(MapEdit::UnmuteAll)]);
 }
 
+/// Whoever works with keys goes on where they were.
+#[test]
+fn the_row_has_the_focus_after_its_details_were_closed_by_a_key() {
+    let (mut harness, neck) = neck_details();
+    harness.get_by_label(text::CLEAR_SOURCE).focus();
+    harness.run();
+    let clear = Command::SetSource { motion: 0, target: neck, source: None };
+    assert_eq!(press_key(&mut harness, egui::Key::Enter), [clear]);
+    assert!(harness.get_by_label(text::LIST_SOURCES).is_focused(), "there is nothing more to clear");
+    assert_eq!(press_key(&mut harness, egui::Key::Escape), [Command::SelectJoint(None)]);
+    assert!(harness.get_by_label(&text::edit_joint("Neck")).is_focused());
+}
+
 #[test]
 fn a_joint_without_a_source_can_have_its_own_policy() {
     let (mut harness, neck) = neck_details();
