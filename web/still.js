@@ -26,7 +26,7 @@
   }
 
   /** @param {string} link */
-  const modelsOf = (link) => Array.from(link.matchAll(/\bmodel=([^&]*)/g), ([, model]) => decoded(model));
+  const modelsOf = (link) => Array.from(link.matchAll(/\bmodel=([^&]+)/g), ([, model]) => decoded(model));
 
   /**
    * @param {string} link

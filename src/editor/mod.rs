@@ -34,7 +34,7 @@ use serde_json::Value;
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
     ClipChoice, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
-    unknown_clip, view_problems,
+    looks_past, unknown_clip, view_problems,
 };
 use motions::ClipIdentity;
 use open::Shelved;
@@ -159,6 +159,7 @@ impl Editor {
         let may_choose_clip = is_map_edit || chooses_copy || matches!(command, Command::SetClip(_));
         let followed = if may_choose_clip { self.followed_place() } else { None };
         self.notify_follow(&command);
+        self.notify_source(&command);
         let command = self.prepare_camera(command);
         self.record(command);
         if reframes {
@@ -255,6 +256,10 @@ impl Editor {
             return self.tell(&errors, Vec::new());
         }
         errors.extend(view_problems(view, self.library.active()));
+        let has_model = self.library.active().is_some_and(|model| !model.is_placeholder());
+        if has_model && looks_past(&self.library, &self.state, self.aspect) {
+            errors.push(LinkError::LooksPast);
+        }
         self.tell(&errors, problems);
     }
 

@@ -105,12 +105,31 @@ pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCa
     }
 }
 
+/// Whether a camera set by hand looks past everything: all corners of [`resolved_bounds`] are behind it or beyond the same edge of
+/// the picture.
+pub fn looks_past(library: &Library, state: &ViewerState, aspect: f32) -> bool {
+    let CameraChoice::Orbit(orbit) = state.camera else { return false };
+    let (towards_eye, right, up) = axes(&orbit);
+    let tan_up = (0.5 * state.camera_options.fov_degrees.to_radians()).tan();
+    let tan_right = tan_up * pane_aspect(comparison(library, state), aspect);
+    let corners = resolved_bounds(library, state).corners().map(|corner| corner - orbit.eye());
+    let sides = [right, -right].map(|side| side + tan_right * towards_eye);
+    let ends = [up, -up].map(|end| end + tan_up * towards_eye);
+    let outwards = [towards_eye].into_iter().chain(sides).chain(ends);
+    outwards.into_iter().any(|outward| corners.iter().all(|corner| corner.dot(outward) > 0.0))
+}
+
+/// Returns the unit vectors from the target towards the eye, to the right and up.
+fn axes(orbit: &OrbitCamera) -> (Vec3, Vec3, Vec3) {
+    let towards_eye = orbit.direction();
+    let right = Vec3::Y.cross(towards_eye).normalize_or(Vec3::X);
+    (towards_eye, right, towards_eye.cross(right))
+}
+
 /// Returns the closest camera that sees all corners of a box.
 fn fit(bounds: Bounds, yaw_radians: f32, pitch_radians: f32, fov_degrees: f32, aspect: f32) -> OrbitCamera {
     let mut orbit = OrbitCamera { yaw_radians, pitch_radians, distance: 1.0, target: bounds.center() };
-    let towards_eye = orbit.direction();
-    let right = Vec3::Y.cross(towards_eye).normalize_or(Vec3::X);
-    let up = towards_eye.cross(right);
+    let (towards_eye, right, up) = axes(&orbit);
     let tan_up = (0.5 * fov_degrees.to_radians()).tan();
     let tan_right = tan_up * aspect.clamp(0.05, 20.0);
     let mut distance: f32 = 0.0;

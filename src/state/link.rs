@@ -67,6 +67,9 @@ pub enum LinkError {
         /// What is used instead.
         instead: &'static str,
     },
+    /// Nothing of the model is where the camera looks: the link was made for another file.
+    #[error("camera: it looks past this model; fit everything in view (F) to see it")]
+    LooksPast,
 }
 
 impl LinkError {
@@ -75,6 +78,7 @@ impl LinkError {
         match self {
             Self::BadValue { key, .. } | Self::UnknownKey { key } => key,
             Self::UnknownShow { .. } => "show",
+            Self::LooksPast => "camera",
             Self::OutOfRange { key, .. } | Self::UnknownName { key, .. } => key,
         }
     }

@@ -36,7 +36,8 @@ pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use edited::Edited;
 pub use framing::{
-    DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
+    DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, looks_past, resolve_camera, resolved_bounds,
+    world_from_file_camera,
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;

@@ -137,6 +137,13 @@ for (const renderer of BACK_ENDS)
       assert.equal(embed, true);
     });
 
+    onPage("says what is wrong if its model is a web page", () => fragment([["model", site.address]]), async (page) => {
+      await whenMissing(page);
+      assert.match(await page.locator("#missing-title").innerText(), /^The model in this link/);
+      assert.match((await missing(page)).join(), /^folder: HTML files cannot be read; this is a web page; use the address of the file itself/);
+      assert.doesNotMatch(await page.locator("#missing-rest").innerText(), /is shown/);
+    });
+
     const twoModels = () => fragment([["model", site.data(FOX)], ["model", `${servers.own.origin}/gone.glb`], ["play", 0]]);
     onPage("shows one of two models and names the missing one", twoModels, async (page) => {
       await whenMissing(page);
@@ -347,6 +354,29 @@ for (const renderer of BACK_ENDS)
       await page.goBack();
       await page.goBack();
       await whenShown(page, FOX_VERTICES);
+    });
+
+    onPage("shows the open files when the address is edited", () => fragment([["model", site.data(FOX)], ["play", 0]]), async (page) => {
+      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      await apply(page, { t: 0.5, play: 0 });
+      await until(page, () => location.hash.includes("t=0.5"));
+      assert.ok(page.url().includes("model=file:CesiumMan.glb"), page.url());
+      await page.evaluate(() => void (location.hash = location.hash.replace("t=0.5", "t=1&exposure=1")));
+      await until(page, async () => (await window.gaitway.state()).exposure === 1);
+      const { model, t } = await state(page);
+      assert.deepEqual([model, t], [["CesiumMan.glb"], 1]);
+      assert.equal((await pose(page)).meshes[0].positions.length, 3 * CESIUM_MAN_VERTICES);
+      assert.equal(await page.locator("#bring").isVisible(), false);
+      // Nobody has opened this one.
+      await page.evaluate(() => void (location.hash = location.hash.replace("CesiumMan", "CesiumWoman")));
+      await page.locator("#bring").waitFor({ state: "visible" });
+      assert.match(await page.locator("#bring-files").innerText(), /^CesiumWoman\.glb \(model\)$/);
+      await page.keyboard.press("Escape");
+      await page.goBack();
+      await page.goBack();
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      assert.equal((await state(page)).t, 0.5);
     });
 
     const NOTHING = { result: undefined, error: undefined, code: undefined };

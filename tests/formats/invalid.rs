@@ -34,6 +34,7 @@ fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
 fn foreign_formats() {
     check_bytes("model.dae", b"<COLLADA/>".to_vec(), &["COLLADA", "File › Import"]);
     check_bytes("scene.blend", b"BLENDER-v300".to_vec(), &["Blender's own", "File › Open"]);
+    check_bytes("download", b"\n<!DOCTYPE HTML>".to_vec(), &["HTML", "web page"]);
     check_bytes("sky.exr", b"\x76\x2f\x31\x01".to_vec(), &["OpenEXR", ".hdr"]);
 }
 

@@ -445,6 +445,8 @@ fn parts_of_a_map_are_easy_to_write_manually() {
 
 #[test]
 fn bad_values_are_reported_and_skipped() {
+    check_bad("model=", "model");
+    check_bad("motion=", "motion");
     check_bad("t=soon", "t");
     check_bad("t=inf", "t");
     check_bad("play=yes", "play");

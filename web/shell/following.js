@@ -3,7 +3,7 @@ import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.j
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
-import { fileName, heldItems, heldMotionsAndLight, localFiles } from "./held.js";
+import { fileName, heldItems, heldMotionsAndLight, localFiles, withOpenFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
@@ -76,6 +76,9 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
  */
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
+/** Whether no model is shown. */
+const isEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
+
 /**
  * Whether the stage is empty, or shows a motion's skeleton, instead of one of the link's models.
  * @param {import("./types.d.ts").LinkedFile[]} models
@@ -83,9 +86,8 @@ const areSame = (items, others) => items.length === others.length && items.every
  */
 function lacksModel(models, isUnchanged) {
   if (session.app === null) return false;
-  const isEmpty = JSON.parse(session.app.summary()).isEmpty;
   const isShown = (/** @type {string} */ source) => models.some(({ name }) => source.startsWith(name));
-  return isEmpty || !(isUnchanged || JSON.parse(session.app.state()).model.some(isShown));
+  return isEmpty() || !(isUnchanged || JSON.parse(session.app.state()).model.some(isShown));
 }
 
 /**
@@ -96,9 +98,10 @@ function lacksModel(models, isUnchanged) {
  */
 export function showMissing(problems, link, isUnchanged = false) {
   if (problems.length === 0) return;
-  // A problem may name the absolute URL of a relative one, or only the file.
+  // A problem may name the absolute URL of a relative one, or only the file. Nothing is shown without one about the model.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
-  const models = linkedFiles(link).filter(({ role, name }) => role === "model" && failed.includes(fileName(name)));
+  const hasNone = isEmpty();
+  const models = linkedFiles(link).filter(({ role, name }) => role === "model" && (hasNone || failed.includes(fileName(name))));
   const hasFailed = models.length > 0;
   const isAwaited = hasFailed && lacksModel(models, isUnchanged);
   if (isAwaited) awaitCopies(link, models.map(({ name }) => name));
@@ -160,5 +163,6 @@ addEventListener("popstate", ({ state }) => {
   const link = linkOfAddress();
   // An instance that is starting shows this link instead.
   if (session.app === null) session.askedLink = session.link = link;
-  else follow(link, { wasPrivate: state?.own === true, ...visit });
+  // The address of the current view may have been edited: files that are open aren't asked for.
+  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withOpenFiles(link, session.link)) });
 });

@@ -1,6 +1,6 @@
 // Files that were dropped or chosen. The page holds on to them, so that a new instance, back and forward can show them
 // again; a link only has their names.
-import { linkedFiles, publicLink } from "./links.js";
+import { linkWithFiles, linkedFiles, publicLink } from "./links.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
@@ -114,6 +114,19 @@ const isLocalFile = ({ name, isToBring }) => !isToBring && held.some((items) => 
  * @param {string} link
  */
 export const localFiles = (link) => linkedFiles(link).filter(isLocalFile);
+
+/**
+ * Returns what a link shows with the local files that it asks for by name and that the current view has open, if there are any.
+ * @param {string} link
+ * @param {string} current
+ */
+export function withOpenFiles(link, current) {
+  const open = localFiles(current).map(({ name }) => name);
+  const names = linkedFiles(link).flatMap(({ name, isToBring }) => (isToBring ? [open.includes(name) ? name : ""] : []));
+  if (names.every((name) => name === "")) return undefined;
+  const known = linkWithFiles(link, names);
+  return { link: known, items: heldItems(known), motionItems: heldMotionsAndLight(known) };
+}
 
 /**
  * Returns the link to hand to others.

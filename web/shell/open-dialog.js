@@ -89,7 +89,9 @@ field("bring-chosen").addEventListener("change", () => {
 });
 dialog("bring").addEventListener("close", () => {
   const [{ returnValue }, asking] = [dialog("bring"), awaited()];
-  if ((returnValue === "later" || returnValue === "") && asking !== null) session.app?.notify(needOf(asking));
+  // The empty stage says what it waits for.
+  const isSaid = asking?.missing.some(({ role }) => role === "model");
+  if ((returnValue === "later" || returnValue === "") && asking !== null && !isSaid) session.app?.notify(needOf(asking));
   if (document.activeElement === document.body) focusCanvas();
 });
 

@@ -53,7 +53,11 @@ impl LinkRole {
     /// `None` for a pair that names no file, such as a light that is generated.
     fn of(pair: &str) -> Option<Self> {
         let role = [Self::Model, Self::Motion, Self::Light].into_iter().find(|role| role.key() == key_of(pair))?;
-        let is_file = role != Self::Light || matches!(read_light(&value_of(pair)), Some(EnvironmentChoice::File(_)));
+        let value = value_of(pair);
+        let is_file = match role {
+            Self::Light => matches!(read_light(&value), Some(EnvironmentChoice::File(_))),
+            _ => !value.is_empty(),
+        };
         is_file.then_some(role)
     }
 }

@@ -171,7 +171,7 @@ pub fn with_current_member(text: &str) -> String {
 }
 
 pub(super) fn read_source(text: &str) -> Option<String> {
-    Some(with_current_member(text))
+    (!text.is_empty()).then(|| with_current_member(text))
 }
 
 pub(super) fn map_text(map: &MotionMap) -> String {

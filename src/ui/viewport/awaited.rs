@@ -34,7 +34,7 @@ pub fn show(ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
                 ui.add(egui::Label::new(RichText::new(title).heading().color(palette.text)).wrap());
                 ui.add(egui::Label::new(RichText::new(hint).color(palette.weak_text)).wrap());
                 ui.add_space(4.0);
-                if !shown.state.page.embed && ui.button(text::BRING).clicked() {
+                if ui.button(text::BRING).clicked() {
                     out.actions.push(UiAction::OpenFiles);
                 }
             });

@@ -214,6 +214,25 @@ fn nothing_is_said_of_what_a_link_names_before_its_files_are_there() {
     assert_eq!(editor.state().playhead.clip, ClipChoice::Named("Fly".to_owned()));
 }
 
+/// As for another file under the same name, or one that was exported in other units.
+#[test]
+fn a_camera_that_looks_past_the_model_is_told() {
+    let told = |camera: &str| {
+        let (view, _) = from_link(&format!("v=1&model=sample:walker&camera={camera}"));
+        let mut editor = Editor::default();
+        editor.open(contents(&["sample:walker"]), Some(view), &mut any).expect("fits");
+        notices(&editor.take_events()).join(" ")
+    };
+    // Yaw and pitch in degrees, distance, target.
+    for seen in ["30,10,4,0,1,0", "0,0,0.05,0,1,0", "0,0,4,1.2,1,0", "0,89,4,0,1,0"] {
+        assert_eq!(told(seen), "", "{seen}");
+    }
+    for past in ["30,10,4,0,100,0", "0,0,4,0,1,-50", "0,0,4,9,1,0", "0,89,4,0,1,30"] {
+        let expected = "camera: it looks past this model; fit everything in view (F) to see it.";
+        assert_eq!(told(past), expected, "{past}");
+    }
+}
+
 #[test]
 fn what_is_wrong_with_a_link_is_told_with_the_problems_of_its_maps() {
     let (view, link_errors) = from_link("v=1&model=sample:walker&motion=walk.bvh&map=1.ffffffff.0-5&t=noon&clip=Fly");

@@ -233,7 +233,7 @@ fn find_model(files: &FileSet) -> Result<(&str, &SharedBytes), LoadError> {
                     let problem = "a file of this format is loaded after `prepare` has converted it".to_owned();
                     return Some(LoadError::Conversion { file: name.to_owned(), problem });
                 }
-                let (format, advice) = foreign_format(name)?;
+                let (format, advice) = foreign_format(name, bytes)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format, advice })
             })
             .or_else(|| files.names().find(|name| extension(name) == "bin").map(without_gltf))
@@ -299,8 +299,14 @@ fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
 }
 
 /// Returns a format that users may expect to be read, and how to convert it.
-fn foreign_format(name: &str) -> Option<(&'static str, &'static str)> {
+fn foreign_format(name: &str, bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let is_html = ["<!doctype html", "<html"].iter().any(|start| {
+        bytes.trim_ascii_start().get(..start.len()).is_some_and(|found| found.eq_ignore_ascii_case(start.as_bytes()))
+    });
     match extension(name).as_str() {
+        _ if is_html => {
+            Some(("HTML", "this is a web page; use the address of the file itself, such as its download link"))
+        }
         "dae" => Some((
             "COLLADA",
             "import it into Blender (File › Import, up to version 4.5), then export glTF 2.0 (.glb) and drop that",
