@@ -94,6 +94,13 @@ fn eyes_hide_nodes_and_materials_and_alt_solos_them() {
     harness.get_by_label(&text::eye("Eyes", true)).click_modifiers(egui::Modifiers::ALT);
     harness.run();
     assert_eq!(harness.state().commands, [Command::SetHidden(nodes(&[22]))], "all others");
+    // egui takes a long press of a finger for this click.
+    harness.get_by_label(&text::eye("Eyes", true)).click_secondary();
+    harness.run();
+    assert_eq!(harness.state().commands.last(), Some(&Command::SetHidden(Hidden::default())), "again");
+    harness.get_by_label(&text::eye("Eyes", true)).click_secondary();
+    harness.run();
+    assert_eq!(harness.state().commands.last(), Some(&Command::SetHidden(nodes(&[22]))));
     assert_eq!(press(&mut harness, text::SHOW_ALL), [Command::SetHidden(Hidden::default())]);
     assert!(harness.query_by_label(text::SHOW_ALL).is_none());
     // The card has the same as buttons.

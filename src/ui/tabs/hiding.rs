@@ -28,10 +28,8 @@ pub fn eye(ui: &Ui, row: Rect, id: Id, name: &str, is_shown: bool) -> Option<Pre
     let icon = if is_shown { Icon::Eye } else { Icon::EyeClosed };
     paint(ui.painter(), icon, Rect::from_center_size(grab.center(), Vec2::splat(15.0)), color);
     style::focus_ring(ui, &response, grab.shrink(1.0), style::CORNER, 1.0);
-    let pressed = response.clicked().then(|| match ui.input(|input| input.modifiers.alt) {
-        true => Pressed::Solo,
-        false => Pressed::Toggle,
-    });
+    let is_solo = response.secondary_clicked() || (response.clicked() && ui.input(|input| input.modifiers.alt));
+    let pressed = if is_solo { Some(Pressed::Solo) } else { response.clicked().then_some(Pressed::Toggle) };
     response.on_hover_text(text::ALT_SOLO);
     pressed
 }
