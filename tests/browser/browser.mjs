@@ -27,6 +27,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {{ width: number, height: number }} [viewport]
  * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Without it, the page is in
  *   the context that the pages of a test file share.
+ * @property {boolean} [isCalm] Unlike other pages of the site (see {@link SiteOptions}).
  * @property {() => void} [before] Runs in the page before its scripts.
  * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
  * @property {boolean} [ready] False: don't wait for the first image.
@@ -66,7 +67,11 @@ const TIMEOUT_MS = 60_000;
  * @typedef {{ isOffScreen?: boolean }} LaunchOptions
  */
 
-/** `pixelRatio`: pixels per CSS pixel, more than usual for pictures that are looked at closely. @typedef {{ pixelRatio?: number }} SiteOptions */
+/**
+ * `pixelRatio`: pixels per CSS pixel, more than usual for pictures that are looked at closely. `isCalm`: the user has asked for reduced
+ * motion, so nothing plays by itself and keeps a software renderer busy.
+ * @typedef {{ pixelRatio?: number, isCalm?: boolean }} SiteOptions
+ */
 
 /**
  * Starts a browser in which pages of one site share a process, and thereby compiled programs.
@@ -81,7 +86,7 @@ export function launch({ isOffScreen = false } = {}) {
  * Starts the two servers and a browser.
  * @param {LaunchOptions & SiteOptions} [options]
  */
-export async function startSite({ isOffScreen, pixelRatio = PIXEL_RATIO } = {}) {
+export async function startSite({ isOffScreen, pixelRatio = PIXEL_RATIO, isCalm = false } = {}) {
   if (!fs.existsSync(path.join(dist, "index.html"))) throw new Error(`no built page in ${dist}: run \`cargo xtask build\``);
   const site = await serve({ "/some/folder/": dist });
   const data = hasData ? await serve({ "/": dataFile("") }, { "access-control-allow-origin": "*" }) : null;
@@ -98,7 +103,7 @@ export async function startSite({ isOffScreen, pixelRatio = PIXEL_RATIO } = {}) 
      */
     data: (name) => `${data?.origin}/${name}`,
     /** @param {PageOptions} options */
-    page: (options) => openPage(browser, shared, address, options),
+    page: (options) => openPage(browser, shared, address, { isCalm, ...options }),
     close: async () => {
       await browser.close();
       await site.close();
@@ -168,7 +173,7 @@ export function watched(page, isShared = false) {
  * @param {string} address
  * @param {PageOptions} options
  */
-async function openPage(browser, shared, address, { renderer, link = "model=sample:walker&play=0", viewport = VIEWPORT, deviceScaleFactor, before, files = {}, ready = true }) {
+async function openPage(browser, shared, address, { renderer, link = "model=sample:walker&play=0", viewport = VIEWPORT, deviceScaleFactor, isCalm, before, files = {}, ready = true }) {
   const isShared = deviceScaleFactor === undefined;
   const program = `${address}${renderer === undefined ? "" : `?renderer=${renderer}`}`;
   if (isShared) await shared.hold(program);
@@ -176,6 +181,7 @@ async function openPage(browser, shared, address, { renderer, link = "model=samp
   const page = watched(await context.newPage(), isShared);
   if (isShared) await page.setViewportSize(viewport);
   page.setDefaultTimeout(TIMEOUT_MS);
+  if (isCalm === true) await page.emulateMedia({ reducedMotion: "reduce" });
   await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
   if (before !== undefined) await page.addInitScript(before);
   for (const [name, body] of Object.entries(files)) await page.route(`**/${name}`, (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));

@@ -36,7 +36,7 @@ for (const renderer of BACK_ENDS)
   describe(`design on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => void (site = await startSite()));
+    before(async () => void (site = await startSite({ isCalm: true })));
     after(() => site?.close());
 
     for (const viewport of [DESKTOP, PHONE])

@@ -41,7 +41,7 @@ for (const renderer of BACK_ENDS)
     /** @type {string} */
     let folder;
     before(async () => {
-      site = await startSite({ isOffScreen: true });
+      site = await startSite({ isOffScreen: true, isCalm: true });
       folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-link-"));
       servers = {
         // Without CORS headers.

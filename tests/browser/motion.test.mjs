@@ -172,7 +172,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       });
 
       test("everything comes back after a crash, dropped motion too", async () => {
-        const own = await startSite();
+        const own = await startSite({ isOffScreen: true });
         try {
           const page = await own.page({ renderer });
           await drop(page, [{ name: "Xbot.glb", url: own.data(XBOT) }]);

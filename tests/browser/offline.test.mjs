@@ -7,7 +7,7 @@ import { after, before, describe, test } from "node:test";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
 import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, PIXEL_RATIO, VIEWPORT, launch, state, until, watched, whenReady } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, VIEWPORT, apply, launch, state, until, watched, whenReady } from "./browser.mjs";
 
 const FOLDER = "/some/folder/";
 
@@ -39,7 +39,7 @@ describe("after a visit", () => {
   /** @type {string} */
   let folder;
   before(async () => {
-    browser = await launch();
+    browser = await launch({ isOffScreen: true });
     folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-site-"));
   });
   after(async () => {
@@ -54,6 +54,8 @@ describe("after a visit", () => {
     await page.goto(address);
     await whenReady(page);
     await whenStored(page);
+    // Other pages are opened beside it.
+    await apply(page, { play: 0, turntable: 0 });
     return { context, page };
   }
 

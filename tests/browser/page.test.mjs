@@ -60,30 +60,29 @@ const programs = (page) => page.requests.flatMap((url) => url.match(/(webgpu|web
 console.warn = () => {};
 
 for (const renderer of BACK_ENDS) {
-  describe(`page on ${renderer}`, () => {
+  describe(`screen on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
     before(async () => (site = await startSite()));
     after(() => site?.close());
 
     /**
-     * Tests on a fresh page, which must report no errors.
      * @param {string} name
-     * @param {{ data?: boolean, link?: (site: import("./browser.mjs").Site) => string }} options
-     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
+     * @param {string} link
+     * @param {(page: import("./browser.mjs").TestPage, t: import("node:test").TestContext) => Promise<void>} body
      */
-    const onPage = (name, options, body) =>
-      test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
-        const page = await site.page({ renderer, ...options, link: options.link?.(site) });
+    const onScreen = (name, link, body) =>
+      test(name, async (t) => {
+        const page = await site.page({ renderer, link });
         try {
-          await body(page);
+          await body(page, t);
           assert.deepEqual(page.troubles, []);
         } finally {
           await page.finish();
         }
       });
 
-    onPage("starts with a sample that moves", { link: () => "model=sample:walker" }, async (page) => {
+    onScreen("starts with a sample that moves", "model=sample:walker", async (page) => {
       const { backend } = await stats(page);
       assert.equal(backend, renderer);
       const first = await pose(page);
@@ -97,18 +96,83 @@ for (const renderer of BACK_ENDS) {
       await eventually(async () => !firstScreen.equals(await page.screenshot()), "the screen should move");
     });
 
-    onPage("requests nothing from other hosts and works in any folder", {}, async (page) => {
+    for (const [script, one, other] of [["Japanese", "腕", "脚"], ["Georgian", "მკლავი", "ფეხი"]])
+      onScreen(`shows names in ${script}, which its own font lacks`, "model=sample:walker&play=0&joint=3", async (page, t) => {
+        if (!(await page.evaluate(hasFontFor, one))) return t.skip(`this machine has no font for ${script}`);
+        /** @param {string} name */
+        const labelled = async (name) => {
+          await apply(page, { names: `3:${encodeURIComponent(name)}` });
+          await untilStill(page);
+          return (await page.screenshot()).toString("base64");
+        };
+        const shown = await labelled(one);
+        assert.notEqual(shown, await labelled(other), "two names");
+        assert.notEqual(shown, await labelled(UNASSIGNED.repeat(one.length)), "a box for each letter");
+        assert.equal(shown, await labelled(one), "nothing but the name changes the picture");
+      });
+
+    onScreen("says that a folder has no files in it", "model=sample:walker&play=0", async (page) => {
+      const before = await page.screenshot();
+      await page.locator("#gallery-own").evaluate((button) => button instanceof HTMLElement && button.click());
+      await page.locator("#open-folder").dispatchEvent("change");
+      await until(page, () => /folder has no files/.test(document.querySelector("#problem")?.textContent ?? ""));
+      assert.equal(await page.locator("#open").isVisible(), false);
+      // Resolves after the next frame.
+      await apply(page, { play: 0 });
+      assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
+    });
+  });
+
+  describe(`page on ${renderer}`, () => {
+    /** @type {import("./browser.mjs").Site} */
+    let site;
+    before(async () => (site = await startSite({ isOffScreen: true, isCalm: true })));
+    after(() => site?.close());
+
+    /** @type {import("./browser.mjs").TestPage | undefined} */
+    let shared;
+    /**
+     * Tests on a page that several tests share: each opens what it needs itself. The page must report no errors.
+     * @param {string} name
+     * @param {{ data?: boolean }} options
+     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
+     */
+    const onSharedPage = (name, options, body) =>
+      test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
+        shared ??= await site.page({ renderer });
+        await body(shared);
+        assert.deepEqual(shared.troubles, []);
+      });
+
+    /**
+     * Tests on a fresh page, which must report no errors.
+     * @param {string} name
+     * @param {{ data?: boolean, link?: (site: import("./browser.mjs").Site) => string, isCalm?: boolean }} options
+     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
+     */
+    const onPage = (name, options, body) =>
+      test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
+        const page = await site.page({ renderer, ...options, link: options.link?.(site) });
+        try {
+          await body(page);
+          assert.deepEqual(page.troubles, []);
+        } finally {
+          await page.finish();
+        }
+      });
+
+    onSharedPage("requests nothing from other hosts and works in any folder", {}, async (page) => {
       const { origin } = new URL(page.url());
       const others = page.requests.filter((url) => !/^(data|blob):/.test(url) && !url.startsWith(`${origin}/some/folder/`));
       assert.deepEqual(others, []);
     });
 
-    onPage("opens one dropped file", { data: true }, async (page) => {
+    onSharedPage("opens one dropped file", { data: true }, async (page) => {
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenShown(page, FOX_VERTICES);
     });
 
-    onPage("opens a .gltf dropped with its files", { data: true }, async (page) => {
+    onSharedPage("opens a .gltf dropped with its files", { data: true }, async (page) => {
       const folder = path.posix.dirname(CESIUM_MAN);
       const names = ["CesiumMan.jpg", "CesiumMan.gltf", "CesiumMan0.bin"];
       await drop(page, names.map((name) => ({ name, url: site.data(`${folder}/${name}`) })));
@@ -125,7 +189,7 @@ for (const renderer of BACK_ENDS) {
       assert.equal(Number(play), 0);
     });
 
-    onPage("opens URLs, buffers and files from a script", { data: true }, async (page) => {
+    onSharedPage("opens URLs, buffers and files from a script", { data: true }, async (page) => {
       const byUrl = await open(page, site.data(CESIUM_MAN));
       assert.equal(byUrl.vertices, CESIUM_MAN_VERTICES);
       const byBuffer = await page.evaluate(
@@ -142,7 +206,7 @@ for (const renderer of BACK_ENDS) {
       await whenShown(page, CESIUM_MAN_VERTICES);
     });
 
-    onPage("shows the chosen clip at the chosen time", { data: true }, async (page) => {
+    onSharedPage("shows the chosen clip at the chosen time", { data: true }, async (page) => {
       await open(page, site.data(FOX));
       const reference = await loadScene(dataFile(FOX));
       for (const { clip, t } of [{ clip: "Survey", t: 1.25 }, { clip: "Run", t: 0.3 }, { clip: "Walk", t: 0.6 }]) {
@@ -159,7 +223,7 @@ for (const renderer of BACK_ENDS) {
       assert.equal((await pose(page)).clip, null);
     });
 
-    onPage("dispatches an event for a change", {}, async (page) => {
+    onSharedPage("dispatches an event for a change", {}, async (page) => {
       await page.evaluate(() => {
         window.changes = 0;
         window.addEventListener("gaitway:change", () => window.changes++);
@@ -168,13 +232,13 @@ for (const renderer of BACK_ENDS) {
       await until(page, () => window.changes > 0);
     });
 
-    onPage("rejects a wrong value and keeps the state", {}, async (page) => {
+    onSharedPage("rejects a wrong value and keeps the state", {}, async (page) => {
       const earlier = await state(page);
       await assert.rejects(apply(page, { speed: "quickly" }), /speed/);
       assert.deepEqual(await state(page), earlier);
     });
 
-    onPage("plays and pauses with the space bar", { link: () => "model=sample:walker" }, async (page) => {
+    onPage("plays and pauses with the space bar", { link: () => "model=sample:walker", isCalm: false }, async (page) => {
       await page.mouse.click(CENTER.x, CENTER.y);
       await page.keyboard.press("Space");
       await until(page, async () => Number((await window.gaitway.state()).play) === 0);
@@ -231,37 +295,6 @@ for (const renderer of BACK_ENDS) {
       await untilStill(page);
       const drawn = await framesDrawnDuring(page, IDLE_FRAMES);
       assert.ok(drawn <= 2, `${drawn} frames in an idle second`);
-    });
-
-    for (const [script, one, other] of [["Japanese", "腕", "脚"], ["Georgian", "მკლავი", "ფეხი"]])
-      test(`shows names in ${script}, which its own font lacks`, async (t) => {
-        const page = await site.page({ renderer, link: "model=sample:walker&play=0&joint=3" });
-        try {
-          if (!(await page.evaluate(hasFontFor, one))) return t.skip(`this machine has no font for ${script}`);
-          /** @param {string} name */
-          const labelled = async (name) => {
-            await apply(page, { names: `3:${encodeURIComponent(name)}` });
-            await untilStill(page);
-            return (await page.screenshot()).toString("base64");
-          };
-          const shown = await labelled(one);
-          assert.notEqual(shown, await labelled(other), "two names");
-          assert.notEqual(shown, await labelled(UNASSIGNED.repeat(one.length)), "a box for each letter");
-          assert.equal(shown, await labelled(one), "nothing but the name changes the picture");
-        } finally {
-          await page.finish();
-        }
-      });
-
-    onPage("says that a folder has no files in it", {}, async (page) => {
-      const before = await page.screenshot();
-      await page.locator("#gallery-own").evaluate((button) => button instanceof HTMLElement && button.click());
-      await page.locator("#open-folder").dispatchEvent("change");
-      await until(page, () => /folder has no files/.test(document.querySelector("#problem")?.textContent ?? ""));
-      assert.equal(await page.locator("#open").isVisible(), false);
-      // Resolves after the next frame.
-      await apply(page, { play: 0 });
-      assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
     });
 
     /** A model in three files. */
@@ -402,7 +435,7 @@ for (const renderer of BACK_ENDS) {
     });
 
     test("stops when the graphics process dies and restarts with the same view", { skip: skipWithoutData }, async () => {
-      const own = await startSite();
+      const own = await startSite({ isOffScreen: true });
       try {
         const page = await own.page({ renderer });
         await drop(page, [{ name: "Fox.glb", url: own.data(FOX) }]);
@@ -442,7 +475,7 @@ for (const renderer of BACK_ENDS) {
     });
 
     test("switches to the other back end when the graphics process dies", async () => {
-      const own = await startSite();
+      const own = await startSite({ isOffScreen: true });
       try {
         const page = await own.page({ renderer, link: "model=sample:walker&play=0&t=0.5" });
         assert.deepEqual(programs(page), [renderer]);
@@ -465,7 +498,7 @@ for (const renderer of BACK_ENDS) {
 describe("page without graphics", () => {
   /** @type {import("./browser.mjs").Site} */
   let site;
-  before(async () => (site = await startSite()));
+  before(async () => (site = await startSite({ isOffScreen: true })));
   after(() => site?.close());
 
   test("says what is missing and what to try", async () => {

@@ -212,7 +212,7 @@ for (const renderer of BACK_ENDS)
     /** @type {import("./browser.mjs").Site} */
     let site;
     before(async () => {
-      site = await startSite({ isOffScreen: true });
+      site = await startSite({ isOffScreen: true, isCalm: true });
     });
     after(() => site?.close());
 

@@ -85,7 +85,7 @@ for (const renderer of BACK_ENDS)
   describe(`story on ${renderer}`, { skip: skipWithoutData }, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    before(async () => (site = await startSite({ isOffScreen: true })));
+    before(async () => (site = await startSite({ isOffScreen: true, isCalm: true })));
     after(async () => await site?.close());
 
     /**
