@@ -2,15 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use gaitway::anim::{Clip, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton, Transform};
+use gaitway::anim::{
+    Clip, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton, Transform, model_from_single_joint,
+};
 use gaitway::asset::{AssetParts, Slot};
 use gaitway::avatar::{Avatar, LookAt, LookAtKind, RangeMaps};
 use gaitway::retarget::{Pin, PinGoal, PinTimes, Pinning, Recognized, recognize};
 use glam::{Affine3A, DMat3, DQuat, DVec3, Quat, Vec3};
 
+use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::degrees;
 use crate::random::Random;
+use crate::real::read;
 use crate::skeletons::{asset, joint};
 
 /// The slots of each limb, and the axis about which it bends in the T-pose.
@@ -313,10 +317,53 @@ fn any_two_bones_are_a_limb() {
             Pinning { asset: &asset, body: &body, pins: &pins, world_from_model: Affine3A::IDENTITY, eye: None };
         let mut pose = skeleton.rest().clone();
         pinning.apply(0.0, &mut pose);
-        let end = gaitway::anim::model_from_single_joint(skeleton, &pose, JointIndex(3)).translation;
+        let end = model_from_single_joint(skeleton, &pose, JointIndex(3)).translation;
         assert!(Vec3::from(end).distance(goal) < 1e-5, "{end}");
         assert!(!pinning.allows(1, PinGoal::Point(goal)) && pinning.allows(1, PinGoal::Look(goal)));
         assert!(pinning.allows(2, PinGoal::Point(goal)), "two bones from the root");
+    }
+}
+
+/// A robot whose feet are children of the root, beside its legs: they are moved, and their legs reach for them. Nothing else moves.
+#[test]
+fn a_foot_beside_its_leg_is_moved_along() {
+    let Some(folder) = data_folder() else { return };
+    let asset = read(&folder, "threejs/RobotExpressive.glb");
+    let (skeleton, body) = (&asset.skeleton, recognize(&asset));
+    let clip = asset.clips.iter().find(|clip| clip.name() == "Walking").expect("a walk");
+    let [upper, lower, foot] = ["UpperLeg.L", "LowerLeg.L", "Foot.L"].map(|name| skeleton.find(name).expect(name));
+    let number = skeleton.source_index(foot);
+    let sampled = |clip: &Clip, time_secs: f32| {
+        let mut pose = skeleton.rest().clone();
+        clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+        pose
+    };
+    let at = |pose: &Pose, joint| Vec3::from(model_from_single_joint(skeleton, pose, joint).translation);
+    let goal = at(&sampled(clip, 0.1), foot) + Vec3::new(0.1, 0.1, 0.0);
+    let pins = BTreeMap::from([(number, pin(PinGoal::Point(goal)))]);
+    let pinning = Pinning { asset: &asset, body: &body, pins: &pins, world_from_model: Affine3A::IDENTITY, eye: None };
+    let root = skeleton.source_index(skeleton.parent(foot).expect("a root"));
+    assert!(!pinning.allows(number, PinGoal::Joint(number, Vec3::ZERO)), "it moves along with itself");
+    assert!(pinning.allows(number, PinGoal::Joint(root, Vec3::ZERO)), "the root doesn't");
+    let baked = pinning.bake(clip, f64::from(clip.duration_secs()));
+    for step in 0..40 {
+        let time = clip.duration_secs() * (step as f32 + 0.37) / 41.0;
+        let before = sampled(clip, time);
+        let mut after = before.clone();
+        pinning.apply(f64::from(time), &mut after);
+        for joint in skeleton.joints().filter(|joint| ![upper, lower, foot].contains(joint)) {
+            assert_eq!(before.local(joint), after.local(joint), "{}", skeleton.name(joint));
+        }
+        let shin = |pose: &Pose| at(pose, lower).distance(at(pose, foot));
+        assert!((shin(&before) - shin(&after)).abs() < 1e-4, "{} and {} at {time}", shin(&before), shin(&after));
+        let reach = at(&before, upper).distance(at(&before, lower)) + shin(&before);
+        let off = at(&after, foot).distance(goal);
+        let away = (at(&before, upper).distance(goal) - reach).max(0.0);
+        assert!(off < away + 1e-4, "{off} off at {time}, {away} out of reach");
+        let found = sampled(&baked, time);
+        for joint in skeleton.joints() {
+            assert!(at(&found, joint).distance(at(&after, joint)) < 1e-3, "{} at {time}", skeleton.name(joint));
+        }
     }
 }
 

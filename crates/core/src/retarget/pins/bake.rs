@@ -1,4 +1,4 @@
-//! Pins baked into a clip: the pinned joints get linear keys, as few as a greedy search finds; other channels are kept.
+//! Pins baked into a clip: what they set gets linear keys, as few as a greedy search finds; other channels are kept.
 
 use glam::DQuat;
 
@@ -23,30 +23,54 @@ impl Pinning<'_> {
         let mut sampled = Sampled::new(self, clip, period_secs);
         let mut tracks = Tracks::of(clip);
         for (joint, pin) in self.in_order() {
-            let joints = if pin.is_gaze() { vec![joint] } else { self.limb(joint).map_or_else(Vec::new, Vec::from) };
             // With an overlapping pin, both search for their own keys.
-            let Some(&first) = joints.first() else { continue };
-            let below: Vec<JointIndex> = skeleton.joints().filter(|&other| is_within(skeleton, other, first)).collect();
-            let times = sampled.close_times(&joints, &below);
+            let Some(set) = self.set_by(joint, pin) else { continue };
+            let times = sampled.close_times(&set);
             let kept = fewest(times.len(), |from, to| {
-                sampled.is_close([times[from], times[to]], &times[from + 1..to], BETWEEN_KEYS, [&joints, &below])
+                sampled.is_close([times[from], times[to]], &times[from + 1..to], BETWEEN_KEYS, &set)
             });
-            for joint in joints {
-                tracks.tracks.retain(|track| track.target != Target::Rotation(joint));
-                tracks.tracks.push(Track {
-                    target: Target::Rotation(joint),
-                    interpolation: Interpolation::Linear,
-                    times: kept.iter().map(|&at| times[at]).collect(),
-                    width: 4,
-                    values: kept
-                        .iter()
-                        .flat_map(|&at| sampled.at(times[at]).local(joint).rotation.to_array())
-                        .collect(),
-                });
+            let times_kept: Vec<f32> = kept.iter().map(|&at| times[at]).collect();
+            let mut replace = |target, width, values| {
+                tracks.tracks.retain(|track| track.target != target);
+                let (interpolation, times) = (Interpolation::Linear, times_kept.clone());
+                tracks.tracks.push(Track { target, interpolation, times, width, values });
+            };
+            for &joint in &set.turned {
+                let rotation = |&time: &f32| sampled.at(time).local(joint).rotation.to_array();
+                replace(Target::Rotation(joint), 4, times_kept.iter().flat_map(rotation).collect());
+            }
+            if let Some(joint) = set.moved {
+                let translation = |&time: &f32| sampled.at(time).local(joint).translation.to_array();
+                replace(Target::Translation(joint), 3, times_kept.iter().flat_map(translation).collect());
             }
         }
         tracks.build(clip.name(), skeleton)
     }
+
+    /// What a pin sets; `None` if it has no effect.
+    fn set_by(&self, joint: JointIndex, pin: &Pin) -> Option<Set> {
+        let skeleton = &self.asset.skeleton;
+        let limb = if pin.is_gaze() { None } else { Some(self.limb(joint)?) };
+        let moved = limb.filter(|&limb| self.is_beside(limb)).map(|_| joint);
+        let turned = match limb {
+            Some([upper, lower, _]) if moved.is_some() => vec![upper, lower],
+            Some(limb) => limb.to_vec(),
+            None => vec![joint],
+        };
+        let is_below = |other: &JointIndex| turned.iter().chain(&moved).any(|&own| is_within(skeleton, *other, own));
+        let below = skeleton.joints().filter(is_below).collect();
+        Some(Set { turned, moved, below })
+    }
+}
+
+/// What a pin sets of a pose.
+struct Set {
+    /// Joints whose rotation it sets.
+    turned: Vec<JointIndex>,
+    /// The joint whose translation it sets.
+    moved: Option<JointIndex>,
+    /// Joints that move along, and these themselves.
+    below: Vec<JointIndex>,
 }
 
 /// The pinned clip at close times.
@@ -80,8 +104,8 @@ impl<'a> Sampled<'a> {
         &self.pose
     }
 
-    /// The times, and more where `joints` turn so fast that they would be off between two of them.
-    fn close_times(&mut self, joints: &[JointIndex], below: &[JointIndex]) -> Vec<f32> {
+    /// The times, and more where joints turn so fast that they would be off between two of them.
+    fn close_times(&mut self, set: &Set) -> Vec<f32> {
         let mut close = Vec::with_capacity(self.times.len());
         // Of each interval that is left its end and the number of times it was halved.
         let mut left: Vec<(f32, u32)> = self.times.iter().rev().map(|&time| (time, 0)).collect();
@@ -91,10 +115,7 @@ impl<'a> Sampled<'a> {
                 let is_inside = from < middle && middle < to;
                 // Halfway through an S-curve there is no error.
                 let between = [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
-                if is_inside
-                    && halvings < MAX_HALVINGS
-                    && !self.is_close([from, to], &between, BETWEEN_SAMPLES, [joints, below])
-                {
+                if is_inside && halvings < MAX_HALVINGS && !self.is_close([from, to], &between, BETWEEN_SAMPLES, set) {
                     left.extend([(to, halvings + 1), (middle, halvings + 1)]);
                     continue;
                 }
@@ -104,29 +125,23 @@ impl<'a> Sampled<'a> {
         close
     }
 
-    /// Whether `joints`, interpolated between two times, bring all joints in `below` to where they are in between, but for a
+    /// Whether what a pin sets, interpolated between two times, brings all joints below to where they are in between, but for a
     /// share of the limits.
-    fn is_close(
-        &mut self,
-        [from, to]: [f32; 2],
-        between: &[f32],
-        share: f64,
-        [joints, below]: [&[JointIndex]; 2],
-    ) -> bool {
+    fn is_close(&mut self, [from, to]: [f32; 2], between: &[f32], share: f64, set: &Set) -> bool {
         let skeleton = &self.pinning.asset.skeleton;
-        let ends = [from, to].map(|at| {
-            let pose = self.at(at);
-            joints.iter().map(|&joint| pose.local(joint).rotation.as_dquat()).collect::<Vec<DQuat>>()
-        });
+        let [before, after] = [from, to].map(|at| locals_of(self.at(at)));
         between.iter().all(|&at| {
             let factor = f64::from(at - from) / f64::from(to - from);
             let exact = WorldPose::new(skeleton, locals_of(self.at(at)), DQuat::IDENTITY);
             let mut locals = exact.locals.clone();
-            for ((joint, &before), &after) in joints.iter().zip(&ends[0]).zip(&ends[1]) {
-                locals[joint.get()].rotation = slerp(before, after, factor);
+            for joint in set.turned.iter().map(|joint| joint.get()) {
+                locals[joint].rotation = slerp(before[joint].rotation, after[joint].rotation, factor);
+            }
+            if let Some(joint) = set.moved.map(JointIndex::get) {
+                locals[joint].translation = before[joint].translation.lerp(after[joint].translation, factor);
             }
             let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
-            below.iter().all(|&joint| self.limits.share(&exact, &found, joint) <= share)
+            set.below.iter().all(|&joint| self.limits.share(&exact, &found, joint) <= share)
         })
     }
 }

@@ -35,7 +35,8 @@ pub fn turn_joint(joint: JointIndex, model_from_parent: DAffine3, turn: DQuat, p
 }
 
 impl Pinning<'_> {
-    /// The joints of two bones that end at a joint: an arm or a leg, otherwise its two nearest ancestors.
+    /// The joints of two bones that end at a joint: an arm or a leg, otherwise its two nearest ancestors. A hand or foot may hang
+    /// [beside its limb](Self::is_beside).
     pub(super) fn limb(&self, end: JointIndex) -> Option<[JointIndex; 3]> {
         let skeleton = &self.asset.skeleton;
         let slots = match self.body.slot(end) {
@@ -49,12 +50,25 @@ impl Pinning<'_> {
             let [upper, lower] = slots?.map(|slot| self.body.joint(slot));
             let (upper, lower) = (upper?, lower?);
             let is_above = |joint, other| joint != other && is_within(skeleton, other, joint);
-            (is_above(upper, lower) && is_above(lower, end)).then_some([upper, lower, end])
+            let ends_there =
+                is_above(lower, end) || (self.is_beside([upper, lower, end]) && !is_within(skeleton, upper, end));
+            (is_above(upper, lower) && ends_there).then_some([upper, lower, end])
         };
         of_body().or_else(|| {
             let lower = skeleton.parent(end)?;
             Some([skeleton.parent(lower)?, lower, end])
         })
+    }
+
+    /// Whether the end of a limb isn't below its bones, as in rigs with controls for inverse kinematics. Then it has to be moved, too.
+    pub(super) fn is_beside(&self, [upper, _, end]: [JointIndex; 3]) -> bool {
+        !is_within(&self.asset.skeleton, end, upper)
+    }
+
+    /// Where the end of a limb comes to lie when both of its bones are turned as [`reach`](Self::reach) says.
+    pub(super) fn turned_end(&self, limb: [JointIndex; 3], [swing, bend]: [DQuat; 2], pose: &Pose) -> DVec3 {
+        let [start, middle, end] = limb.map(|joint| frame_of(&self.asset.skeleton, pose, joint).translation);
+        start + swing * (middle - start) + swing * bend * (end - middle)
     }
 
     /// Turns of the upper bone, and of the lower one relative to it, that bring the end of a limb to a goal, or as near as it

@@ -1,5 +1,5 @@
-//! Pins: hands and feet that stay where they are put, and heads that look at something. A pin changes rotations only: two
-//! bones reach for the goal in the limb's own plane, and the joint at their end keeps its direction.
+//! Pins: hands and feet that stay where they are put, and heads that look at something. A pin changes rotations: two bones
+//! reach for the goal in the limb's own plane, and the joint at their end keeps its direction. Only one that hangs beside them is moved.
 
 mod bake;
 mod limb;
@@ -132,10 +132,15 @@ impl Pinning<'_> {
         match goal {
             PinGoal::Look(_) | PinGoal::Camera => true,
             PinGoal::Point(_) => limb.is_some(),
-            PinGoal::Joint(other, _) => of_source(other)
-                .zip(limb)
-                .is_some_and(|(other, [upper, ..])| !is_within(&self.asset.skeleton, other, upper)),
+            PinGoal::Joint(other, _) => {
+                of_source(other).zip(limb).is_some_and(|(other, limb)| !self.moves(limb, other))
+            }
         }
+    }
+
+    /// Whether a joint moves along with a limb.
+    fn moves(&self, [upper, _, end]: [JointIndex; 3], joint: JointIndex) -> bool {
+        [upper, end].into_iter().any(|own| is_within(&self.asset.skeleton, joint, own))
     }
 
     /// The pins in the order they are applied.
@@ -150,28 +155,34 @@ impl Pinning<'_> {
         let skeleton = &self.asset.skeleton;
         let part = |turn: DQuat| slerp(DQuat::IDENTITY, turn, weight);
         if pin.is_gaze() {
-            let turn = self.gaze(joint, self.goal(pin, joint, pose)?, pose)?;
+            let turn = self.gaze(joint, self.goal(pin, [joint; 3], pose)?, pose)?;
             turn_joint(joint, parent_of(skeleton, pose, joint), part(turn), pose);
             return Some(());
         }
         let limb = self.limb(joint)?;
-        let [swing, bend] = self.reach(limb, self.goal(pin, limb[0], pose)?, pose)?.map(part);
-        let parents = limb.map(|joint| parent_of(skeleton, pose, joint));
-        for ((joint, parent), turn) in limb.into_iter().zip(parents).zip([swing, bend, (swing * bend).conjugate()]) {
-            turn_joint(joint, parent, turn, pose);
+        let [swing, bend] = self.reach(limb, self.goal(pin, limb, pose)?, pose)?.map(part);
+        let end = self.turned_end(limb, [swing, bend], pose);
+        let [upper, lower, parent_of_end] = limb.map(|joint| parent_of(skeleton, pose, joint));
+        turn_joint(limb[0], upper, swing, pose);
+        turn_joint(limb[1], lower, bend, pose);
+        if self.is_beside(limb) {
+            let end = parent_of_end.inverse().transform_point3(end);
+            pose.set_translation(joint, end.is_finite().then_some(end)?.as_vec3());
+        } else {
+            turn_joint(joint, parent_of_end, (swing * bend).conjugate(), pose);
         }
         Some(())
     }
 
-    /// The goal in model space. `None` for one that moves along with the joint `upper`: it would never be reached.
-    fn goal(&self, pin: &Pin, upper: JointIndex, pose: &Pose) -> Option<DVec3> {
+    /// The goal in model space. `None` for one that moves along with the limb: it would never be reached.
+    fn goal(&self, pin: &Pin, limb: [JointIndex; 3], pose: &Pose) -> Option<DVec3> {
         let model_from_world = |at| self.world_from_model.inverse().transform_point3(at).as_dvec3();
         match pin.goal {
             PinGoal::Point(at) | PinGoal::Look(at) => Some(model_from_world(at)),
             PinGoal::Camera => self.eye.map(model_from_world),
             PinGoal::Joint(number, at) => {
                 let skeleton = &self.asset.skeleton;
-                let other = skeleton.joint_of_source(number).filter(|&other| !is_within(skeleton, other, upper))?;
+                let other = skeleton.joint_of_source(number).filter(|&other| !self.moves(limb, other))?;
                 Some(frame_of(skeleton, pose, other).transform_point3(at.as_dvec3()))
             }
         }
