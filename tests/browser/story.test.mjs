@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, toggleInspector, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, controls, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, toggleInspector, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -176,6 +176,22 @@ for (const renderer of BACK_ENDS)
       await whenBorrowed(page, 1);
       await until(page, async () => (await window.gaitway.state()).t === 1);
       assert.equal((await state(page)).feet, null, "the link says nothing of feet");
+    });
+
+    const TWO_CHARACTERS = () => fragment([["model", "file:Xbot.glb"], ["motion", "file:Soldier.glb"], ["clip", "Walk"], ["mirror", "Walk"], ["play", 0], ["t", 0.5]]);
+    onPage("a character that lends its motion arrives together with the model, as a link asks for them", TWO_CHARACTERS, async (page) => {
+      await whenAsked(page);
+      assert.deepEqual(await page.locator("#bring-files li").allInnerTexts(), ["Xbot.glb (model)", "Soldier.glb (motion)"]);
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }, { name: "Xbot.glb", url: site.data("threejs/Xbot.glb") }]);
+      await whenBorrowed(page, 1);
+      await until(page, async () => (await window.gaitway.state()).t === 0.5);
+      const { model, motion, mirror } = /** @type {any} */ (await state(page));
+      assert.deepEqual([model, motion, mirror], [["Xbot.glb"], ["Soldier.glb"], ["Walk"]]);
+      assert.equal(await page.locator("#missing").isVisible(), false);
+      assert.equal(await page.locator("#problem").textContent(), "");
+      assert.equal(await controls(page, "button", "Close Soldier.glb").count(), 0, "it isn't another model");
+      await until(page, () => location.hash.includes("motion=file:Soldier.glb"));
     });
 
     const THREE_FILES = () => fragment([["model", "file:Soldier.glb"], ["motion", "file:gone.bvh"], ["motion", "file:cmu_01_01.bvh"], ["clip", "cmu_01_01"], ["play", 0], ["t", 1], ["joint", 5]]);

@@ -5,7 +5,7 @@ import { forgetProblem, summarize, summarizeSoon } from "./changes.js";
 import { withCompanions } from "./companions.js";
 import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
-import { fileName, heldItems, heldMotionsAndLight, nameOf } from "./held.js";
+import { fileName, heldItems, heldMotionsAndLight, holdLast, isGltf, isPartOfGltf, nameOf } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
 import { beginFollowing, endFollowing } from "./history.js";
@@ -35,8 +35,12 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   const isAwaited = completable()?.wanted.some((file) => fileAmong(wanted, file) !== undefined) ?? false;
   const isInEntry = isAwaited && awaited() !== null;
   if (isInEntry) beginFollowing();
+  const { motions, others } = splitAwaited(wanted);
+  // They follow once the link's model is there.
+  if (motions.length > 0 && others.length > 0) (isPrivate ? keep : holdLast)(motions);
   try {
-    const { shown, document } = await load(wanted, role, isPrivate, isByHand && !isAwaited);
+    const [items, itemsRole] = others.length > 0 ? [others, role] : [motions, /** @type {Role} */ ("motion")];
+    const { shown, document } = await load(items, itemsRole, isPrivate, isByHand && !isAwaited);
     forgetProblem();
     const hint = await completeLink(wanted, shown);
     announce(shown, summarize(), document);
@@ -123,6 +127,21 @@ function asAwaited(items) {
     const [name] = missing.splice(at, 1);
     return { ...item, name: item.name.slice(0, item.name.lastIndexOf("/") + 1) + name };
   });
+}
+
+/**
+ * Separates what a link waits for as a motion, with its files: a character, opened together with the link's own, would be another model.
+ * @param {Item[]} items
+ * @returns {{ motions: Item[], others: Item[] }}
+ */
+function splitAwaited(items) {
+  const files = completable()?.wanted ?? [];
+  const isWantedAs = (/** @type {Role | "model"} */ wanted, /** @type {Item} */ item) => files.some(({ role, name }) => role === wanted && fileName(name) === bareName(item));
+  const motions = items.filter((item) => isWantedAs("motion", item) && !isWantedAs("model", item));
+  if (motions.length === 0) return { motions, others: items };
+  const others = items.filter((item) => !motions.includes(item));
+  const parts = motions.some(isGltf) ? others.filter(isPartOfGltf) : [];
+  return { motions: [...motions, ...parts], others: others.length > parts.length ? others : [] };
 }
 
 /**
