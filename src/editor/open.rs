@@ -154,6 +154,7 @@ impl Editor {
         let lacks_joints = is_jointless_obj(&name, &first.model.asset);
         let about_images = about_images(&first.model.asset);
         let before = self.snapshot();
+        let was_empty = self.library.active().is_some_and(Model::is_placeholder);
         let playing = before.as_ref().and_then(|before| before.playing.clone());
         let (id, is_new) = self.add(first);
         if let Err(error) = self.admit(&before, admit) {
@@ -173,7 +174,9 @@ impl Editor {
             self.suits_follow = is_by_hand;
         }
         self.close_placeholders();
-        let was_loaded = before.is_some();
+        // Nobody wants the empty stage back.
+        let before = before.filter(|_| !was_empty);
+        let has_step = before.is_some();
         self.remember(before);
         let evicted = self.evict();
         self.events.extend(is_view.then_some(Event::ViewOpened));
@@ -194,14 +197,16 @@ impl Editor {
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
         let about_feet = if borrows && !has_map { self.suit_feet(count) } else { None };
         let opened = Opened { name, is_new, others, evicted, lacks_joints, about_images, about_motions, about_feet };
-        self.announce(&opened, was_loaded && !is_view);
+        self.announce(&opened, (has_step || was_empty) && !is_view, has_step);
         Ok(())
     }
 
-    /// Tells what was opened, if it took the place of another model, and what was done to its feet.
-    fn announce(&mut self, opened: &Opened, is_replacement: bool) {
+    /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet. `has_step`: undo
+    /// takes it back.
+    fn announce(&mut self, opened: &Opened, is_replacement: bool, has_step: bool) {
         if is_replacement {
-            self.notify_undoable(opened.text());
+            let undoable = has_step || opened.about_feet.is_some();
+            self.events.push(Event::Notice { text: opened.text(), undoable });
         } else if let Some(about_feet) = opened.about_feet {
             self.notify_undoable(about_feet.to_owned());
         }

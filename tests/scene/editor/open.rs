@@ -359,6 +359,7 @@ fn an_empty_stage_awaits_a_model() {
     let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
     assert_eq!(listed, ["sample:walker"]);
     assert_eq!(editor.state().display.exposure, 1.0);
+    assert!(!editor.can_undo(), "nobody wants the empty stage back");
 }
 
 /// Opens the file as a user does, or as a script does.
