@@ -154,7 +154,6 @@ impl Editor {
         let lacks_joints = is_jointless_obj(&name, &first.model.asset);
         let about_images = about_images(&first.model.asset);
         let before = self.snapshot();
-        let was_empty = self.library.active().is_some_and(Model::is_placeholder);
         let playing = before.as_ref().and_then(|before| before.playing.clone());
         let (id, is_new) = self.add(first);
         if let Err(error) = self.admit(&before, admit) {
@@ -173,9 +172,7 @@ impl Editor {
         if !keeps_view {
             self.suits_follow = is_by_hand;
         }
-        self.close_placeholders();
-        // Nobody wants the empty stage back.
-        let before = before.filter(|_| !was_empty);
+        let (was_loaded, before) = (before.is_some(), self.close_placeholders(before));
         let has_step = before.is_some();
         self.remember(before);
         let evicted = self.evict();
@@ -197,7 +194,7 @@ impl Editor {
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
         let about_feet = if borrows && !has_map { self.suit_feet(count) } else { None };
         let opened = Opened { name, is_new, others, evicted, lacks_joints, about_images, about_motions, about_feet };
-        self.announce(&opened, (has_step || was_empty) && !is_view, has_step);
+        self.announce(&opened, was_loaded && !is_view, has_step);
         Ok(())
     }
 
@@ -283,12 +280,13 @@ impl Editor {
         closed
     }
 
-    /// Closes the empty stages that have waited for a model, once something else is active.
-    fn close_placeholders(&mut self) {
+    /// Closes the empty stages that have waited for a model, once something else is active. Returns the snapshot unless it is of one of
+    /// them: nobody wants that back.
+    fn close_placeholders(&mut self, before: Option<Snapshot>) -> Option<Snapshot> {
         let placeholders = self.library.models().iter().filter(|model| model.is_placeholder());
-        for id in placeholders.map(|model| model.id).collect::<Vec<_>>() {
-            self.library.close(id);
-        }
+        let placeholders: Vec<ModelId> = placeholders.map(|model| model.id).collect();
+        placeholders.iter().for_each(|&id| self.library.close(id));
+        before.filter(|before| !placeholders.contains(&before.loaded.model))
     }
 
     /// Checks that the active model can be shown; if not, restores what was active before.
