@@ -198,8 +198,8 @@ impl Editor {
         Ok(())
     }
 
-    /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet. `has_step`: undo
-    /// takes it back.
+    /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet. `has_step`:
+    /// undo takes it back.
     fn announce(&mut self, opened: &Opened, is_replacement: bool, has_step: bool) {
         if is_replacement {
             let undoable = has_step || opened.about_feet.is_some();
@@ -280,8 +280,8 @@ impl Editor {
         closed
     }
 
-    /// Closes the empty stages that have waited for a model, once something else is active. Returns the snapshot unless it is of one of
-    /// them: nobody wants that back.
+    /// Closes the empty stages that have waited for a model, once something else is active. Returns the snapshot unless it is of one
+    /// of them: nobody wants that back.
     fn close_placeholders(&mut self, before: Option<Snapshot>) -> Option<Snapshot> {
         let placeholders = self.library.models().iter().filter(|model| model.is_placeholder());
         let placeholders: Vec<ModelId> = placeholders.map(|model| model.id).collect();

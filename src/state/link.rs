@@ -67,7 +67,7 @@ pub enum LinkError {
         /// What is used instead.
         instead: &'static str,
     },
-    /// Nothing of the model is where the camera looks: the link was made for another file.
+    /// Nothing of the model is where the camera looks, as when the link was made for another file.
     #[error("camera: it looks past this model; fit everything in view (F) to see it")]
     LooksPast,
 }

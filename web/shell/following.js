@@ -98,7 +98,7 @@ function lacksModel(models, isUnchanged) {
  */
 export function showMissing(problems, link, isUnchanged = false) {
   if (problems.length === 0) return;
-  // A problem may name the absolute URL of a relative one, or only the file. Nothing is shown without one about the model.
+  // A problem may name the absolute URL of a relative one, or only the file. On an empty stage, one is about the model.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const hasNone = isEmpty();
   const models = linkedFiles(link).filter(({ role, name }) => role === "model" && (hasNone || failed.includes(fileName(name))));

@@ -60,7 +60,7 @@ impl Pinning<'_> {
         })
     }
 
-    /// Whether the end of a limb isn't below its bones, as in rigs with controls for inverse kinematics. Then it has to be moved, too.
+    /// Whether the end of a limb isn't below its bones, as in rigs with controls for inverse kinematics, and has to be moved, too.
     pub(super) fn is_beside(&self, [upper, _, end]: [JointIndex; 3]) -> bool {
         !is_within(&self.asset.skeleton, end, upper)
     }

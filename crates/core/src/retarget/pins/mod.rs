@@ -1,5 +1,6 @@
 //! Pins: hands and feet that stay where they are put, and heads that look at something. A pin changes rotations: two bones
-//! reach for the goal in the limb's own plane, and the joint at their end keeps its direction. Only one that hangs beside them is moved.
+//! reach for the goal in the limb's own plane, and the joint at their end keeps its direction. An end that hangs beside its bones
+//! is moved as well.
 
 mod bake;
 mod limb;
@@ -161,15 +162,13 @@ impl Pinning<'_> {
         }
         let limb = self.limb(joint)?;
         let [swing, bend] = self.reach(limb, self.goal(pin, limb, pose)?, pose)?.map(part);
-        let end = self.turned_end(limb, [swing, bend], pose);
+        let moved_end = self.is_beside(limb).then(|| self.turned_end(limb, [swing, bend], pose));
         let [upper, lower, parent_of_end] = limb.map(|joint| parent_of(skeleton, pose, joint));
         turn_joint(limb[0], upper, swing, pose);
         turn_joint(limb[1], lower, bend, pose);
-        if self.is_beside(limb) {
-            let end = parent_of_end.inverse().transform_point3(end);
-            pose.set_translation(joint, end.is_finite().then_some(end)?.as_vec3());
-        } else {
-            turn_joint(joint, parent_of_end, (swing * bend).conjugate(), pose);
+        match moved_end.map(|end| parent_of_end.inverse().transform_point3(end)) {
+            Some(end) => pose.set_translation(joint, end.is_finite().then_some(end)?.as_vec3()),
+            None => turn_joint(joint, parent_of_end, (swing * bend).conjugate(), pose),
         }
         Some(())
     }
