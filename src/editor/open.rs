@@ -346,15 +346,19 @@ impl Editor {
         evicted.iter().map(|model| short_name(&model.source)).collect()
     }
 
-    /// Whether a view's model is loaded, active or not.
+    /// Whether a view's models are loaded, active or not.
     pub fn holds(&self, view: &ViewerState) -> bool {
         view.sources.model == self.state.sources.model || self.find_loaded(view).is_some()
     }
 
+    /// Returns the model that a view shows if all that it lists are loaded.
     fn find_loaded(&self, view: &ViewerState) -> Option<ModelId> {
-        let [name] = &view.sources.model[..] else { return None };
-        let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
-        Some(known.id)
+        let mut known = view.sources.model.iter().map(|name| {
+            let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
+            Some(known.id)
+        });
+        let first = known.next()??;
+        known.all(|other| other.is_some()).then_some(first)
     }
 
     /// Replaces the state by a view of a loaded model.

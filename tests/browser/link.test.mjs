@@ -356,6 +356,33 @@ for (const renderer of BACK_ENDS)
       await whenShown(page, FOX_VERTICES);
     });
 
+    const TWO_LOCAL = () => fragment([["model", "file:Fox.glb"], ["model", "file:CesiumMan.glb"], ["clip", "Run"], ["t", 0.5], ["play", 0]]);
+    onPage("waits for two models and shows the first", TWO_LOCAL, async (page) => {
+      await page.locator("#bring-later").click();
+      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }, { name: "Fox.glb", url: site.data(FOX) }]);
+      await until(page, async () => (await window.gaitway.pose()).clip === "Run");
+      await whenShown(page, FOX_VERTICES);
+      assert.deepEqual((await state(page)).model, ["Fox.glb", "CesiumMan.glb"]);
+      assert.equal((await pose(page)).time_secs, 0.5);
+      assert.equal(await page.locator("#missing").isVisible(), false);
+    });
+
+    const borrowing = () => fragment([["model", site.data(XBOT)], ["play", 0]]);
+    onPage("goes back from a model that the earlier motion doesn't fit", borrowing, async (page) => {
+      await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
+      await whenBorrowed(page, 1);
+      await apply(page, { t: 1, play: 0 });
+      await until(page, () => location.hash.includes("t=1"));
+      await page.evaluate(() => void (location.hash = "model=sample:morphs"));
+      await whenModel(page, "sample:morphs");
+      await page.goBack();
+      await whenModel(page, site.data(XBOT));
+      await until(page, async () => (await window.gaitway.state()).motion.join() === "dance.bvh");
+      assert.equal((await state(page)).t, 1);
+      assert.equal(await page.locator("#missing").isVisible(), false);
+      assert.equal(await page.locator("#bring").isVisible(), false);
+    });
+
     onPage("shows the open files when the address is edited", () => fragment([["model", site.data(FOX)], ["play", 0]]), async (page) => {
       await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
       await whenShown(page, CESIUM_MAN_VERTICES);

@@ -3,7 +3,7 @@ import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.j
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
-import { fileName, heldItems, heldMotionsAndLight, localFiles, withOpenFiles } from "./held.js";
+import { fileName, heldItems, heldMotionsAndLight, localFiles, shareableLink, withOpenFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
@@ -53,7 +53,14 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
   try {
     const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
     if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, false);
-    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await load(motionItems, "motion", false);
+    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) {
+      // The link's own model borrows them, not the one that is shown now.
+      if (items.length === 0 && modelsOf(heldLink) !== modelsOf(session.link)) {
+        const { problems } = takeNews(await unlessStopped(app, app.follow_link(linkWithoutMissing(shareableLink(heldLink)), false)));
+        if (problems.length > 0) return report(problems);
+      }
+      await load(motionItems, "motion", false);
+    }
     if (number !== lastFollow) return;
     // The same names now mean other files.
     const meansOthers = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
@@ -69,6 +76,12 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     summarizeSoon();
   }
 }
+
+/**
+ * Returns the same text for links with the same models.
+ * @param {string} link
+ */
+const modelsOf = (link) => linkedFiles(link).flatMap(({ role, name, member }) => (role === "model" ? [name + member] : [])).join("\n");
 
 /**
  * @param {Item[]} items

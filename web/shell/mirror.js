@@ -190,7 +190,7 @@ export class Mirror {
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
     const selected = hadTree ? null : this.root.querySelector("[role=treeitem][aria-selected=true]");
-    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? nearest(stopsIn(this.root), before));
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? treeBeside(this.root, before) ?? nearest(stopsIn(this.root), before));
     const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) takeFocus(target);
@@ -289,8 +289,21 @@ function numberIn(text) {
 }
 
 /**
- * Returns the element in whose direction the eye would go from one that is gone; the viewport only if there is nothing else. A
- * button leads to a button: keys that were meant for it would change a number.
+ * Returns the current row of a tree above or below an element that is gone, as a node's details are.
+ * @param {HTMLElement} root
+ * @param {HTMLElement} gone
+ * @returns {HTMLElement | null}
+ */
+function treeBeside(root, gone) {
+  /** @type {HTMLElement | null} */
+  const row = root.querySelector('[role=treeitem][tabindex="0"]');
+  const isBeside = row !== null && parseFloat(gone.style.left) >= parseFloat(row.style.left) && parseFloat(gone.style.left) < parseFloat(row.style.left) + parseFloat(row.style.width);
+  return isBeside ? row : null;
+}
+
+/**
+ * Returns the element in whose direction the eye would go from one that is gone; the viewport only if there is nothing else. Only a
+ * field leads to a field: keys that were meant for something else would change a number.
  * @param {HTMLElement[]} stops
  * @param {HTMLElement} gone
  */
@@ -303,10 +316,10 @@ function nearest(stops, gone) {
     const [otherX, otherY] = centre(element);
     return element.dataset.role === "img" ? Infinity : Math.hypot(otherX - x, otherY - y);
   };
-  const buttons = gone.dataset.role === "button" ? stops.filter(({ dataset }) => dataset.role === "button") : [];
+  const others = gone instanceof HTMLInputElement ? [] : stops.filter((stop) => !(stop instanceof HTMLInputElement));
   /** @type {HTMLElement | undefined} */
   let best;
-  for (const stop of buttons.length > 0 ? buttons : stops) if (best === undefined || distance(stop) < distance(best)) best = stop;
+  for (const stop of others.length > 0 ? others : stops) if (best === undefined || distance(stop) < distance(best)) best = stop;
   return best;
 }
 
