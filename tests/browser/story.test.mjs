@@ -155,8 +155,9 @@ for (const renderer of BACK_ENDS)
         const copies = [[SOLDIER, "Soldier (1).glb"], [WALK, "cmu_01_01 (1).bvh"]];
         await (await chooser).setFiles(copies.map(([file, name]) => ({ name, mimeType: "", buffer: fs.readFileSync(dataFile(file)) })));
         await whenModel(other, "Soldier.glb");
-        // The model is shown before the rest of the link, which is shown as it is: the Motion tab doesn't come forward.
+        // The model is shown before the rest of the link. The motion follows it, as one that arrives alone.
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
+        await toggleInspector(other);
         assertSame(await shown(other), before);
         assert.deepEqual(other.troubles, []);
       } finally {
