@@ -32,7 +32,7 @@ impl App {
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
         self.notice_steps = self.editor.undo_steps();
-        self.unseen = None;
+        self.announcement = None;
         self.has_new_message = true;
     }
 
@@ -41,7 +41,7 @@ impl App {
     pub(super) fn expire_notices(&mut self) {
         if self.editor.undo_steps() != self.notice_steps {
             self.panels.messages.toast.take_if(|toast| toast.undoable);
-            self.unseen = None;
+            self.announcement = None;
         }
     }
 
@@ -55,7 +55,7 @@ impl App {
                 Event::AboutView(text) if self.state().page.embed => self.toast(text),
                 Event::AboutView(text) => {
                     self.panels.messages.about_view = Some(text);
-                    self.unseen = None;
+                    self.announcement = None;
                     self.has_new_message = true;
                 }
                 Event::ViewOpened => {
@@ -77,19 +77,19 @@ impl App {
                 }
                 Event::Stepped { is_undo, edited } => {
                     self.panels.messages.toast = None;
-                    self.tell(text::stepped(is_undo, edited, self.editor.undo_steps()));
+                    self.announce(text::stepped(is_undo, edited, self.editor.undo_steps()));
                 }
                 Event::SourceSet { target, source } => {
-                    self.tell(text::source_set(&target, source.as_deref()));
+                    self.announce(text::source_set(&target, source.as_deref()));
                 }
             }
         }
     }
 
     /// Tells screen readers what everyone else sees.
-    fn tell(&mut self, text: String) {
+    fn announce(&mut self, text: String) {
         self.notice_steps = self.editor.undo_steps();
-        self.unseen = Some(text);
+        self.announcement = Some(text);
         self.has_new_message = true;
     }
 }

@@ -33,10 +33,10 @@ pub struct App {
     after_draw: Vec<Box<dyn FnOnce()>>,
     pub(super) screenshots: Vec<Reply<Vec<u8>>>,
     pub(super) recording: Option<Recording>,
-    /// Undo steps when the toast appeared, or after what `unseen` tells.
+    /// Undo steps when the toast appeared, or after what `announcement` tells.
     pub(super) notice_steps: usize,
     /// Tells those who don't see it what was done, undone or redone. `None` after a later notice or edit.
-    pub(super) unseen: Option<String>,
+    pub(super) announcement: Option<String>,
     /// A notice or an error was added since the host last heard of a change.
     pub(super) has_new_message: bool,
     /// The last value passed to [`Host::modal_changed`].
@@ -85,7 +85,7 @@ impl App {
             screenshots: Vec::new(),
             recording: None,
             notice_steps: 0,
-            unseen: None,
+            announcement: None,
             has_new_message: false,
             had_modal: false,
             last_motions: Vec::new(),
@@ -121,7 +121,7 @@ impl App {
     pub fn notice(&self) -> Option<&str> {
         let messages = &self.panels.messages;
         let toast = messages.toast.as_ref().map(|toast| &*toast.text);
-        self.unseen.as_deref().or(toast).or(messages.about_view.as_deref())
+        self.announcement.as_deref().or(toast).or(messages.about_view.as_deref())
     }
 
     /// Opens `contents`, in `view` if given.

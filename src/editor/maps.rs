@@ -141,7 +141,7 @@ impl Editor {
     }
 
     /// Tells about a joint's new source.
-    pub(super) fn notify_source(&mut self, command: &Command) {
+    pub(super) fn tell_source(&mut self, command: &Command) {
         let &Command::SetSource { motion, target, source } = command else { return };
         let name = |asset: &Asset, number: usize| {
             asset.skeleton.joint_of_source(number).map(|joint| asset.skeleton.name(joint).to_owned())

@@ -159,7 +159,7 @@ impl Editor {
         let may_choose_clip = is_map_edit || chooses_copy || matches!(command, Command::SetClip(_));
         let followed = if may_choose_clip { self.followed_place() } else { None };
         self.notify_follow(&command);
-        self.notify_source(&command);
+        self.tell_source(&command);
         let command = self.prepare_camera(command);
         self.record(command);
         if reframes {

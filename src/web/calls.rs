@@ -272,18 +272,18 @@ async fn open_state(
     let with_model = reload || !with_app(page, |app| app.editor().holds(&state))?;
     let current_motions = if reload { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
     let environments = if reload { Vec::new() } else { with_app(page, |app| app.library().environments().to_vec())? };
-    let mut models = if with_model { state.sources.model.clone() } else { Vec::new() };
+    let mut loaded = if with_model { state.sources.model.clone() } else { Vec::new() };
     let mut motions = state.sources.motion.clone();
     motions.retain(|source| !current_motions.iter().any(|motion| motion.origin == *source));
     let request = Request::View { state: Box::new(state), with_model, current_motions, environments, about_link };
     let opened = load(page, request).await?;
     // What couldn't be read is among the problems.
     with_app(page, |app| {
-        models.retain(|source| app.library().models().iter().any(|model| model.origin == *source));
+        loaded.retain(|source| app.library().models().iter().any(|model| model.origin == *source));
         motions.retain(|source| app.library().motions().iter().any(|motion| motion.origin == *source));
     })?;
-    models.append(&mut motions);
-    Ok(report(&models, &opened.problems))
+    loaded.append(&mut motions);
+    Ok(report(&loaded, &opened.problems))
 }
 
 fn report(loaded: &[String], problems: &[String]) -> String {

@@ -3,7 +3,7 @@ import { byId, dialog, isDialogOpen } from "./dom.js";
 import { EMPTY_FOLDER } from "./open-dialog.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
-import { refuse, session } from "./session.js";
+import { isStageEmpty, refuse, session } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
@@ -30,7 +30,7 @@ function showSheet({ clientX, clientY }) {
   clearTimeout(timer);
   timer = setTimeout(hideSheet, SHEET_TIMEOUT_MS);
   const [open, borrow] = [byId("drop-open"), byId("drop-borrow")];
-  borrow.hidden = session.app === null || panel() !== null || isDialogOpen() || JSON.parse(session.app.summary()).isEmpty;
+  borrow.hidden = session.app === null || panel() !== null || isDialogOpen() || isStageEmpty();
   byId("drop").hidden = false;
   const { left, top } = borrow.getBoundingClientRect();
   const isBorrowed = !borrow.hidden && clientX >= left && clientY >= top;

@@ -3,13 +3,13 @@ import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.j
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
-import { fileName, heldItems, heldMotionsAndLight, localFiles, shareableLink, withOpenFiles } from "./held.js";
+import { fileName, heldFor, localFiles, shareableLink, withOpenFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
 import { panel, sayProblem } from "./panels.js";
 import { rememberPrivateVisit } from "./privacy.js";
-import { linkOfAddress, session, unlessStopped } from "./session.js";
+import { isStageEmpty, linkOfAddress, session, unlessStopped } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 
@@ -51,7 +51,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     showMissing(problems, link, isUnchanged);
   };
   try {
-    const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
+    const before = heldFor(session.link);
     if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, false);
     if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) {
       // The link's own model borrows them, not the one that is shown now.
@@ -89,18 +89,13 @@ const modelsOf = (link) => linkedFiles(link).flatMap(({ role, name, member }) =>
  */
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
-/** Whether no model is shown. */
-const isEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
-
 /**
- * Whether the stage is empty, or shows a motion's skeleton, instead of one of the link's models.
+ * Whether something else is shown than one of the link's models, such as a motion's skeleton.
  * @param {import("./types.d.ts").LinkedFile[]} models
- * @param {boolean} isUnchanged
  */
-function lacksModel(models, isUnchanged) {
-  if (session.app === null) return false;
+function showsOther(models) {
   const isShown = (/** @type {string} */ source) => models.some(({ name }) => source.startsWith(name));
-  return isEmpty() || !(isUnchanged || JSON.parse(session.app.state()).model.some(isShown));
+  return session.app !== null && !JSON.parse(session.app.state()).model.some(isShown);
 }
 
 /**
@@ -113,10 +108,10 @@ export function showMissing(problems, link, isUnchanged = false) {
   if (problems.length === 0) return;
   // A problem may name the absolute URL of a relative one, or only the file. On an empty stage, one is about the model.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
-  const hasNone = isEmpty();
-  const models = linkedFiles(link).filter(({ role, name }) => role === "model" && (hasNone || failed.includes(fileName(name))));
+  const isEmpty = isStageEmpty();
+  const models = linkedFiles(link).filter(({ role, name }) => role === "model" && (isEmpty || failed.includes(fileName(name))));
   const hasFailed = models.length > 0;
-  const isAwaited = hasFailed && lacksModel(models, isUnchanged);
+  const isAwaited = hasFailed && (isEmpty || (!isUnchanged && showsOther(models)));
   if (isAwaited) awaitCopies(link, models.map(({ name }) => name));
   // Not one of several, of which another is shown.
   const isModel = isAwaited || (hasFailed && isUnchanged);
@@ -125,7 +120,8 @@ export function showMissing(problems, link, isUnchanged = false) {
     rest: isUnchanged ? "The current view stays as it was." : isModel ? "“Try again” reloads the whole link." : "Everything else is shown.",
     without: "it",
     again: () => {
-      if (heldItems(session.link).length + heldMotionsAndLight(session.link).length === 0) {
+      const { items, motionItems } = heldFor(session.link);
+      if (items.length + motionItems.length === 0) {
         follow(link, {}, true);
       } else {
         session.link = link;

@@ -85,16 +85,17 @@ function setsOf(link, role) {
 }
 
 /**
- * Returns what a link's model is opened from, besides URLs.
+ * Returns what a link is opened from, besides URLs.
  * @param {string} link
+ * @returns {{ items: Item[], motionItems: Item[] }}
  */
-export const heldItems = (link) => setsOf(link, "model").flat();
+export const heldFor = (link) => ({ items: setsOf(link, "model").flat(), motionItems: motionsAndLight(link) });
 
 /**
  * Returns what a link's motions and its light are opened from, besides the model's own files.
  * @param {string} link
  */
-export function heldMotionsAndLight(link) {
+function motionsAndLight(link) {
   const models = setsOf(link, "model");
   const motions = setsOf(link, "motion").filter((set) => !models.includes(set));
   const sets = [...models, ...motions];
@@ -125,7 +126,7 @@ export function withOpenFiles(link, current) {
   const names = linkedFiles(link).flatMap(({ name, isToBring }) => (isToBring ? [open.includes(name) ? name : ""] : []));
   if (names.every((name) => name === "")) return undefined;
   const known = linkWithFiles(link, names);
-  return { link: known, items: heldItems(known), motionItems: heldMotionsAndLight(known) };
+  return { link: known, ...heldFor(known) };
 }
 
 /**

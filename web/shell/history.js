@@ -1,7 +1,7 @@
 // The address bar and the browser's history: opening other files adds an entry, everything else changes the current
 // one. Entries with local files keep them as long as the page lives.
 import { awaited } from "./awaited.js";
-import { heldItems, heldMotionsAndLight, shareableLink } from "./held.js";
+import { heldFor, shareableLink } from "./held.js";
 import { shownFiles } from "./links.js";
 import { isPrivate } from "./privacy.js";
 import { session } from "./session.js";
@@ -90,7 +90,7 @@ export function showInEntry(link) {
 /** @param {string} link */
 function remember(link) {
   visits.delete(entry.number);
-  const [items, motionItems] = [heldItems(link), heldMotionsAndLight(link)];
+  const { items, motionItems } = heldFor(link);
   if (items.length + motionItems.length === 0) return;
   // A typed address has no number yet.
   if (history.state?.gaitway !== entry.number) history.replaceState({ ...history.state, gaitway: entry.number }, "");

@@ -9,7 +9,7 @@ import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing, showMissingImages } from "./following.js";
 import { setInert, showGallery } from "./gallery.js";
-import { heldItems, heldMotionsAndLight } from "./held.js";
+import { heldFor } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
 import { Mirror } from "./mirror.js";
@@ -91,8 +91,8 @@ async function start(renderer) {
     session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);
     session.askedLink = null;
-    const sets = [heldItems(session.link), heldMotionsAndLight(session.link)];
-    const files = await Promise.all(sets.map((items) => readOrReport(items, sayProblem)));
+    const { items, motionItems } = heldFor(session.link);
+    const files = await Promise.all([items, motionItems].map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
     if (problem === null) {
       session.completed.then(() => keepOffline(programFiles(attempt)));
@@ -135,7 +135,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   /** @type {string[]} */
   let missing;
   try {
-    const isPrivate = arePrivate([...heldItems(link), ...heldMotionsAndLight(link)]);
+    const isPrivate = arePrivate(Object.values(heldFor(link)).flat());
     const run = bindings.run(canvas, session.link, items, motionItems, isPrivate, callsFor(bindings));
     missing = JSON.parse(await Promise.race([run, aborted]));
   } catch (error) {

@@ -190,7 +190,7 @@ export class Mirror {
     const next = hasMoved ? (this.#elements.get(focus) ?? before) : before;
     /** What "Go to" leads to. @type {HTMLElement | null} */
     const selected = hadTree ? null : this.root.querySelector("[role=treeitem][aria-selected=true]");
-    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? treeBeside(this.root, before) ?? nearest(stopsIn(this.root), before));
+    const fallback = this.#opener?.isConnected ? this.#opener : (selected ?? rowOfTreeAt(this.root, before) ?? nearest(stopsIn(this.root), before));
     const target = first ?? (next.isConnected ? next : fallback);
     this.#isFollowing = target?.dataset.id === focus;
     if (target !== document.activeElement) takeFocus(target);
@@ -288,17 +288,21 @@ function numberIn(text) {
   return trimmed === "" ? NaN : Number(trimmed.includes(".") ? trimmed : trimmed.replace(",", "."));
 }
 
+/** @type {(element: HTMLElement) => number[]} */
+const centreOf = ({ style: { left, top, width, height } }) => [parseFloat(left) + parseFloat(width) / 2, parseFloat(top) + parseFloat(height) / 2];
+
 /**
  * Returns the current row of a tree above or below an element that is gone, as a node's details are.
  * @param {HTMLElement} root
  * @param {HTMLElement} gone
  * @returns {HTMLElement | null}
  */
-function treeBeside(root, gone) {
+function rowOfTreeAt(root, gone) {
   /** @type {HTMLElement | null} */
   const row = root.querySelector('[role=treeitem][tabindex="0"]');
-  const isBeside = row !== null && parseFloat(gone.style.left) >= parseFloat(row.style.left) && parseFloat(gone.style.left) < parseFloat(row.style.left) + parseFloat(row.style.width);
-  return isBeside ? row : null;
+  const [x] = centreOf(gone);
+  const start = parseFloat(row?.style.left ?? "");
+  return row !== null && x > start && x < start + parseFloat(row.style.width) ? row : null;
 }
 
 /**
@@ -308,12 +312,10 @@ function treeBeside(root, gone) {
  * @param {HTMLElement} gone
  */
 function nearest(stops, gone) {
-  /** @type {(element: HTMLElement) => number[]} */
-  const centre = ({ style: { left, top, width, height } }) => [parseFloat(left) + parseFloat(width) / 2, parseFloat(top) + parseFloat(height) / 2];
-  const [x, y] = centre(gone);
+  const [x, y] = centreOf(gone);
   /** @type {(element: HTMLElement) => number} */
   const distance = (element) => {
-    const [otherX, otherY] = centre(element);
+    const [otherX, otherY] = centreOf(element);
     return element.dataset.role === "img" ? Infinity : Math.hypot(otherX - x, otherY - y);
   };
   const others = gone instanceof HTMLInputElement ? [] : stops.filter((stop) => !(stop instanceof HTMLInputElement));

@@ -5,7 +5,7 @@ import { forgetProblem, summarize, summarizeSoon } from "./changes.js";
 import { withCompanions } from "./companions.js";
 import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
-import { fileName, heldItems, heldMotionsAndLight, holdLast, isGltf, isPartOfGltf, nameOf } from "./held.js";
+import { fileName, heldFor, holdLast, isGltf, isPartOfGltf, nameOf } from "./held.js";
 import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
 import { beginFollowing, endFollowing } from "./history.js";
@@ -39,8 +39,8 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
   // They follow once the link's model is there.
   if (motions.length > 0 && others.length > 0) (isPrivate ? keep : holdLast)(motions);
   try {
-    const [items, itemsRole] = others.length > 0 ? [others, role] : [motions, /** @type {Role} */ ("motion")];
-    const { shown, document } = await load(items, itemsRole, isPrivate, isByHand && !isAwaited);
+    const isMotion = others.length === 0;
+    const { shown, document } = await load(isMotion ? motions : others, isMotion ? "motion" : role, isPrivate, isByHand && !isAwaited);
     forgetProblem();
     const hint = await completeLink(wanted, shown);
     announce(shown, summarize(), document);
@@ -136,8 +136,8 @@ function asAwaited(items) {
  */
 function splitAwaited(items) {
   const files = completable()?.wanted ?? [];
-  const isWantedAs = (/** @type {Role | "model"} */ wanted, /** @type {Item} */ item) => files.some(({ role, name }) => role === wanted && fileName(name) === bareName(item));
-  const motions = items.filter((item) => isWantedAs("motion", item) && !isWantedAs("model", item));
+  const [models, lent] = ["model", "motion"].map((wanted) => files.flatMap((file) => (file.role === wanted ? [fileAmong(items, file)] : [])));
+  const motions = items.filter((item) => lent.includes(item) && !models.includes(item));
   if (motions.length === 0) return { motions, others: items };
   const others = items.filter((item) => !motions.includes(item));
   const parts = motions.some(isGltf) ? others.filter(isPartOfGltf) : [];
@@ -229,7 +229,7 @@ async function completeLink(items, shown) {
   // They are still awaited: one of them is damaged.
   if (shown === undefined) return void showAwaited(namesOf(items));
   forgetAwaited();
-  await follow(link, { link, items: heldItems(link), motionItems: heldMotionsAndLight(link), isOwn: waiting.isOwn });
+  await follow(link, { link, ...heldFor(link), isOwn: waiting.isOwn });
 }
 
 /** @param {Item[]} items */

@@ -42,6 +42,9 @@ export const session = {
   askedLink: /** @type {string | null} */ (null),
 };
 
+/** Whether an instance runs that shows no model. */
+export const isStageEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
+
 /** Returns the bindings once they run. */
 export async function running() {
   await session.started;

@@ -95,11 +95,12 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
                 tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
             }
             let clear = ui.add_enabled(row.source.is_some(), egui::Button::new(text::CLEAR_SOURCE));
-            if clear.has_focus() && clear.clicked() {
-                // It is disabled now.
-                list.request_focus();
-            }
-            if clear.on_hover_text("Leave the joint unmapped").clicked() {
+            let clear = clear.on_hover_text("Leave the joint unmapped");
+            if clear.clicked() {
+                if clear.has_focus() {
+                    // There is nothing more to clear.
+                    list.request_focus();
+                }
                 out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source: None });
             }
         });

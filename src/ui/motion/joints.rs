@@ -184,6 +184,7 @@ pub(super) fn show(
     let chosen = shown.state.selection.joint;
     let by_body = !tab.table.tree && has_body(pairing);
     let kept = tab.table.lines.take().filter(|lines| lines.is_current(contents, &tab.table, chosen, by_body));
+    let left = if chosen.is_none() { tab.table.in_details.take() } else { None };
     let lines = kept.unwrap_or_else(|| Rc::new(Lines::new(contents, pairing, &tab.table, chosen, by_body)));
     tab.table.lines = Some(lines.clone());
     if lines.lines.is_empty() {
@@ -193,7 +194,7 @@ pub(super) fn show(
     let scroll = tab.table.scrolled_to != chosen;
     tab.table.scrolled_to = chosen;
     ui.spacing_mut().item_spacing.y = 0.0;
-    let mut table = Table { shown, pairing, map, lines: &lines, scroll, out };
+    let mut table = Table { shown, pairing, map, lines: &lines, scroll, left, out };
     let mut is_open = true;
     for line in &lines.lines {
         match line {
@@ -212,6 +213,8 @@ struct Table<'a, 'b> {
     lines: &'b Lines,
     /// Another joint was selected elsewhere: scroll to it.
     scroll: bool,
+    /// Number of the row whose details were closed while they had the focus.
+    left: Option<usize>,
     out: &'b mut Output,
 }
 
@@ -251,8 +254,7 @@ impl Table<'_, '_> {
             ui.ctx().request_repaint();
             tab.table.revealed = Some((row.number, 1));
         }
-        let is_left = chosen.is_none() && tab.table.in_details.take_if(|number| *number == row.number).is_some();
-        if std::mem::take(&mut tab.table.takes_focus) || is_left {
+        if std::mem::take(&mut tab.table.takes_focus) || self.left == Some(row.number) {
             ui.memory_mut(|memory| memory.request_focus(target_id(ui, row)));
         }
         match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {

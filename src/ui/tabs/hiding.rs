@@ -30,7 +30,7 @@ pub fn eye(ui: &Ui, row: Rect, id: Id, name: &str, is_shown: bool) -> Option<Pre
     style::focus_ring(ui, &response, grab.shrink(1.0), style::CORNER, 1.0);
     let is_solo = response.secondary_clicked() || (response.clicked() && ui.input(|input| input.modifiers.alt));
     let pressed = if is_solo { Some(Pressed::Solo) } else { response.clicked().then_some(Pressed::Toggle) };
-    response.on_hover_text(text::ALT_SOLO);
+    response.on_hover_text(text::SOLO_ALTERNATIVES);
     pressed
 }
 

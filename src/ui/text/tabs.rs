@@ -24,7 +24,7 @@ pub const HIDDEN_NODE: &str = "Hidden";
 /// Button that shows all hidden nodes and materials.
 pub const SHOW_ALL: &str = "Show all";
 /// Tooltip of an eye.
-pub const ALT_SOLO: &str = "Alt-click or right-click to solo";
+pub const SOLO_ALTERNATIVES: &str = "Alt-click or right-click to solo";
 /// Close button of the selected node's card.
 pub const DESELECT: &str = "Deselect";
 /// Shown in the viewport while joints are posed manually.

@@ -300,11 +300,8 @@ fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
 
 /// Returns a format that users may expect to be read, and how to convert it.
 fn foreign_format(name: &str, bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    let is_html = ["<!doctype html", "<html"].iter().any(|start| {
-        bytes.trim_ascii_start().get(..start.len()).is_some_and(|found| found.eq_ignore_ascii_case(start.as_bytes()))
-    });
     match extension(name).as_str() {
-        _ if is_html => {
+        _ if is_html(bytes) => {
             Some(("HTML", "this is a web page; use the address of the file itself, such as its download link"))
         }
         "dae" => Some((
@@ -317,6 +314,13 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<(&'static str, &'static st
         "exr" => Some(("OpenEXR", "save the image as Radiance HDR (.hdr) and drop that")),
         _ => None,
     }
+}
+
+fn is_html(bytes: &[u8]) -> bool {
+    let text = bytes.trim_ascii_start();
+    let starts_with =
+        |start: &str| text.get(..start.len()).is_some_and(|found| found.eq_ignore_ascii_case(start.as_bytes()));
+    starts_with("<!doctype html") || starts_with("<html")
 }
 
 /// The file extension in lower case, even if a URL has a query.

@@ -24,10 +24,10 @@ impl Pinning<'_> {
         let mut tracks = Tracks::of(clip);
         for (joint, pin) in self.in_order() {
             // With an overlapping pin, both search for their own keys.
-            let Some(set) = self.set_by(joint, pin) else { continue };
-            let times = sampled.close_times(&set);
+            let Some(pinned) = self.pinned_joints(joint, pin) else { continue };
+            let times = sampled.close_times(&pinned);
             let kept = fewest(times.len(), |from, to| {
-                sampled.is_close([times[from], times[to]], &times[from + 1..to], BETWEEN_KEYS, &set)
+                sampled.is_close([times[from], times[to]], &times[from + 1..to], BETWEEN_KEYS, &pinned)
             });
             let times_kept: Vec<f32> = kept.iter().map(|&at| times[at]).collect();
             let mut replace = |target, width, values| {
@@ -35,11 +35,11 @@ impl Pinning<'_> {
                 let (interpolation, times) = (Interpolation::Linear, times_kept.clone());
                 tracks.tracks.push(Track { target, interpolation, times, width, values });
             };
-            for &joint in &set.turned {
+            for &joint in &pinned.turned {
                 let rotation = |&time: &f32| sampled.at(time).local(joint).rotation.to_array();
                 replace(Target::Rotation(joint), 4, times_kept.iter().flat_map(rotation).collect());
             }
-            if let Some(joint) = set.moved {
+            if let Some(joint) = pinned.moved {
                 let translation = |&time: &f32| sampled.at(time).local(joint).translation.to_array();
                 replace(Target::Translation(joint), 3, times_kept.iter().flat_map(translation).collect());
             }
@@ -48,10 +48,10 @@ impl Pinning<'_> {
     }
 
     /// What a pin sets; `None` if it has no effect.
-    fn set_by(&self, joint: JointIndex, pin: &Pin) -> Option<Set> {
+    fn pinned_joints(&self, joint: JointIndex, pin: &Pin) -> Option<PinnedJoints> {
         let skeleton = &self.asset.skeleton;
-        let limb = if pin.is_gaze() { None } else { Some(self.limb(joint)?) };
-        let moved = limb.filter(|&limb| self.is_beside(limb)).map(|_| joint);
+        let limb = if pin.is_gaze() { None } else { Some(self.limb_for(joint, pin.goal)?) };
+        let moved = limb.filter(|&limb| self.is_detached(limb)).map(|_| joint);
         let turned = match limb {
             Some([upper, lower, _]) if moved.is_some() => vec![upper, lower],
             Some(limb) => limb.to_vec(),
@@ -59,12 +59,12 @@ impl Pinning<'_> {
         };
         let is_below = |other: &JointIndex| turned.iter().chain(&moved).any(|&own| is_within(skeleton, *other, own));
         let below = skeleton.joints().filter(is_below).collect();
-        Some(Set { turned, moved, below })
+        Some(PinnedJoints { turned, moved, below })
     }
 }
 
 /// What a pin sets of a pose.
-struct Set {
+struct PinnedJoints {
     /// Joints whose rotation it sets.
     turned: Vec<JointIndex>,
     /// The joint whose translation it sets.
@@ -105,7 +105,7 @@ impl<'a> Sampled<'a> {
     }
 
     /// The times, and more where joints turn so fast that they would be off between two of them.
-    fn close_times(&mut self, set: &Set) -> Vec<f32> {
+    fn close_times(&mut self, pinned: &PinnedJoints) -> Vec<f32> {
         let mut close = Vec::with_capacity(self.times.len());
         // Of each interval that is left its end and the number of times it was halved.
         let mut left: Vec<(f32, u32)> = self.times.iter().rev().map(|&time| (time, 0)).collect();
@@ -115,7 +115,8 @@ impl<'a> Sampled<'a> {
                 let is_inside = from < middle && middle < to;
                 // Halfway through an S-curve there is no error.
                 let between = [0.25, 0.5, 0.75].map(|part| from + part * (to - from));
-                if is_inside && halvings < MAX_HALVINGS && !self.is_close([from, to], &between, BETWEEN_SAMPLES, set) {
+                if is_inside && halvings < MAX_HALVINGS && !self.is_close([from, to], &between, BETWEEN_SAMPLES, pinned)
+                {
                     left.extend([(to, halvings + 1), (middle, halvings + 1)]);
                     continue;
                 }
@@ -127,21 +128,21 @@ impl<'a> Sampled<'a> {
 
     /// Whether what a pin sets, interpolated between two times, brings all joints below to where they are in between, but for a
     /// share of the limits.
-    fn is_close(&mut self, [from, to]: [f32; 2], between: &[f32], share: f64, set: &Set) -> bool {
+    fn is_close(&mut self, [from, to]: [f32; 2], between: &[f32], share: f64, pinned: &PinnedJoints) -> bool {
         let skeleton = &self.pinning.asset.skeleton;
         let [before, after] = [from, to].map(|at| locals_of(self.at(at)));
         between.iter().all(|&at| {
             let factor = f64::from(at - from) / f64::from(to - from);
             let exact = WorldPose::new(skeleton, locals_of(self.at(at)), DQuat::IDENTITY);
             let mut locals = exact.locals.clone();
-            for joint in set.turned.iter().map(|joint| joint.get()) {
+            for joint in pinned.turned.iter().map(|joint| joint.get()) {
                 locals[joint].rotation = slerp(before[joint].rotation, after[joint].rotation, factor);
             }
-            if let Some(joint) = set.moved.map(JointIndex::get) {
+            if let Some(joint) = pinned.moved.map(JointIndex::get) {
                 locals[joint].translation = before[joint].translation.lerp(after[joint].translation, factor);
             }
             let found = WorldPose::new(skeleton, locals, DQuat::IDENTITY);
-            set.below.iter().all(|&joint| self.limits.share(&exact, &found, joint) <= share)
+            pinned.below.iter().all(|&joint| self.limits.share(&exact, &found, joint) <= share)
         })
     }
 }

@@ -35,8 +35,8 @@ pub fn turn_joint(joint: JointIndex, model_from_parent: DAffine3, turn: DQuat, p
 }
 
 impl Pinning<'_> {
-    /// The joints of two bones that end at a joint: an arm or a leg, otherwise its two nearest ancestors. A hand or foot may hang
-    /// [beside its limb](Self::is_beside).
+    /// The joints of two bones that end at a joint: an arm or a leg, otherwise its two nearest ancestors. A hand or foot may be
+    /// [detached](Self::is_detached).
     pub(super) fn limb(&self, end: JointIndex) -> Option<[JointIndex; 3]> {
         let skeleton = &self.asset.skeleton;
         let slots = match self.body.slot(end) {
@@ -51,7 +51,7 @@ impl Pinning<'_> {
             let (upper, lower) = (upper?, lower?);
             let is_above = |joint, other| joint != other && is_within(skeleton, other, joint);
             let ends_there =
-                is_above(lower, end) || (self.is_beside([upper, lower, end]) && !is_within(skeleton, upper, end));
+                is_above(lower, end) || (self.is_detached([upper, lower, end]) && !is_within(skeleton, upper, end));
             (is_above(upper, lower) && ends_there).then_some([upper, lower, end])
         };
         of_body().or_else(|| {
@@ -60,8 +60,9 @@ impl Pinning<'_> {
         })
     }
 
-    /// Whether the end of a limb isn't below its bones, as in rigs with controls for inverse kinematics, and has to be moved, too.
-    pub(super) fn is_beside(&self, [upper, _, end]: [JointIndex; 3]) -> bool {
+    /// Whether the end of a limb hangs beside its bones, not below them, as in rigs with controls for inverse kinematics: it has to
+    /// be moved, too.
+    pub(super) fn is_detached(&self, [upper, _, end]: [JointIndex; 3]) -> bool {
         !is_within(&self.asset.skeleton, end, upper)
     }
 

@@ -127,21 +127,20 @@ impl Pinning<'_> {
     /// Whether a joint, given by its index in the file, can have this goal: any can look, but only the end of two bones can be
     /// held, and not at a joint that moves along with them.
     pub fn allows(&self, joint: usize, goal: PinGoal) -> bool {
-        let of_source = |number| self.asset.skeleton.joint_of_source(number);
-        let Some(joint) = of_source(joint) else { return false };
-        let limb = self.limb(joint);
+        let Some(joint) = self.asset.skeleton.joint_of_source(joint) else { return false };
         match goal {
             PinGoal::Look(_) | PinGoal::Camera => true,
-            PinGoal::Point(_) => limb.is_some(),
-            PinGoal::Joint(other, _) => {
-                of_source(other).zip(limb).is_some_and(|(other, limb)| !self.moves(limb, other))
-            }
+            PinGoal::Point(_) | PinGoal::Joint(..) => self.limb_for(joint, goal).is_some(),
         }
     }
 
-    /// Whether a joint moves along with a limb.
-    fn moves(&self, [upper, _, end]: [JointIndex; 3], joint: JointIndex) -> bool {
-        [upper, end].into_iter().any(|own| is_within(&self.asset.skeleton, joint, own))
+    /// Returns the limb that reaches for a goal; `None` for a goal that moves along with it, which it would never reach.
+    fn limb_for(&self, end: JointIndex, goal: PinGoal) -> Option<[JointIndex; 3]> {
+        let skeleton = &self.asset.skeleton;
+        let limb = self.limb(end)?;
+        let PinGoal::Joint(other, _) = goal else { return Some(limb) };
+        let other = skeleton.joint_of_source(other)?;
+        (!limb.into_iter().any(|own| is_within(skeleton, other, own))).then_some(limb)
     }
 
     /// The pins in the order they are applied.
@@ -156,13 +155,13 @@ impl Pinning<'_> {
         let skeleton = &self.asset.skeleton;
         let part = |turn: DQuat| slerp(DQuat::IDENTITY, turn, weight);
         if pin.is_gaze() {
-            let turn = self.gaze(joint, self.goal(pin, [joint; 3], pose)?, pose)?;
+            let turn = self.gaze(joint, self.goal(pin, pose)?, pose)?;
             turn_joint(joint, parent_of(skeleton, pose, joint), part(turn), pose);
             return Some(());
         }
-        let limb = self.limb(joint)?;
-        let [swing, bend] = self.reach(limb, self.goal(pin, limb, pose)?, pose)?.map(part);
-        let moved_end = self.is_beside(limb).then(|| self.turned_end(limb, [swing, bend], pose));
+        let limb = self.limb_for(joint, pin.goal)?;
+        let [swing, bend] = self.reach(limb, self.goal(pin, pose)?, pose)?.map(part);
+        let moved_end = self.is_detached(limb).then(|| self.turned_end(limb, [swing, bend], pose));
         let [upper, lower, parent_of_end] = limb.map(|joint| parent_of(skeleton, pose, joint));
         turn_joint(limb[0], upper, swing, pose);
         turn_joint(limb[1], lower, bend, pose);
@@ -173,16 +172,15 @@ impl Pinning<'_> {
         Some(())
     }
 
-    /// The goal in model space. `None` for one that moves along with the limb: it would never be reached.
-    fn goal(&self, pin: &Pin, limb: [JointIndex; 3], pose: &Pose) -> Option<DVec3> {
+    /// The goal in model space. `None` for an unknown camera or joint.
+    fn goal(&self, pin: &Pin, pose: &Pose) -> Option<DVec3> {
         let model_from_world = |at| self.world_from_model.inverse().transform_point3(at).as_dvec3();
         match pin.goal {
             PinGoal::Point(at) | PinGoal::Look(at) => Some(model_from_world(at)),
             PinGoal::Camera => self.eye.map(model_from_world),
             PinGoal::Joint(number, at) => {
                 let skeleton = &self.asset.skeleton;
-                let other = skeleton.joint_of_source(number).filter(|&other| !self.moves(limb, other))?;
-                Some(frame_of(skeleton, pose, other).transform_point3(at.as_dvec3()))
+                Some(frame_of(skeleton, pose, skeleton.joint_of_source(number)?).transform_point3(at.as_dvec3()))
             }
         }
     }
