@@ -27,7 +27,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {{ width: number, height: number }} [viewport]
  * @property {number} [deviceScaleFactor] Pixels per CSS pixel of an emulated device, in a context of its own. Without it, the page is in
  *   the context that the pages of a test file share.
- * @property {boolean} [isCalm] Unlike other pages of the site (see {@link SiteOptions}).
+ * @property {boolean} [isCalm] Instead of what the site's pages are otherwise (see {@link SiteOptions}).
  * @property {() => void} [before] Runs in the page before its scripts.
  * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
  * @property {boolean} [ready] False: don't wait for the first image.
@@ -181,7 +181,7 @@ async function openPage(browser, shared, address, { renderer, link = "model=samp
   const page = watched(await context.newPage(), isShared);
   if (isShared) await page.setViewportSize(viewport);
   page.setDefaultTimeout(TIMEOUT_MS);
-  if (isCalm === true) await page.emulateMedia({ reducedMotion: "reduce" });
+  if (isCalm) await page.emulateMedia({ reducedMotion: "reduce" });
   await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
   if (before !== undefined) await page.addInitScript(before);
   for (const [name, body] of Object.entries(files)) await page.route(`**/${name}`, (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));

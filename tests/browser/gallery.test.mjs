@@ -98,13 +98,12 @@ for (const renderer of BACK_ENDS)
     const card = (page, name) => page.locator(`#gallery-scenes a >> nth=${scenes.findIndex((scene) => scene.name === name)}`);
 
     test("fetches the program and the sample once, side by side", async () => {
-      const context = await site.browser.newContext({ viewport: DESKTOP, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block" });
+      const context = await site.browser.newContext({ viewport: DESKTOP, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block", reducedMotion: "reduce" });
       const page = watched(await context.newPage());
       const session = await context.newCDPSession(page);
       await session.send("Network.enable");
       // Unthrottled, either arrives before the other is requested.
       await session.send("Network.emulateNetworkConditions", { offline: false, latency: 40, downloadThroughput: 2_000_000, uploadThroughput: -1 });
-      await page.emulateMedia({ reducedMotion: "reduce" });
       await page.goto(`${site.address}?renderer=${renderer}`);
       await whenReady(page);
       for (const ending of [".wasm", ".glb"]) assert.equal(page.requests.filter((url) => url.endsWith(ending)).length, 1, ending);

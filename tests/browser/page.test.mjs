@@ -59,6 +59,29 @@ const programs = (page) => page.requests.flatMap((url) => url.match(/(webgpu|web
 // GLTFLoader's warnings about the reference file don't matter here.
 console.warn = () => {};
 
+/**
+ * Returns a function that declares tests on fresh pages of a site, which must report no errors.
+ * @param {import("../../web/shell/types.d.ts").Backend} renderer
+ * @param {() => import("./browser.mjs").Site} site
+ */
+const onFreshPages =
+  (renderer, site) =>
+  /**
+   * @param {string} name
+   * @param {{ data?: boolean, link?: () => string, isCalm?: boolean }} options
+   * @param {(page: import("./browser.mjs").TestPage, t: import("node:test").TestContext) => Promise<void>} body
+   */
+  (name, { data = false, link, isCalm }, body) =>
+    test(name, { skip: data ? skipWithoutData : false }, async (t) => {
+      const page = await site().page({ renderer, link: link?.(), ...(isCalm === undefined ? {} : { isCalm }) });
+      try {
+        await body(page, t);
+        assert.deepEqual(page.troubles, []);
+      } finally {
+        await page.finish();
+      }
+    });
+
 for (const renderer of BACK_ENDS) {
   describe(`screen on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
@@ -66,23 +89,9 @@ for (const renderer of BACK_ENDS) {
     before(async () => (site = await startSite()));
     after(() => site?.close());
 
-    /**
-     * @param {string} name
-     * @param {string} link
-     * @param {(page: import("./browser.mjs").TestPage, t: import("node:test").TestContext) => Promise<void>} body
-     */
-    const onScreen = (name, link, body) =>
-      test(name, async (t) => {
-        const page = await site.page({ renderer, link });
-        try {
-          await body(page, t);
-          assert.deepEqual(page.troubles, []);
-        } finally {
-          await page.finish();
-        }
-      });
+    const onPage = onFreshPages(renderer, () => site);
 
-    onScreen("starts with a sample that moves", "model=sample:walker", async (page) => {
+    onPage("starts with a sample that moves", { link: () => "model=sample:walker" }, async (page) => {
       const { backend } = await stats(page);
       assert.equal(backend, renderer);
       const first = await pose(page);
@@ -97,7 +106,7 @@ for (const renderer of BACK_ENDS) {
     });
 
     for (const [script, one, other] of [["Japanese", "腕", "脚"], ["Georgian", "მკლავი", "ფეხი"]])
-      onScreen(`shows names in ${script}, which its own font lacks`, "model=sample:walker&play=0&joint=3", async (page, t) => {
+      onPage(`shows names in ${script}, which its own font lacks`, { link: () => "model=sample:walker&play=0&joint=3" }, async (page, t) => {
         if (!(await page.evaluate(hasFontFor, one))) return t.skip(`this machine has no font for ${script}`);
         /** @param {string} name */
         const labelled = async (name) => {
@@ -111,7 +120,7 @@ for (const renderer of BACK_ENDS) {
         assert.equal(shown, await labelled(one), "nothing but the name changes the picture");
       });
 
-    onScreen("says that a folder has no files in it", "model=sample:walker&play=0", async (page) => {
+    onPage("says that a folder has no files in it", {}, async (page) => {
       const before = await page.screenshot();
       await page.locator("#gallery-own").evaluate((button) => button instanceof HTMLElement && button.click());
       await page.locator("#open-folder").dispatchEvent("change");
@@ -144,22 +153,7 @@ for (const renderer of BACK_ENDS) {
         assert.deepEqual(shared.troubles, []);
       });
 
-    /**
-     * Tests on a fresh page, which must report no errors.
-     * @param {string} name
-     * @param {{ data?: boolean, link?: (site: import("./browser.mjs").Site) => string, isCalm?: boolean }} options
-     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
-     */
-    const onPage = (name, options, body) =>
-      test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
-        const page = await site.page({ renderer, ...options, link: options.link?.(site) });
-        try {
-          await body(page);
-          assert.deepEqual(page.troubles, []);
-        } finally {
-          await page.finish();
-        }
-      });
+    const onPage = onFreshPages(renderer, () => site);
 
     onSharedPage("requests nothing from other hosts and works in any folder", {}, async (page) => {
       const { origin } = new URL(page.url());
@@ -179,7 +173,7 @@ for (const renderer of BACK_ENDS) {
       await whenShown(page, CESIUM_MAN_VERTICES);
     });
 
-    onPage("opens the URL of a link, with clip, time and camera", { data: true, link: (site) => `model=${encodeURIComponent(site.data(FOX))}&clip=Run&t=0.5&play=0&camera=40,15,250,0,40,0` }, async (page) => {
+    onPage("opens the URL of a link, with clip, time and camera", { data: true, link: () => `model=${encodeURIComponent(site.data(FOX))}&clip=Run&t=0.5&play=0&camera=40,15,250,0,40,0` }, async (page) => {
       await whenShown(page, FOX_VERTICES);
       const { clip, time_secs } = await pose(page);
       assert.equal(clip, "Run");

@@ -280,7 +280,7 @@ function updateInput(input, { role, value, now, min, max }) {
 }
 
 /**
- * Reads a number as the panels do (`read_number` in src/ui/widgets/controls.rs): decimals may follow a comma. NaN for anything else.
+ * Reads a number as the panels do (`read_number` in src/ui/widgets/controls/numbers.rs): decimals may follow a comma. NaN for anything else.
  * @param {string} text
  */
 function numberIn(text) {

@@ -273,9 +273,8 @@ impl Table<'_, '_> {
             let details = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response.rect;
             // The key that closes them takes the focus away a pass earlier.
             if !ui.input(|input| input.key_pressed(Key::Escape)) {
-                let focused = ui.memory(|memory| memory.focused()).and_then(|id| ui.ctx().read_response(id));
-                tab.table.in_details =
-                    focused.is_some_and(|focused| details.contains_rect(focused.rect)).then_some(row.number);
+                let has_focus = controls::focused(ui).is_some_and(|focused| details.contains_rect(focused.rect));
+                tab.table.in_details = has_focus.then_some(row.number);
             }
             if revealed.is_some_and(|(_, passes)| passes == 0) {
                 // If not all of it fits, the row itself stays in view.
