@@ -402,8 +402,8 @@ for (const renderer of BACK_ENDS)
       await page.keyboard.press("Escape");
       await page.goBack();
       await page.goBack();
+      await until(page, async () => (await window.gaitway.state()).t === 0.5);
       await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.equal((await state(page)).t, 0.5);
     });
 
     const NOTHING = { result: undefined, error: undefined, code: undefined };
