@@ -134,6 +134,12 @@ fn keys_lead_through_the_whole_tree() {
     assert_eq!(at_after(egui::Key::PageDown), last);
     assert_eq!(at_after(egui::Key::Home), 0);
     assert_eq!(at_after(egui::Key::PageDown), page);
+    assert_eq!(at_after(egui::Key::Home), 0);
+    assert_eq!(at_after(egui::Key::ArrowRight), 1, "the first child");
+    assert_eq!(at_after(egui::Key::ArrowLeft), 1, "closed");
+    assert_eq!(at_after(egui::Key::ArrowLeft), 0, "the parent");
+    assert_eq!(at_after(egui::Key::ArrowRight), 1);
+    assert_eq!(at_after(egui::Key::ArrowRight), 1, "open again");
     // Before the focus has arrived.
     harness.key_press(egui::Key::End);
     harness.key_press(egui::Key::Home);

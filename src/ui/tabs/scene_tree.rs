@@ -220,7 +220,7 @@ impl SceneTree {
                         self.fold(number);
                     }
                     Some(Pressed::Leap(key)) => {
-                        self.leap = Some(row_after(key, at, page, rows.len() - 1));
+                        self.leap = row_after(key, at, page, rows);
                         ui.ctx().request_repaint();
                     }
                     None => {}
@@ -378,7 +378,7 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let depth = row.depth as f32;
     let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
     let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
-    let mut pressed = leap(&response, line.takes_focus).or(response.clicked().then_some(Pressed::Row));
+    let mut pressed = leap(&response, is_expanded == Some(true), line.takes_focus).or(response.clicked().then_some(Pressed::Row));
     if is_toggled || row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
         pressed = Some(Pressed::Triangle);
     }
@@ -421,24 +421,30 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     pressed
 }
 
-/// Returns the row that a key leads to.
-fn row_after(key: Key, at: usize, page: usize, last: usize) -> usize {
+/// Returns the row that a key leads to, if any.
+fn row_after(key: Key, at: usize, page: usize, rows: &[Row]) -> Option<usize> {
+    let last = rows.len() - 1;
     match key {
-        Key::Home => 0,
-        Key::End => last,
-        Key::PageUp => at.saturating_sub(page),
-        _ => (at + page).min(last),
+        Key::ArrowLeft => rows[..at].iter().rposition(|row| row.depth < rows[at].depth),
+        Key::ArrowRight => Some(at + 1),
+        Key::Home => Some(0),
+        Key::End => Some(last),
+        Key::PageUp => Some(at.saturating_sub(page)),
+        _ => Some((at + page).min(last)),
     }
 }
 
-/// Gives the focus to a row, and returns the key that leads from it to a distant one.
-fn leap(row: &egui::Response, takes_focus: bool) -> Option<Pressed> {
+/// Gives the focus to a row, and returns the key that leads from it to another one. `is_open`: its children follow it.
+fn leap(row: &egui::Response, is_open: bool, takes_focus: bool) -> Option<Pressed> {
     if takes_focus {
         row.request_focus();
     }
     if takes_focus || row.has_focus() {
         let is_pressed = |key: &Key| row.ctx.input(|input| input.key_pressed(*key));
-        return [Key::Home, Key::End, Key::PageUp, Key::PageDown].into_iter().find(is_pressed).map(Pressed::Leap);
+        // The other horizontal arrow opens or closes the row.
+        let horizontal = if is_open { Key::ArrowRight } else { Key::ArrowLeft };
+        let keys = [Key::Home, Key::End, Key::PageUp, Key::PageDown, horizontal];
+        return keys.into_iter().find(is_pressed).map(Pressed::Leap);
     }
     None
 }
