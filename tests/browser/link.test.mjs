@@ -404,6 +404,14 @@ for (const renderer of BACK_ENDS)
       await page.goBack();
       await until(page, async () => (await window.gaitway.state()).t === 0.5);
       await whenShown(page, CESIUM_MAN_VERTICES);
+      // Another model has been opened since.
+      const { hash } = new URL(page.url());
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await until(page, () => location.hash.includes("Fox.glb"));
+      await page.evaluate((hash) => void (location.hash = `${hash}&exposure=1`), hash);
+      await until(page, async () => (await window.gaitway.state()).exposure === 1);
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      assert.equal(await page.locator("#bring").isVisible(), false);
     });
 
     const NOTHING = { result: undefined, error: undefined, code: undefined };

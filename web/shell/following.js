@@ -172,6 +172,6 @@ addEventListener("popstate", ({ state }) => {
   const link = linkOfAddress();
   // An instance that is starting shows this link instead.
   if (session.app === null) session.askedLink = session.link = link;
-  // The address of the current view may have been edited: files that are open aren't asked for.
-  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withOpenFiles(link, session.link)) });
+  // The address may have been edited: files that are there aren't asked for.
+  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withOpenFiles(link)) });
 });

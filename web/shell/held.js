@@ -107,23 +107,24 @@ function motionsAndLight(link) {
   return [...motions.flat(), ...lights];
 }
 
-/** @param {LinkedFile} file */
-const isLocalFile = ({ name, isToBring }) => !isToBring && held.some((items) => items.some((item) => typeof item !== "string" && item.name === name));
+/**
+ * Whether a local file of this name was opened.
+ * @param {string} name
+ */
+const isLocal = (name) => held.some((items) => items.some((item) => typeof item !== "string" && item.name === name));
 
 /**
  * Returns the files of a link that exist only on this computer.
  * @param {string} link
  */
-export const localFiles = (link) => linkedFiles(link).filter(isLocalFile);
+export const localFiles = (link) => linkedFiles(link).filter(({ name, isToBring }) => !isToBring && isLocal(name));
 
 /**
- * Returns what a link shows with the local files that it asks for by name and that the current view has open, if there are any.
+ * Returns what a link shows with the local files that it asks for and that were opened before, if there are any.
  * @param {string} link
- * @param {string} current
  */
-export function withOpenFiles(link, current) {
-  const open = localFiles(current).map(({ name }) => name);
-  const names = linkedFiles(link).flatMap(({ name, isToBring }) => (isToBring ? [open.includes(name) ? name : ""] : []));
+export function withOpenFiles(link) {
+  const names = linkedFiles(link).flatMap(({ name, isToBring }) => (isToBring ? [isLocal(name) ? name : ""] : []));
   if (names.every((name) => name === "")) return undefined;
   const known = linkWithFiles(link, names);
   return { link: known, ...heldFor(known) };
