@@ -458,6 +458,7 @@ impl eframe::App for App {
         self.expire_notices();
         self.update_motions();
         self.update_drawn();
+        self.viewport.keep_up(&mut self.editor);
         let mut output = std::mem::take(&mut self.output);
         let (has_input, rect, slot) = self.lay_out(ui, &mut output);
         self.output = output;

@@ -43,6 +43,15 @@ impl Viewport {
         Ok(())
     }
 
+    /// Evaluates a view that has changed since the last image, without drawing it: the panels come first, and they read the frame of
+    /// the model that is open now.
+    pub fn keep_up(&mut self, editor: &mut Editor) {
+        self.needs_redraw |= editor.take_needs_redraw();
+        if let Some(size) = self.drawn_size.filter(|_| self.needs_redraw) {
+            evaluate(editor.library(), editor.state(), aspect(size), &mut self.frame);
+        }
+    }
+
     /// Draws the view if it changed; otherwise, once it has been still for a moment, refines its image by one sample.
     /// Returns the seconds until the next sample, if the image can be refined. `now_secs` is egui's clock.
     pub fn draw(&mut self, editor: &mut Editor, size: [u32; 2], now_secs: f64) -> Option<f64> {

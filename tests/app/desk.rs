@@ -115,6 +115,12 @@ impl Desk {
         self.run_frames();
     }
 
+    /// Moves the pointer to a place in the window and leaves it there.
+    pub fn point_at(&mut self, at: egui::Pos2) {
+        self.harness.input_mut().events.push(egui::Event::PointerMoved(at));
+        self.run_frames();
+    }
+
     pub fn undo(&mut self) {
         self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
         self.run_frames();

@@ -69,6 +69,19 @@ fn a_new_source_of_a_joint_is_told() {
     }
 }
 
+/// The pointer rests on a vertex while a link opens another model, which has other joints and meshes.
+#[test]
+fn a_vertex_is_forgotten_with_its_model() {
+    let Some(mut desk) = desk("sample:ssd") else { return };
+    desk.press(text::VERTEX_PROBE);
+    desk.point_at(egui::pos2(640.0, 330.0));
+    assert!(desk.shows("Vertex "), "the pointer is on the model");
+    for model in ["sample:pilot", "sample:morphs", "sample:creature", "sample:ssd"] {
+        desk.open(&[model.into()]);
+        assert_eq!(desk.active(), model);
+    }
+}
+
 #[test]
 fn following_starts_and_stops_without_a_jump() {
     let Some(mut desk) = desk("sample:mannequin") else { return };
