@@ -167,8 +167,11 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Handles shortcuts with modifiers and the keys of the help unless the user is typing into a field, the other keys also unless a
-/// control has the keyboard.
+/// Keys that controls have a use for.
+const KEYS_OF_CONTROLS: [Key; 7] =
+    [Key::Space, Key::ArrowUp, Key::ArrowDown, Key::ArrowLeft, Key::ArrowRight, Key::Home, Key::Escape];
+
+/// Handles shortcuts unless the user is typing into a field. While a control has the keyboard, its keys are the control's.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     // An open menu has the arrow keys and Esc, also in the frame in which Esc closes it.
     let has_popup = egui::Popup::is_any_open(context);
@@ -180,16 +183,19 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     shortcuts(context, out);
     // While the modal help is open, only the keys that close it work. The help has the focus.
     let modal = local.help.is_open;
-    let is_taken = context.egui_wants_keyboard_input() && !local.viewport.has_focus && !modal;
+    let has_control = context.egui_wants_keyboard_input() && !local.viewport.has_focus && !modal;
     if had_popup || has_popup {
         return;
     }
     for line in KEY_TABLE {
         let toggles_help = line.pressed.contains(&Key::Questionmark);
-        if is_taken && !toggles_help || modal && !toggles_help && !line.pressed.contains(&Key::Escape) {
+        if modal && !toggles_help && !line.pressed.contains(&Key::Escape) {
             continue;
         }
         for (which, &key) in line.pressed.iter().enumerate() {
+            if has_control && KEYS_OF_CONTROLS.contains(&key) {
+                continue;
+            }
             let pressed =
                 |input: &egui::InputState| input.events.iter().filter_map(|event| plain_press(event, key)).collect();
             let presses: Vec<bool> = context.input(pressed);

@@ -73,6 +73,36 @@ fn every_press_within_a_frame_counts() {
     assert_eq!(harness.state().actions, [UiAction::Undo, UiAction::Undo, UiAction::Undo]);
 }
 
+/// As after the Tab key.
+#[test]
+fn a_control_with_the_keyboard_takes_its_own_keys_only() {
+    let mut harness = sample_bench(WIDE);
+    harness.get_by_label(text::SHARE).focus();
+    harness.run();
+    assert_eq!(press_key(&mut harness, Key::F), [Command::FrameAll]);
+    assert_eq!(press_key(&mut harness, Key::Period), [Command::StepFrames(1)]);
+    for key in [Key::Space, Key::ArrowDown, Key::Home] {
+        harness.get_by_label(text::SHARE).focus();
+        harness.run();
+        assert!(press_key(&mut harness, key).is_empty(), "{key:?}");
+    }
+}
+
+#[test]
+fn keys_scroll_the_help() {
+    let mut harness = sample_bench(WIDE);
+    press_key(&mut harness, Key::Questionmark);
+    let top = |harness: &Harness<'_, Bench>| harness.get_by_label("Play or pause").rect().top();
+    let first = top(&harness);
+    press_key(&mut harness, Key::ArrowDown);
+    let after_arrow = top(&harness);
+    assert!(after_arrow < first - 20.0, "{after_arrow} after {first}");
+    press_key(&mut harness, Key::End);
+    assert!(top(&harness) < after_arrow - 20.0);
+    assert!(press_key(&mut harness, Key::Home).is_empty(), "the camera stays");
+    assert_eq!(top(&harness), first);
+}
+
 #[test]
 fn typing_is_not_taken_for_keys() {
     let mut harness = sample_bench(WIDE);

@@ -84,6 +84,9 @@ export class Mirror {
     for (const row of this.root.querySelectorAll("[role=row]:empty")) row.remove();
     const hadTree = this.root.querySelector("[role=tree]") !== null;
     const menu = this.#place(entries);
+    // Whatever lies under a dialog can't be reached.
+    const dialog = [...this.#elements.values()].findLast(({ ariaModal }) => ariaModal === "true");
+    for (const element of /** @type {Iterable<HTMLElement>} */ (this.root.children)) element.inert = dialog !== undefined && !element.contains(dialog);
     if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus, hadTree);
     this.#focused = focus;
     this.#isShowing = false;
@@ -402,4 +405,4 @@ function neighbourOf(target, key) {
 const itemsOf = (list) => /** @type {HTMLElement[]} */ ([...list.querySelectorAll("[data-id]")]);
 
 /** @param {HTMLElement} parent */
-const stopsIn = (parent) => [.../** @type {NodeListOf<HTMLElement>} */ (parent.querySelectorAll("button, input, [tabindex]"))].filter(({ tabIndex }) => tabIndex >= 0);
+const stopsIn = (parent) => [.../** @type {NodeListOf<HTMLElement>} */ (parent.querySelectorAll("button, input, [tabindex]"))].filter((stop) => stop.tabIndex >= 0 && stop.closest("[inert]") === null);

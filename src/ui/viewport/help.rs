@@ -1,6 +1,6 @@
 //! The list of keys and gestures.
 
-use egui::{Align, Context, Layout, RichText, Sense, Ui};
+use egui::{Align, Context, Key, Layout, RichText, Sense, Ui, vec2};
 
 use super::overlays;
 use crate::ui::icons::{Icon, icon_button};
@@ -65,7 +65,7 @@ impl Help {
 
 /// Returns whether its close button was clicked. Its title has the focus: unlike a button, it leaves Space alone.
 fn title_bar(ui: &mut Ui, has_keys: bool, takes_focus: bool) -> bool {
-    let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
+    let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP).clicked();
     ui.horizontal(|ui| {
         let title = if has_keys { text::HELP_TITLE } else { text::GESTURES };
         overlays::name_modal(ui, title);
@@ -92,6 +92,7 @@ fn list(ui: &mut Ui, width: f32, has_keys: bool) {
     // A scroll bar that is always visible: nothing else would show that the list goes on.
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
     egui::ScrollArea::vertical().max_height(max_height).min_scrolled_height(max_height).show(ui, |ui| {
+        ui.scroll_with_delta(vec2(0.0, -scrolled_by_keys(ui, max_height)));
         // Fixed widths: on small screens the longest key and the longest text don't fit side by side.
         let columns = [0.37 * width, 0.63 * width - 18.0];
         egui::Grid::new("keys").num_columns(2).min_row_height(18.0).spacing([18.0, 7.0]).show(ui, |ui| {
@@ -102,6 +103,22 @@ fn list(ui: &mut Ui, width: f32, has_keys: bool) {
             }
         });
     });
+}
+
+/// Returns how far the keys scroll down in this frame; nothing in the list could be reached with them otherwise.
+fn scrolled_by_keys(ui: &Ui, page: f32) -> f32 {
+    const LINE: f32 = 40.0;
+    /// Longer than the list.
+    const ALL: f32 = 10_000.0;
+    let steps = [
+        (Key::ArrowDown, LINE),
+        (Key::ArrowUp, -LINE),
+        (Key::PageDown, page - LINE),
+        (Key::PageUp, LINE - page),
+        (Key::End, ALL),
+        (Key::Home, -ALL),
+    ];
+    ui.input(|input| steps.into_iter().map(|(key, by)| input.num_presses(key) as f32 * by).sum())
 }
 
 fn cell(ui: &mut Ui, width: f32, text: RichText) {
