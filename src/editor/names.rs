@@ -2,6 +2,9 @@
 
 use crate::samples;
 
+/// Where a file without a path is.
+pub const LOCAL: &str = "Opened from this computer";
+
 /// Returns the last part of a path or URL, and where it is.
 pub fn name_and_place(source: &str) -> (String, String) {
     if let Some(sample) = source.strip_prefix("sample:") {
@@ -11,7 +14,7 @@ pub fn name_and_place(source: &str) -> (String, String) {
     match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
         Some((place, name)) => (name.to_owned(), place.to_owned()),
         None if source.is_empty() => ("Untitled".to_owned(), String::new()),
-        None => (source.to_owned(), "Opened from this computer".to_owned()),
+        None => (source.to_owned(), LOCAL.to_owned()),
     }
 }
 

@@ -3,8 +3,9 @@
 use egui::{RichText, ScrollArea, Ui, vec2};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
+use super::search::finds;
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
-use crate::editor::{name_and_place, short_name};
+use crate::editor::{LOCAL, name_and_place, short_name};
 use crate::library::{Model, ModelId, Motion};
 use crate::state::{ClipChoice, Command, changes_of, choice_of_clip, is_to_bring};
 
@@ -68,7 +69,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let scrolls = before != Some(seen);
     // A clip that was set elsewhere, such as the first one of a motion that was just borrowed, is not hidden by a search.
     if before.is_some_and(|before| SeenClip { height: seen.height, ..before } != seen)
-        && clip.and_then(|clip| model.clip_titles().get(clip)).is_some_and(|title| !matches(title, &list.search))
+        && clip.and_then(|clip| model.clip_titles().get(clip)).is_some_and(|title| !finds(&list.search, title))
     {
         list.search.clear();
     }
@@ -84,10 +85,6 @@ fn motion_of(shown: &Shown<'_>, model: &Model) -> Option<ModelId> {
     shown.library.motions().get(borrowed.motion).map(Motion::id)
 }
 
-fn matches(title: &str, search: &str) -> bool {
-    title.to_lowercase().contains(&search.to_lowercase())
-}
-
 /// The rest pose and the clips that match the search, borrowed ones under the name of their motion.
 fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: bool, out: &mut Output) {
     let current = shown.clip_index();
@@ -100,7 +97,7 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
     let mut heading = None;
     for index in model.listed_clips() {
         let title = &titles[index];
-        if !matches(title, search) {
+        if !finds(search, title) {
             continue;
         }
         found = true;
@@ -180,7 +177,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
                     out.actions.push(UiAction::BorrowFrom(model.id));
                 }
                 let close = text::close_model(name);
-                if icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
+                if icon_button_sized(ui, Icon::Close, &close, CLEAR_SIZE).clicked() {
                     out.actions.push(UiAction::CloseModel(model.id));
                 }
             });
@@ -209,7 +206,7 @@ fn motion_heading(ui: &mut Ui, name: &str) {
 fn header(ui: &mut Ui, model: &Model) {
     let palette = style::palette(ui);
     let (name, mut place) = name_and_place(&model.source);
-    if model.is_placeholder() && is_to_bring(&model.origin) {
+    if model.is_placeholder() && (is_to_bring(&model.origin) || place == LOCAL) {
         place = text::NOT_OPENED.to_owned();
     }
     ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
@@ -243,7 +240,7 @@ pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
             ui.ctx().request_repaint();
         }
         field.accessible_name(hint);
-        if filled && icon_button_sized(ui, Icon::Close, text::CLEAR_SEARCH, false, CLEAR_SIZE).clicked() {
+        if filled && icon_button_sized(ui, Icon::Close, text::CLEAR_SEARCH, CLEAR_SIZE).clicked() {
             text.clear();
         }
     });

@@ -11,6 +11,7 @@ mod layers;
 mod motion;
 mod output;
 mod pins;
+mod search;
 mod tabs;
 pub mod text;
 mod tracks;

@@ -11,6 +11,7 @@ use super::{Contents, MotionTab, Pairing, detail};
 use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
+use crate::ui::search::finds;
 use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, controls, style, text};
 
@@ -119,12 +120,9 @@ impl Lines {
         by_body: bool,
     ) -> Self {
         let (search, filter) = (table.search.clone(), table.filter);
-        let wanted = search.to_lowercase();
         let is_shown = |row: &Row| {
-            let found = wanted.is_empty()
-                || row.target.to_lowercase().contains(&wanted)
-                || row.source_text.to_lowercase().contains(&wanted)
-                || row.what.contains(&wanted);
+            let names = [&*row.target, &*row.source_text, &*row.what];
+            let found = names.into_iter().any(|name| finds(&search, name));
             found && (filter.lets_through(row) || Some(row.number) == chosen)
         };
         let rows = &contents.rows;

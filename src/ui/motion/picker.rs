@@ -5,6 +5,7 @@ use egui::{Context, Key, ScrollArea, Ui};
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::state::{Command, title};
+use crate::ui::search::finds;
 use crate::ui::{Output, Shown, UiState, controls, overlays, text};
 
 /// The joint whose source is being chosen.
@@ -128,14 +129,14 @@ fn list(
 fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
     let asset = &pairing.motion.asset;
     let skeleton = &asset.skeleton;
-    let wanted = search.trim().to_lowercase();
+    let wanted = search.trim();
     let number: Option<usize> = wanted.parse().ok();
     let mut found: Vec<(bool, usize, JointIndex)> = skeleton
         .joints()
         .filter_map(|joint| {
-            let (at, name) = (skeleton.source_index(joint), title(None, asset, joint).to_lowercase());
-            let exact = number == Some(at) || name == wanted;
-            (exact || name.contains(&wanted)).then_some((!exact, at, joint))
+            let (at, name) = (skeleton.source_index(joint), title(None, asset, joint));
+            let exact = number == Some(at) || name.eq_ignore_ascii_case(wanted);
+            (exact || finds(wanted, &name)).then_some((!exact, at, joint))
         })
         .collect();
     found.sort_unstable();

@@ -10,6 +10,7 @@ use crate::asset::Asset;
 use crate::library::{Model, ModelId};
 use crate::state::{Command, ViewerState, joints_with_content, title};
 use crate::ui::motion::namespace;
+use crate::ui::search::finds;
 use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
 
@@ -242,9 +243,8 @@ impl SceneTree {
     /// The rows that the search and the collapsed joints leave.
     fn rows(&self, asset: &Asset, state: &ViewerState) -> Vec<Row> {
         let skeleton = &asset.skeleton;
-        let wanted = self.search.to_lowercase();
-        if !wanted.is_empty() {
-            let is_wanted = |&joint: &JointIndex| title(Some(state), asset, joint).to_lowercase().contains(&wanted);
+        if !self.search.is_empty() {
+            let is_wanted = |&joint: &JointIndex| finds(&self.search, &title(Some(state), asset, joint));
             return skeleton
                 .joints()
                 .filter(is_wanted)
@@ -378,7 +378,8 @@ fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
     let depth = row.depth as f32;
     let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
     let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
-    let mut pressed = leap(&response, is_expanded == Some(true), line.takes_focus).or(response.clicked().then_some(Pressed::Row));
+    let mut pressed =
+        leap(&response, is_expanded == Some(true), line.takes_focus).or(response.clicked().then_some(Pressed::Row));
     if is_toggled || row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
         pressed = Some(Pressed::Triangle);
     }
