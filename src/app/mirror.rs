@@ -235,7 +235,8 @@ impl<'a> List<'a> {
         set("name", name.filter(|name| !name.trim().is_empty()).map(Value::from));
         set("value", node.value().filter(|_| !is_text).map(Value::from));
         let finite = |number: Option<f64>| number.filter(|number| number.is_finite()).map(Value::from);
-        set("description", node.description().map(Value::from));
+        // A tooltip may only repeat the name.
+        set("description", node.description().filter(|&text| Some(text) != node.label()).map(Value::from));
         let decimals = match node.role() {
             // A share of the room.
             Role::Splitter => Some(3),

@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, RichText, ThemePreference, Ui};
 
-use super::icons::{ICON_SIZE, Icon, icon_button, icon_size};
+use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
 use crate::editor::{ClipFormat, Export, derived_clip};
@@ -42,7 +42,7 @@ fn left(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
         ui.add_space(4.0);
     }
     if local.layout.is_small {
-        if icon_button(ui, Icon::Open, text::OPEN, false).clicked() {
+        if icon_button(ui, Icon::Open, text::OPEN).clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
         return;
@@ -70,7 +70,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
         button.request_focus();
     }
     let share = match local.layout.is_small {
-        true => icon_button(ui, Icon::Share, text::SHARE, false),
+        true => icon_button(ui, Icon::Share, text::SHARE),
         false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),
     };
     if share.clicked() {
@@ -85,7 +85,7 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     ];
     for (icon, label, enabled, action) in steps {
         let label = controls::with_key(ui, label);
-        if ui.add_enabled_ui(enabled, |ui| icon_button(ui, icon, label, false)).inner.clicked() {
+        if ui.add_enabled_ui(enabled, |ui| icon_button(ui, icon, label)).inner.clicked() {
             out.actions.push(action);
         }
     }
@@ -103,7 +103,9 @@ fn panel_button(ui: &mut Ui, panel: Sheet, local: &mut UiState) {
             (Icon::PanelRight, if layout.inspector_open { text::HIDE_INSPECTOR } else { text::SHOW_INSPECTOR })
         }
     };
-    if icon_button(ui, icon, label, is_open).clicked() {
+    // On a large screen, the label says what it does.
+    let button = if layout.is_small { icon_toggle(ui, icon, label, is_open) } else { icon_button(ui, icon, label) };
+    if button.clicked() {
         layout.toggle(panel);
     }
 }

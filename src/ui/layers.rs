@@ -133,7 +133,7 @@ fn card(
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
         }
-        let remove = icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, false, BUTTON_SIZE);
+        let remove = icon_button_sized(ui, Icon::Close, text::REMOVE_LAYER, BUTTON_SIZE);
         if remove.clicked() {
             moved = Some(Moved::Removed { by_key: !remove.clicked_by(egui::PointerButton::Primary) });
         }

@@ -67,7 +67,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
                 out.commands.push(Command::SelectJoint((!is_selected).then_some(named.number)));
             }
             let remove = text::remove_pin(&named.joint);
-            if icon_button_sized(ui, Icon::Close, &remove, false, BUTTON_SIZE).clicked() {
+            if icon_button_sized(ui, Icon::Close, &remove, BUTTON_SIZE).clicked() {
                 out.commands.push(Command::SetPin { joint: named.number, pin: None });
             }
         };

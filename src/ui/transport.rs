@@ -2,12 +2,13 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, play_button};
+use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
 use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
+use crate::ui::widgets::accessible;
 
 /// At most this share of the window's height is for tracks: a link may bring hundreds of layers. The others are scrolled to.
 const MAX_SHARE_OF_TRACKS: f32 = 0.25;
@@ -71,14 +72,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
 
 fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let (previous, next) = (controls::with_key(ui, text::PREVIOUS_FRAME), controls::with_key(ui, text::NEXT_FRAME));
-    if icon_button(ui, Icon::StepBack, previous, false).clicked() {
+    if icon_button(ui, Icon::StepBack, previous).clicked() {
         out.commands.push(Command::StepFrames(-1));
     }
     let size = controls::row_height(ui, 40.0);
     if play_button(ui, shown.state.playback.playing && shown.is_animated(), size).clicked() {
         out.commands.push(Command::TogglePlaying);
     }
-    if icon_button(ui, Icon::StepForward, next, false).clicked() {
+    if icon_button(ui, Icon::StepForward, next).clicked() {
         out.commands.push(Command::StepFrames(1));
     }
 }
@@ -126,7 +127,7 @@ const LOOP_MODES: [(LoopMode, Icon, &str); 3] = [
 
 fn loop_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     for (mode, icon, label) in LOOP_MODES.into_iter().rev() {
-        if icon_button(ui, icon, label, shown.state.playback.loop_mode == mode).clicked() {
+        if icon_toggle(ui, icon, label, shown.state.playback.loop_mode == mode).clicked() {
             out.commands.push(Command::SetLoopMode(mode));
         }
     }
@@ -136,7 +137,7 @@ fn loop_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let at = LOOP_MODES.iter().position(|(mode, ..)| *mode == shown.state.playback.loop_mode).unwrap_or(0);
     let (_, icon, label) = LOOP_MODES[at];
-    if icon_button(ui, icon, label, false).clicked() {
+    if icon_button(ui, icon, label).clicked() {
         out.commands.push(Command::SetLoopMode(LOOP_MODES[(at + 1) % LOOP_MODES.len()].0));
     }
 }
@@ -147,14 +148,14 @@ fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         if shown.state.playhead.range.is_none() {
             ui.set_invisible();
         }
-        if icon_button(ui, Icon::Close, text::CLEAR_RANGE, false).clicked() {
+        if icon_button(ui, Icon::Close, text::CLEAR_RANGE).clicked() {
             out.commands.push(Command::SetRange(None));
         }
     });
-    if icon_button(ui, Icon::MarkOut, text::SET_OUT_POINT, false).clicked() {
+    if icon_button(ui, Icon::MarkOut, text::SET_OUT_POINT).clicked() {
         out.commands.extend(range_here(shown, false));
     }
-    if icon_button(ui, Icon::MarkIn, text::SET_IN_POINT, false).clicked() {
+    if icon_button(ui, Icon::MarkIn, text::SET_IN_POINT).clicked() {
         out.commands.extend(range_here(shown, true));
     }
 }
@@ -201,6 +202,7 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             ui.add(egui::Slider::new(&mut speed, SPEEDS).logarithmic(true).show_value(false))
         })
         .inner;
+    accessible::describe_value(&slider, || speed_text(shown));
     let slider = slider.accessible_name(text::SPEED).on_hover_text("Speed. Double-click to reset to 1×.");
     if controls::is_double_clicked(&slider) {
         out.commands.push(Command::SetSpeed(1.0));

@@ -129,7 +129,10 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     assert_eq!(reach(&mut harness, text::RESET_JOINT), [Command::SetPose { joint: SHIN, degrees: None }]);
     harness.get_by_label(text::POSE_ANGLES[2]).set_value_accesskit(-20.0);
     harness.run();
-    assert_eq!(reach(&mut harness, &text::reset_all_joints(1)), [Command::ClearPose]);
+    assert!(harness.query_by_label_contains(text::RESET_ALL).is_none(), "it is the only one");
+    harness.state_mut().change(|state| state.selection.joint = Some(SHIN - 1));
+    harness.run();
+    assert_eq!(reach(&mut harness, &text::counted(text::RESET_ALL, 1)), [Command::ClearPose]);
     assert!(harness.state().state().edits.pose.is_empty());
 }
 

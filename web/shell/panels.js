@@ -28,7 +28,8 @@ export function showPanel(name) {
  * @param {string} message
  */
 export function say(message) {
-  byId("live").textContent = message;
+  // The same text again would be read out again.
+  if (byId("live").textContent !== message) byId("live").textContent = message;
 }
 
 /**

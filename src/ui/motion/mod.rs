@@ -328,8 +328,7 @@ fn arrows(ui: &mut Ui, host: &HostState, out: &mut Output) {
         (Icon::Redo, text::REDO_KEY, host.can_redo_retargeting, UiAction::Redo),
     ] {
         let label = controls::with_key(ui, label);
-        let pressed =
-            ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
+        let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, EDIT_BUTTON_HEIGHT)).inner;
         if pressed.clicked() {
             out.actions.push(action);
         }

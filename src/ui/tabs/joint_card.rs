@@ -41,7 +41,9 @@ pub fn show(
     if has_content {
         hide_buttons(ui, shown, asset, joint, out);
     }
-    if !shown.frame.is_visible(joint) {
+    // One that the user hid has a button that shows it.
+    let is_hidden_here = shown.state.edits.hidden.nodes.contains(&asset.skeleton.source_index(joint));
+    if !is_hidden_here && !shown.frame.is_visible(joint) {
         controls::hint(ui, text::NODE_HIDDEN);
     }
     let local = shown.frame.pose().get(joint).unwrap_or_default();
@@ -86,7 +88,7 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card
             name(ui, shown, asset, joint, card, out);
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button_sized(ui, Icon::Close, text::DESELECT, false, CLOSE_SIZE).clicked() {
+            if icon_button_sized(ui, Icon::Close, text::DESELECT, CLOSE_SIZE).clicked() {
                 out.commands.push(Command::SelectJoint(None));
             }
             if card.renaming.is_none() && controls::small_button(ui, text::RENAME).clicked() {
@@ -122,9 +124,11 @@ fn reset_buttons(ui: &mut Ui, shown: &Shown<'_>, joint: usize, out: &mut Output)
         if ui.add_enabled(posed.contains_key(&joint), egui::Button::new(text::RESET_JOINT)).clicked() {
             out.commands.push(Command::SetPose { joint, degrees: None });
         }
-        let all = ui.button(text::reset_all_joints(posed.len()));
-        if all.on_hover_text("Return all manually posed joints to the clip").clicked() {
-            out.commands.push(Command::ClearPose);
+        if posed.keys().any(|&other| other != joint) {
+            let all = ui.button(text::counted(text::RESET_ALL, posed.len()));
+            if all.on_hover_text("Return all manually posed joints to the clip").clicked() {
+                out.commands.push(Command::ClearPose);
+            }
         }
     });
 }

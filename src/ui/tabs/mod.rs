@@ -91,7 +91,11 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, corner_width: f
         // Has a scroll area of its own.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
-        Tab::Info => controls::scrolled(ui, "file", |ui| report::show(ui, shown, local, out)),
+        Tab::Info => {
+            // Another model begins at the top.
+            let place = ("file", shown.library.active().map(|model| model.id));
+            controls::scrolled(ui, place, |ui| report::show(ui, shown, local, out));
+        }
         Tab::Motion => motion::show(ui, shown, local, out),
         Tab::Camera => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }

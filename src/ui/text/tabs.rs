@@ -10,7 +10,8 @@ use crate::state::Channel;
 /// Hint in the search field of the node tree.
 pub const SEARCH_NODES: &str = "Search nodes";
 /// Card of a joint whose mesh or light is not shown.
-pub const NODE_HIDDEN: &str = "Not shown: hidden here, by the file or by the clip, or part of another scene.";
+pub const NODE_HIDDEN: &str =
+    "Not shown: it is in something hidden, hidden by the file or by the clip, or part of another scene.";
 /// Button of the selected joint's card that hides all other meshes, or shows them again.
 pub const SOLO: &str = "Solo";
 /// What that button does.
@@ -72,10 +73,8 @@ pub fn collapse(name: &str) -> String {
     format!("Collapse {name}")
 }
 
-/// Returns the label of the button that returns all `count` manually posed joints to the clip.
-pub fn reset_all_joints(count: usize) -> String {
-    format!("Reset all {count}")
-}
+/// Button that returns all manually posed joints to the clip; their number follows.
+pub const RESET_ALL: &str = "Reset all";
 
 /// Returns the heading of a joint's transform relative to its parent; a root has none.
 pub fn local_transform(parent: Option<&str>) -> String {

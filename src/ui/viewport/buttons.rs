@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out
             if ui.button(text::OPEN_PAGE).clicked() {
                 out.actions.push(UiAction::OpenPage);
             }
-        } else if icon_button(ui, Icon::Frame, controls::with_key(ui, text::FRAME_ALL_KEY), false).clicked() {
+        } else if icon_button(ui, Icon::Frame, controls::with_key(ui, text::FRAME_ALL_KEY)).clicked() {
             out.commands.push(Command::FrameAll);
         }
     });

@@ -215,7 +215,7 @@ impl Messages {
 /// Shows a message with a button that dismisses it; returns whether that was pressed.
 fn dismissible(ui: &mut Ui, line: Color32, label: &str, contents: impl FnOnce(&mut Ui)) -> bool {
     let row = |ui: &mut Ui| {
-        let is_dismissed = icon_button(ui, Icon::Close, label, false).clicked();
+        let is_dismissed = icon_button(ui, Icon::Close, label).clicked();
         ui.with_layout(Layout::top_down(Align::Min), contents);
         is_dismissed
     };

@@ -79,7 +79,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
             }
         }
         let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
-        if icon_button(&mut corner, Icon::Close, text::CLOSE_SHEET, false).clicked() {
+        if icon_button(&mut corner, Icon::Close, text::CLOSE_SHEET).clicked() {
             local.layout.sheet = None;
         }
     });

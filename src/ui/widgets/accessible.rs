@@ -27,6 +27,11 @@ pub fn time_slider(ui: &Ui, response: &Response, value: f64, max: f64, step: f64
     })
 }
 
+/// Describes a slider's value with the unit and decimals that the screen shows.
+pub fn describe_value(slider: &Response, text: impl FnOnce() -> String) {
+    slider.ctx.accesskit_node_builder(slider.id, |node| node.set_value(text()));
+}
+
 /// Describes a row of a tree, scrolls to it when it gains focus, and returns whether an arrow key expands or collapses it.
 /// `depth` is 0 for a root; `is_expanded` is `None` for a row without children.
 pub fn tree_item(ui: &Ui, response: &Response, depth: usize, is_expanded: Option<bool>) -> bool {

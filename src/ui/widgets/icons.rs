@@ -35,13 +35,31 @@ pub enum Icon {
 pub const ICON_SIZE: f32 = 32.0;
 
 /// A button with an icon, square for a pointer; `label` is its accessible name and its tooltip.
-pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, chosen: bool) -> Response {
-    icon_button_sized(ui, icon, label, chosen, ICON_SIZE)
+pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str) -> Response {
+    icon_button_sized(ui, icon, label, ICON_SIZE)
 }
 
-pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, size: f32) -> Response {
+pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, size: f32) -> Response {
+    let info = |ui: &Ui| WidgetInfo::labeled(egui::accesskit::Role::Button, ui.is_enabled(), label);
+    any_icon_button(ui, icon, label, false, size, info)
+}
+
+/// Such a button for something that is on or off.
+pub fn icon_toggle(ui: &mut Ui, icon: Icon, label: &str, is_on: bool) -> Response {
+    let info = |ui: &Ui| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), is_on, label);
+    any_icon_button(ui, icon, label, is_on, ICON_SIZE, info)
+}
+
+fn any_icon_button(
+    ui: &mut Ui,
+    icon: Icon,
+    label: &str,
+    chosen: bool,
+    size: f32,
+    info: impl Fn(&Ui) -> WidgetInfo,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(icon_size(ui, size), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), chosen, label));
+    response.widget_info(|| info(ui));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         let is_pressed = !chosen && response.is_pointer_button_down_on();

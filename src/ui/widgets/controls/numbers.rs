@@ -4,7 +4,7 @@ use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{elided, named, row_height, sized};
 use crate::ui::text;
-use crate::ui::widgets::style;
+use crate::ui::widgets::{accessible, style};
 
 /// Adds a field for a number, which `setup` describes.
 pub fn number<N: egui::emath::Numeric>(
@@ -77,6 +77,8 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
             .clamping(egui::SliderClamping::Never),
     );
     response.widget_info(|| WidgetInfo::slider(true, bar, label));
+    let SliderSettings { decimals, suffix, .. } = settings;
+    accessible::describe_value(&response, || format!("{bar:.decimals$}{suffix}"));
     if !is_swiped(ui, &response) && response.changed() {
         new = bar;
     }
