@@ -361,6 +361,7 @@ pub(super) fn differences(view: &ViewerState, used: &ViewerState, why: &str, err
         let (value, used) = (only(&asked, &used), only(&used, &asked));
         let instead = if used.is_empty() { format!("{why}it is left out") } else { format!("{why}{used} is used") };
         if !value.is_empty() {
+            let value = shortened(&value);
             errors.push(LinkError::OutOfRange { key: key.name, value, expected: key.expected, instead });
         }
     }
@@ -462,7 +463,16 @@ fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<L
             return;
         }
     };
-    errors.push(LinkError::BadValue { key: key.to_owned(), value: value.to_owned(), expected });
+    errors.push(LinkError::BadValue { key: key.to_owned(), value: shortened(value), expected });
+}
+
+/// Returns a value as an error shows it: a long one would hide the other errors.
+fn shortened(value: &str) -> String {
+    const MAX_CHARS: usize = 60;
+    match value.char_indices().nth(MAX_CHARS) {
+        Some((end, _)) => format!("{}…", &value[..end]),
+        None => value.to_owned(),
+    }
 }
 
 enum Read {

@@ -437,3 +437,21 @@ fn a_cursor_can_be_shared_between_clips() {
         assert_eq!(pose, expected);
     }
 }
+
+/// A file may round the length of a frame; few keys needn't be frames.
+#[test]
+fn the_frame_rate_is_that_of_the_densest_channel() {
+    let rate = |count: usize, frame_secs: f32| {
+        let skeleton = one_joint();
+        let mut builder = ClipBuilder::new("", &skeleton);
+        for times in [vec![0.0], (0..count).map(|frame| frame as f32 * frame_secs).collect()] {
+            let keys = Keys::Scale(vec![Vec3::ONE; times.len()]);
+            builder.channel(JointIndex(0), Linear, &times, keys).unwrap();
+        }
+        builder.build().frames_per_sec()
+    };
+    assert_eq!(rate(150, 1.0 / 120.0), 120.0);
+    assert!((rate(150, 0.008_33) - 120.05).abs() < 0.01, "{}", rate(150, 0.008_33));
+    assert_eq!(rate(5, 0.313), Clip::DEFAULT_FRAMES_PER_SEC);
+    assert_eq!(rate(20, 0.313), Clip::DEFAULT_FRAMES_PER_SEC);
+}

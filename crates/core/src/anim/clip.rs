@@ -278,6 +278,18 @@ impl Clip {
                 (frame - frame.round()).abs() < 0.02
             })
         };
-        COMMON.into_iter().find(|&rate| on_frames(rate)).unwrap_or(Self::DEFAULT_FRAMES_PER_SEC)
+        let candidates = COMMON.into_iter().chain(self.densest_rate());
+        candidates.into_iter().find(|&rate| on_frames(rate)).unwrap_or(Self::DEFAULT_FRAMES_PER_SEC)
+    }
+
+    /// The rate at which the keys of the densest channel follow each other, such as 120.005 where a file rounded the length of a frame;
+    /// `None` for so few keys that they needn't be frames.
+    fn densest_rate(&self) -> Option<f64> {
+        const MIN_KEYS: usize = 8;
+        const MIN_RATE: f64 = 10.0;
+        let times = self.timelines.iter().max_by_key(|times| times.len()).filter(|times| times.len() >= MIN_KEYS)?;
+        let length_secs = f64::from(times.last()? - times.first()?);
+        let rate = (times.len() - 1) as f64 / length_secs;
+        (rate.is_finite() && rate >= MIN_RATE).then_some(rate)
     }
 }

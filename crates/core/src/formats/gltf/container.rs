@@ -102,7 +102,11 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
     }
     let length = length as usize;
     if length > bytes.len() {
-        return Err(invalid("GLB header", &format!("{length} bytes in all"), format!("{} (cut short?)", bytes.len())));
+        return Err(invalid(
+            "GLB header",
+            &format!("{length} bytes in all"),
+            format!("{} (cut short?); download or save it again", bytes.len()),
+        ));
     }
     let (mut at, mut json, mut binary, mut repeated_chunk) = (12, None, None, None);
     while at + 8 <= length {
