@@ -8,6 +8,7 @@ import { answerParent } from "./shell/embed.js";
 import { launch } from "./shell/instance.js";
 import { install } from "./shell/offline.js";
 import { showOpenDialog } from "./shell/open-dialog.js";
+import { shareScrolling } from "./shell/scrolling.js";
 
 window.gaitway = gaitway;
 
@@ -23,4 +24,5 @@ new ResizeObserver(([{ contentBoxSize, devicePixelContentBoxSize }]) => {
 
 launch(forcedBackend()).then(addBenches, () => {});
 answerParent();
+shareScrolling();
 install();

@@ -215,8 +215,8 @@ pub(super) fn rest_progress(page: &Page, name: &str, received_bytes: u64, total_
     }
 }
 
-/// Returns the contents of the live regions as `{model, isEmpty, unlisted, clip, playing, notice, problem}`. `clip` is null for
-/// the rest pose; `isEmpty` is true without a model; `unlisted` are the names of the open models that the link leaves out.
+/// Returns the contents of the live regions as `{model, isEmpty, unlisted, clip, playing, isEmbedded, notice, problem}`. `clip` is
+/// null for the rest pose; `isEmpty` is true without a model; `unlisted` are the names of the open models that the link leaves out.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
@@ -236,6 +236,7 @@ pub fn summary() -> Result<String, JsValue> {
             "unlisted": unlisted.map(|model| short_name(&model.source)).collect::<Vec<_>>(),
             "clip": clip,
             "playing": state.playback.playing,
+            "isEmbedded": state.page.embed,
             "notice": app.notice(),
             "problem": app.problem(),
         })

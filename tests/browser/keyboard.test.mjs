@@ -198,6 +198,23 @@ for (const renderer of BACK_ENDS)
       assert.match(link, /model=.*Soldier\.glb.*motion=.*cmu_01_01\.bvh/);
     });
 
+    onPage("nothing under the help has the keyboard, which comes back where it was", () => "play=0", async (page) => {
+      await control(page, "button", "Export").focus();
+      await page.keyboard.press("?");
+      await control(page, "button", "Close help").waitFor({ state: "attached" });
+      const reachable = () => page.locator("#mirror button, #mirror input, #mirror [tabindex]").evaluateAll((stops) => stops.filter((stop) => stop.closest("[inert]") === null).map((stop) => stop.ariaLabel));
+      assert.deepEqual(await reachable(), ["Close help"]);
+      await page.keyboard.press("Tab");
+      assert.equal(await page.evaluate(() => document.activeElement?.closest("#stage") ?? null), null, "it leaves the program");
+      await control(page, "button", "Close help").focus();
+      await page.keyboard.press("Escape");
+      await until(page, () => document.activeElement?.getAttribute("aria-label") === "Export");
+      assert.ok((await reachable()).length > 10);
+      // Keys that mean nothing to a button are the viewer's.
+      await page.keyboard.press("w");
+      await until(page, async () => (await window.gaitway.state()).show.includes("wireframe"));
+    });
+
     onPage("high contrast leaves the mirror invisible", () => "play=0", async (page) => {
       await page.emulateMedia({ forcedColors: "active" });
       const visible = await page.evaluate(() => [...document.querySelectorAll("#mirror *")].filter((element) => getComputedStyle(element).color !== "rgba(0, 0, 0, 0)").map(({ outerHTML }) => outerHTML));

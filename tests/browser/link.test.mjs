@@ -518,6 +518,52 @@ for (const renderer of BACK_ENDS)
       }
     });
 
+    test("leaves scrolling to the page around it", async () => {
+      const inside = `${site.address}?renderer=${renderer}#${fragment([["model", "sample:walker"], ["embed", 1], ["play", 0]])}`;
+      fs.writeFileSync(path.join(folder, "scrolling.html"), `<!doctype html><title>Around</title><style>body { margin: 0; height: 2000px }</style><iframe width="640" height="400" src="${inside.replaceAll("&", "&amp;")}"></iframe>`);
+      const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, deviceScaleFactor: PIXEL_RATIO, hasTouch: true });
+      try {
+        const page = await context.newPage();
+        await page.goto(`${servers.own.origin}/scrolling.html`);
+        const frame = page.frames()[1];
+        await until(frame, () => window.gaitway !== undefined);
+        await frame.evaluate(async () => void (await window.gaitway.ready));
+        const camera = async () => (await state(frame)).camera;
+        const before = await camera();
+        /** @param {boolean} isTop */
+        const whenScrolled = (isTop) => until(page, (isTop) => (scrollY === 0) === isTop, isTop);
+        const toTop = () => page.evaluate(() => scrollTo(0, 0));
+        await page.mouse.move(300, 150);
+        await page.mouse.wheel(0, 200);
+        await whenScrolled(false);
+        await toTop();
+        const client = await context.newCDPSession(page);
+        /** @param {number} right @param {number} down */
+        const swipe = async (right, down) => {
+          const at = (/** @type {number} */ share) => [{ x: 300 + share * right, y: 200 + share * down }];
+          await client.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+          for (const share of [0.2, 0.4, 0.6, 0.8, 1]) await client.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(share) });
+          await client.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+        };
+        await swipe(0, -150);
+        await whenScrolled(false);
+        assert.equal(await camera(), before, "neither is the view's");
+        await toTop();
+        await swipe(150, 0);
+        await until(frame, async (before) => (await window.gaitway.state()).camera !== before, before);
+        assert.equal(await page.evaluate(() => scrollY), 0);
+        // Once the user is in, the wheel zooms.
+        await page.mouse.click(300, 150);
+        await until(frame, () => document.hasFocus());
+        const turned = await camera();
+        await page.mouse.wheel(0, 200);
+        await until(frame, async (turned) => (await window.gaitway.state()).camera !== turned, turned);
+        assert.equal(await page.evaluate(() => scrollY), 0);
+      } finally {
+        await context.close();
+      }
+    });
+
     test("doesn't let the page around it read a dropped model by adding a file to it", async () => {
       const { context, page, call, frame, withheld } = await embedded();
       try {

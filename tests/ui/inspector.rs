@@ -19,7 +19,7 @@ use gaitway::state::{
 use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
-use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, press_key, sample_bench};
 use crate::motion::reach;
 
 #[test]
@@ -485,6 +485,26 @@ fn materials_and_images_are_listed_with_what_they_are() {
     assert!(harness.query_by_label(&text::labelled(text::DRAW_CALLS, "7")).is_some());
     assert!(harness.query_by_label(&text::labelled(text::FRAME_TIME, &text::frame_time(0.02))).is_some());
     assert!(harness.query_by_label(&text::frame_graph(FrameTimes::CAPACITY, 60.0, 0.05)).is_some());
+}
+
+#[test]
+fn small_steps_of_a_slider_are_one_edit_unless_there_is_a_pause() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Camera.label());
+    harness.get_by_role_and_label(egui::accesskit::Role::Slider, text::EXPOSURE).focus();
+    harness.run();
+    for steps in [1, 2] {
+        for _ in 0..3 {
+            press_key(&mut harness, egui::Key::ArrowRight);
+        }
+        assert_eq!(harness.state().editor.undo_steps(), steps);
+        // A second.
+        harness.run_steps(70);
+    }
+    let exposure = harness.state().state().display.exposure;
+    assert!(harness.state_mut().editor.undo());
+    let before = harness.state().state().display.exposure;
+    assert!(0.0 < before && before < exposure, "{before}, {exposure}");
 }
 
 #[test]

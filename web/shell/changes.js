@@ -1,4 +1,5 @@
 // Propagates changes of the view to screen readers, the title, the gallery, the address bar and scripts.
+import { byId } from "./dom.js";
 import { markCard } from "./gallery.js";
 import { localFiles } from "./held.js";
 import { keepTypedAddressOnce, recordView } from "./history.js";
@@ -55,8 +56,9 @@ export function forgetProblem() {
  */
 export function summarize() {
   if (session.app === null) return { model: "", notice: null };
-  /** @type {{ model: string, clip: string | null, playing: boolean, notice: string | null, problem: string | null }} */
-  const { model, clip, playing, notice, problem } = JSON.parse(session.app.summary());
+  /** @type {{ model: string, clip: string | null, playing: boolean, isEmbedded: boolean, notice: string | null, problem: string | null }} */
+  const { model, clip, playing, isEmbedded, notice, problem } = JSON.parse(session.app.summary());
+  byId("stage").classList.toggle("embedded", isEmbedded && parent !== window);
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   // What is gone from the screen is no longer announced; errors that the page itself found stay.
   if (problem !== announced) sayProblem(problem ?? "");
