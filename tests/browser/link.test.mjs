@@ -530,12 +530,17 @@ for (const renderer of BACK_ENDS)
         await frame.evaluate(async () => void (await window.gaitway.ready));
         const camera = async () => (await state(frame)).camera;
         const before = await camera();
-        /** @param {boolean} isTop */
-        const whenScrolled = (isTop) => until(page, (isTop) => (scrollY === 0) === isTop, isTop);
+        /** The page has scrolled and doesn't go on. */
+        const whenScrolled = () =>
+          until(page, async () => {
+            const before = scrollY;
+            await new Promise((resolve) => setTimeout(resolve, 200));
+            return before !== 0 && scrollY === before;
+          });
         const toTop = () => page.evaluate(() => scrollTo(0, 0));
         await page.mouse.move(300, 150);
         await page.mouse.wheel(0, 200);
-        await whenScrolled(false);
+        await whenScrolled();
         await toTop();
         const client = await context.newCDPSession(page);
         /** @param {number} right @param {number} down */
@@ -546,7 +551,7 @@ for (const renderer of BACK_ENDS)
           await client.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
         };
         await swipe(0, -150);
-        await whenScrolled(false);
+        await whenScrolled();
         assert.equal(await camera(), before, "neither is the view's");
         await toTop();
         await swipe(150, 0);

@@ -58,7 +58,7 @@ export function summarize() {
   if (session.app === null) return { model: "", notice: null };
   /** @type {{ model: string, clip: string | null, playing: boolean, isEmbedded: boolean, notice: string | null, problem: string | null }} */
   const { model, clip, playing, isEmbedded, notice, problem } = JSON.parse(session.app.summary());
-  byId("stage").classList.toggle("embedded", isEmbedded && parent !== window);
+  byId("stage").classList.toggle("embedded", isEmbedded);
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   // What is gone from the screen is no longer announced; errors that the page itself found stay.
   if (problem !== announced) sayProblem(problem ?? "");

@@ -56,6 +56,7 @@ function handOn() {
 /** Leaves scrolling to the page around this one, if there is one. */
 export function shareScrolling() {
   if (parent === window) return;
+  document.documentElement.classList.add("framed");
   const options = { capture: true, passive: true };
   addEventListener("wheel", (event) => isGuest() && event.stopImmediatePropagation(), options);
   addEventListener("touchstart", start, options);
