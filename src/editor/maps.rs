@@ -135,7 +135,7 @@ impl Editor {
         }
         self.end_gesture();
         let undoable = self.undo_steps() != steps;
-        let text = format!("Applied the joint map to {}.", names.join(", "));
+        let text = format!("Applied the joint map and its options to {}.", names.join(", "));
         self.events.push(Event::Notice { text, undoable });
         Ok(())
     }

@@ -48,6 +48,10 @@ impl Editor {
         if motions.is_empty() && !still.is_empty() {
             return Err(still.join("\n"));
         }
+        // Nothing is there yet that it could move: it has a skeleton of its own.
+        if let ([motion], true) = (&*motions, is_by_hand && self.library.active().is_some_and(Model::is_placeholder)) {
+            return self.open_alone(motion, admit);
+        }
         self.check_room(&motions)?;
         let before = self.snapshot();
         let problems = self.add_motions(motions.clone(), map);

@@ -386,12 +386,16 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
     if !range.start_secs.is_finite() || !range.end_secs.is_finite() {
         return;
     }
-    let end = model.map_or(f64::INFINITY, |model| {
-        let clip = active_clip(model, state).and_then(|clip| model.clip(clip));
-        clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
+    let (end, frame_secs) = model.map_or((f64::INFINITY, 0.0), |model| {
+        let clip = active_clip(model, state).and_then(|clip| Some((clip, model.clip(clip)?)));
+        clip.map_or((0.0, 0.0), |(index, clip)| (f64::from(clip.duration_secs()), 1.0 / model.frames_per_sec(index)))
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
-    state.playhead.range = Some(TimeRange { start_secs: first.min(second), end_secs: first.max(second) });
+    let (start_secs, end_secs) = (first.min(second), first.max(second));
+    // Of less than a frame, nothing would play.
+    let end_secs = end_secs.max((start_secs + frame_secs).min(end));
+    let start_secs = start_secs.min((end_secs - frame_secs).max(0.0));
+    state.playhead.range = Some(TimeRange { start_secs, end_secs });
 }
 
 fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weight: Option<f32>) {

@@ -359,6 +359,7 @@ const LOW_HEIGHT: f32 = 450.0;
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
     local.holds_time = false;
+    local.vertex_probe.keep_to(shown.library.active().map(|model| model.id));
     let small = is_small(ui);
     local.layout.is_small = small;
     style::size_controls(ui, small);

@@ -162,7 +162,7 @@ fn a_joint_map_needs_a_motion_and_is_an_undo_step() {
     std::fs::remove_file(&map).expect("was there");
     assert_eq!(desk.problem(), None);
     assert_ne!(desk.state().retarget.map, proposed);
-    assert!(desk.shows("Applied the joint map to Walk."));
+    assert!(desk.shows("Applied the joint map and its options to Walk."));
     desk.undo();
     assert_eq!(desk.state().retarget.map, proposed);
 }

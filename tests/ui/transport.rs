@@ -71,6 +71,21 @@ fn in_and_out_points_are_set_dragged_and_cleared() {
     assert_eq!(press(&mut harness, text::CLEAR_RANGE), [Command::SetRange(None)]);
 }
 
+/// With an out point at the beginning, or an in point at the end, nothing would play.
+#[test]
+fn a_range_has_at_least_one_frame() {
+    let mut harness = sample_bench(WIDE);
+    let duration = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs());
+    for (at, button) in [(0.0, text::SET_OUT_POINT), (duration, text::SET_IN_POINT)] {
+        harness.state_mut().change(|state| (state.playhead.time_secs, state.playhead.range) = (at, None));
+        harness.run();
+        press(&mut harness, button);
+        let range = harness.state().state().playhead.range.expect("is set");
+        assert!((range.end_secs - range.start_secs - 1.0 / 30.0).abs() < 1e-6, "{range:?} from {at}");
+        assert!(range.start_secs >= 0.0 && range.end_secs <= duration, "{range:?}");
+    }
+}
+
 #[test]
 fn speed_goes_from_a_tenth_to_four_times() {
     let mut harness = sample_bench(WIDE);

@@ -55,6 +55,8 @@ function onDrag(event) {
     hideSheet();
     dialog("open").close();
     dialog("bring").close("drop");
+    // Its link is that of another view.
+    dialog("share").close();
     droppedItems(transfer).then((items) => openByHand(items, { as }), refuse);
   }
 }

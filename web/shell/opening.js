@@ -63,6 +63,12 @@ export async function open(items, { as, isPrivate = true, isByHand = false } = {
 /** How often the user has opened something. */
 let openedCount = 0;
 
+/** Resolves once what the user opened last is there or has failed. */
+let lastOpened = Promise.resolve();
+
+/** Files that can only be borrowed from, or shown without a model. @type {(item: Item) => boolean} */
+const isMotionOnly = (item) => /\.(bvh|vrma)$/i.test(bareName(item));
+
 /**
  * Opens what the user dropped or chose. The app shows errors itself.
  * @param {Openable[]} items
@@ -75,6 +81,21 @@ export async function openByHand(items, options) {
     location.hash = link;
     return hideGallery();
   }
+  if (options?.as === "motion" || toItems(items).every(isMotionOnly)) {
+    // It is for the model that is on its way.
+    for (let last; last !== lastOpened; await last) last = lastOpened;
+  }
+  lastOpened = openNow(items, options);
+  await lastOpened;
+  // The dialog has given the focus back to the control that opened it, if that is still there.
+  if (!byId("stage").contains(document.activeElement)) focusCanvas();
+}
+
+/**
+ * @param {Openable[]} items
+ * @param {{ as?: Role }} [options]
+ */
+async function openNow(items, options) {
   openedCount += 1;
   const number = openedCount;
   try {
@@ -83,11 +104,10 @@ export async function openByHand(items, options) {
   } catch (error) {
     // The app learns of it in its next frame and may announce an older error first.
     await frames(2);
-    // What was opened since has its own result.
+    // What was opened since has its own result; that this wasn't opened is told as well.
     if (number === openedCount) sayProblem(messageOf(error));
+    else if (codeOf(error) === "cancelled") session.app?.notify(`${messageOf(error)}.`);
   }
-  // The dialog has given the focus back to the control that opened it, if that is still there.
-  if (!byId("stage").contains(document.activeElement)) focusCanvas();
 }
 
 /**

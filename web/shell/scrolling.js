@@ -1,13 +1,10 @@
-// In a frame of another page, scrolling is that page's: by wheel until the user comes in, and by a finger that moves up or down over an
-// embedded view. A finger that moves sideways, rests or taps is the view's.
-import { byId, isGuest } from "./dom.js";
-
-/** A finger that rests this long is the view's, wherever it moves then. */
-const REST_MS = 150;
+// In a frame of another page, scrolling is that page's until the user comes in: by wheel, and by a finger that moves up or down. Over an
+// embedded view, it remains the finger's. A finger that moves sideways or taps is the view's.
+import { byId, canvas, isGuest } from "./dom.js";
 
 /**
  * The touch of a first finger that the view doesn't know of yet: it may be about to scroll.
- * @type {{ event: TouchEvent, timer: ReturnType<typeof setTimeout> } | null}
+ * @type {TouchEvent | null}
  */
 let undecided = null;
 let isScrolling = false;
@@ -15,19 +12,18 @@ let isScrolling = false;
 /** @param {TouchEvent} event */
 function start(event) {
   // Not one that was handed on.
-  if (!event.isTrusted || !byId("stage").classList.contains("embedded")) return;
+  if (!event.isTrusted || !(isGuest() || byId("stage").classList.contains("embedded"))) return;
   if (event.touches.length > 1) return handOn();
   event.stopImmediatePropagation();
-  isScrolling = false;
-  undecided = { event, timer: setTimeout(handOn, REST_MS) };
+  [undecided, isScrolling] = [event, false];
 }
 
 /** @param {TouchEvent} event */
 function move(event) {
   if (undecided !== null) {
-    const [[from], [to]] = [undecided.event.touches, event.touches];
+    const [[from], [to]] = [undecided.touches, event.touches];
     isScrolling = Math.abs(to.clientY - from.clientY) > Math.abs(to.clientX - from.clientX);
-    if (isScrolling) forget();
+    if (isScrolling) undecided = null;
     else handOn();
   }
   if (isScrolling) event.stopImmediatePropagation();
@@ -35,28 +31,29 @@ function move(event) {
 
 /** @param {TouchEvent} event */
 function end(event) {
-  if (event.type === "touchend") handOn();
-  else forget();
-  if (isScrolling) event.stopImmediatePropagation();
-}
-
-function forget() {
-  clearTimeout(undecided?.timer);
-  undecided = null;
+  if (isScrolling) return event.stopImmediatePropagation();
+  if (event.type === "touchcancel") undecided = null;
+  handOn();
+  // The program handles touches by itself, so the browser doesn't bring the user in.
+  if (event.type === "touchend" && isGuest()) canvas()?.focus({ preventScroll: true });
 }
 
 /** Gives the view the touch. */
 function handOn() {
   if (undecided === null) return;
-  const { target, touches, targetTouches, changedTouches } = undecided.event;
-  forget();
+  const { target, touches, targetTouches, changedTouches } = undecided;
+  undecided = null;
   target?.dispatchEvent(new TouchEvent("touchstart", { bubbles: true, cancelable: true, touches: [...touches], targetTouches: [...targetTouches], changedTouches: [...changedTouches] }));
 }
+
+const showGuest = () => void document.documentElement.classList.toggle("guest", isGuest());
 
 /** Leaves scrolling to the page around this one, if there is one. */
 export function shareScrolling() {
   if (parent === window) return;
   document.documentElement.classList.add("framed");
+  showGuest();
+  for (const type of ["focus", "blur"]) addEventListener(type, showGuest);
   const options = { capture: true, passive: true };
   addEventListener("wheel", (event) => isGuest() && event.stopImmediatePropagation(), options);
   addEventListener("touchstart", start, options);

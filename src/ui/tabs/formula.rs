@@ -5,7 +5,7 @@ use glam::{Affine3A, Mat4, Vec3};
 
 use crate::anim::JointIndex;
 use crate::frame::{Character, FormulaTerm, VertexFormula, joint_matrices, pick_vertex, vertex_formula};
-use crate::library::Model;
+use crate::library::{Model, ModelId};
 use crate::mesh::{DeformedVertices, SkinningMode};
 use crate::state::{Command, Comparison, VertexChoice, title};
 use crate::ui::viewport::panes::{pane_index, pane_rects, to_ndc, to_screen};
@@ -17,6 +17,8 @@ const LINE: f32 = 17.0;
 #[derive(Debug, Default)]
 pub struct VertexProbe {
     is_switched_on: bool,
+    /// The model that has what was found.
+    model: Option<ModelId>,
     /// The vertex last found under the pointer.
     hovered: Option<VertexChoice>,
     /// Where the last search was, and whether it found one.
@@ -31,9 +33,11 @@ impl VertexProbe {
         self.is_switched_on || shown.state.selection.vertex.is_some()
     }
 
-    /// Forgets the vertex of another model.
-    pub fn forget(&mut self) {
-        (self.hovered, self.searched_at, self.is_hit) = (None, None, false);
+    /// Forgets the vertex of another model than this.
+    pub fn keep_to(&mut self, model: Option<ModelId>) {
+        if std::mem::replace(&mut self.model, model) != model {
+            (self.hovered, self.searched_at, self.is_hit) = (None, None, false);
+        }
     }
 
     fn vertex(&self, shown: &Shown<'_>) -> Option<VertexChoice> {

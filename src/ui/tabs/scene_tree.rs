@@ -63,7 +63,6 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     if local.scene_tree.model != Some(model.id) {
         let namespace = namespace(&model.asset).to_owned();
         local.scene_tree = SceneTree { model: Some(model.id), namespace, nodes: nodes(model), ..SceneTree::default() };
-        local.vertex_probe.forget();
     }
     let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     let height = local.scene_tree.height(ui, selected.is_some());

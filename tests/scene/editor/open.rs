@@ -362,6 +362,19 @@ fn an_empty_stage_awaits_a_model() {
     assert!(!editor.can_undo(), "nobody wants the empty stage back");
 }
 
+/// Before the model that it should move is there.
+#[test]
+fn a_motion_on_an_empty_stage_shows_its_own_skeleton() {
+    let (view, _) = from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh");
+    let mut editor = Editor::default();
+    let (awaited, shown) = open_view(view, true, Held::default()).expect("there is nothing to read");
+    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let motion = Contents { is_by_hand: true, motions: Some(vec![motion("walk")]), ..Contents::default() };
+    editor.open(motion, None, &mut any).expect("has joints");
+    let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
+    assert_eq!(listed, ["walk"]);
+}
+
 /// Opens the file as a user does, or as a script does.
 fn open_file(editor: &mut Editor, path: &str, is_by_hand: bool) -> Vec<Event> {
     editor.open(Contents { is_by_hand, ..contents(&[path]) }, None, &mut any).expect("fits");
