@@ -414,6 +414,23 @@ for (const renderer of BACK_ENDS)
       assert.equal(await page.locator("#bring").isVisible(), false);
     });
 
+    onPage("lends a motion to the model that is on its way", () => fragment([["model", "sample:walker"], ["play", 0]]), async (page) => {
+      /** @type {() => void} */
+      let release = () => {};
+      const released = new Promise((resolve) => void (release = () => resolve(undefined)));
+      await page.route("https://slow.example/**", async (route) => {
+        await released;
+        await route.fulfill({ path: dataFile(XBOT), headers: { "access-control-allow-origin": "*" } });
+      });
+      await drop(page, [{ link: "https://slow.example/Xbot.glb" }]);
+      await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
+      await page.waitForTimeout(500);
+      assert.deepEqual((await state(page)).motion, []);
+      release();
+      await whenModel(page, "https://slow.example/Xbot.glb");
+      await until(page, async () => (await window.gaitway.state()).motion.join() === "dance.bvh");
+    });
+
     const NOTHING = { result: undefined, error: undefined, code: undefined };
 
     /** Embeds a page with the fox in another one. `call` is that one's, and `withheld` checks that it learns nothing. */
