@@ -569,12 +569,16 @@ for (const renderer of BACK_ENDS)
         };
         await swipe(0, -150);
         await whenScrolled();
-        assert.equal(await camera(), before, "neither is the view's");
         await toTop();
+        const { x, y, width, height } = (await frame.locator("#mirror button[aria-label=Play]").boundingBox()) ?? assert.fail("no button");
+        await page.touchscreen.tap(x + width / 2, y + height / 2);
+        await until(frame, async () => (await window.gaitway.state()).play);
+        assert.equal(await camera(), before, "neither is the view's, nor does it hold a finger");
+        await frame.evaluate(() => window.gaitway.apply({ play: 0 }));
         await swipe(150, 0);
         await until(frame, async (before) => (await window.gaitway.state()).camera !== before, before);
         assert.equal(await page.evaluate(() => scrollY), 0);
-        // Once the user is in, the wheel zooms.
+        // The tap has brought the user in: the wheel zooms.
         await page.mouse.click(300, 150);
         await until(frame, () => document.hasFocus());
         const turned = await camera();

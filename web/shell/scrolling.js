@@ -9,10 +9,16 @@ import { byId, canvas, isGuest } from "./dom.js";
 let undecided = null;
 let isScrolling = false;
 
+/**
+ * Whether a finger may scroll the page around this one from where it touches.
+ * @param {Event} event
+ */
+const isShared = ({ target }) => target === canvas() && (isGuest() || byId("stage").classList.contains("embedded"));
+
 /** @param {TouchEvent} event */
 function start(event) {
   // Not one that was handed on.
-  if (!event.isTrusted || !(isGuest() || byId("stage").classList.contains("embedded"))) return;
+  if (!event.isTrusted || !isShared(event)) return;
   if (event.touches.length > 1) return handOn();
   event.stopImmediatePropagation();
   [undecided, isScrolling] = [event, false];
@@ -46,6 +52,14 @@ function handOn() {
   target?.dispatchEvent(new TouchEvent("touchstart", { bubbles: true, cancelable: true, touches: [...touches], targetTouches: [...targetTouches], changedTouches: [...changedTouches] }));
 }
 
+/**
+ * The program would take it for a press, which doesn't end where the browser scrolls. It presses with the touch that is handed on.
+ * @param {PointerEvent} event
+ */
+function holdPointer(event) {
+  if (event.pointerType === "touch" && isShared(event)) event.stopImmediatePropagation();
+}
+
 const showGuest = () => void document.documentElement.classList.toggle("guest", isGuest());
 
 /** Leaves scrolling to the page around this one, if there is one. */
@@ -56,6 +70,7 @@ export function shareScrolling() {
   for (const type of ["focus", "blur"]) addEventListener(type, showGuest);
   const options = { capture: true, passive: true };
   addEventListener("wheel", (event) => isGuest() && event.stopImmediatePropagation(), options);
+  for (const type of /** @type {const} */ (["pointerdown", "pointerup"])) addEventListener(type, holdPointer, options);
   addEventListener("touchstart", start, options);
   addEventListener("touchmove", move, options);
   for (const type of /** @type {const} */ (["touchend", "touchcancel"])) addEventListener(type, end, options);
