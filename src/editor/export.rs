@@ -187,6 +187,15 @@ impl Editor {
     }
 
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
+        let mut baked = self.baked_layers_and_pins(clip)?;
+        if !self.state.edits.pose.is_empty() {
+            let posed = "Manual poses aren't in it: joints move as in the clip.".to_owned();
+            baked.remark = Some(baked.remark.map_or(posed.clone(), |remark| format!("{remark} {posed}")));
+        }
+        Ok(baked)
+    }
+
+    fn baked_layers_and_pins(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
         let name = model.clip_name(clip);

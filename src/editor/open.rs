@@ -220,7 +220,9 @@ impl Editor {
     /// Returns the view of an opened model: the default one, with the settings that a new model keeps, or the whole view as it was.
     fn view_of_opened_model(&mut self, origin: String, keeps_motions: bool, keeps_view: bool) -> ViewerState {
         let old = std::mem::take(&mut self.state);
-        let retarget = if keeps_motions { old.retarget.clone() } else { RetargetEdits::default() };
+        // Without motions, a map is what is left of a link whose files never came.
+        let keeps_maps = keeps_motions && (keeps_view || !self.library.motions().is_empty());
+        let retarget = if keeps_maps { old.retarget.clone() } else { RetargetEdits::default() };
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         let sources = Sources { model: vec![origin], motion, scene: None };
         if keeps_view {
