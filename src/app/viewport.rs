@@ -43,12 +43,20 @@ impl Viewport {
         Ok(())
     }
 
-    /// Evaluates a view that has changed since the last image, without drawing it: the panels come first, and they read the frame of
-    /// the model that is open now.
+    /// Evaluates a view that has changed since the last image, without drawing it. Call it before the panels are laid out: they read
+    /// the frame, and a message may have opened another model.
     pub fn keep_up(&mut self, editor: &mut Editor) {
-        self.needs_redraw |= editor.take_needs_redraw();
-        if let Some(size) = self.drawn_size.filter(|_| self.needs_redraw) {
+        // Before the first image, the frame is empty.
+        if let Some(size) = self.drawn_size {
+            self.update_frame(editor, size);
+        }
+    }
+
+    /// Evaluates the view if it changed.
+    fn update_frame(&mut self, editor: &mut Editor, size: [u32; 2]) {
+        if editor.take_needs_redraw() || self.drawn_size != Some(size) {
             evaluate(editor.library(), editor.state(), aspect(size), &mut self.frame);
+            self.needs_redraw = true;
         }
     }
 
@@ -57,9 +65,9 @@ impl Viewport {
     pub fn draw(&mut self, editor: &mut Editor, size: [u32; 2], now_secs: f64) -> Option<f64> {
         /// Longer than the pauses within an interaction, which refinement would slow down.
         const STILL_SECS: f64 = 0.25;
-        self.needs_redraw |= editor.take_needs_redraw();
-        if self.needs_redraw || self.drawn_size != Some(size) {
-            self.draw_view(editor, size);
+        self.update_frame(editor, size);
+        if self.needs_redraw {
+            self.draw_frame(editor, size);
             self.drawn_at_secs = now_secs;
         }
         let wait_secs = self.drawn_at_secs + STILL_SECS - now_secs;
@@ -69,7 +77,7 @@ impl Viewport {
         self.can_refine.then_some(wait_secs.max(0.0))
     }
 
-    fn draw_view(&mut self, editor: &Editor, size: [u32; 2]) {
+    fn draw_frame(&mut self, editor: &Editor, size: [u32; 2]) {
         let (library, state) = (editor.library(), editor.state());
         let source = source_on_stage(library, state).map(|source| source.model);
         let key = library.active().map(|model| (model.id, source.map(|source| source.id)));
@@ -78,7 +86,6 @@ impl Viewport {
             let _ = self.scene.upload(model, source);
             self.uploaded = key;
         }
-        evaluate(library, state, aspect(size), &mut self.frame);
         self.scene.draw(&self.frame, size);
         self.drawn_size = Some(size);
         self.needs_redraw = false;

@@ -60,6 +60,10 @@ impl ExportedFile {
     fn new(name: String, bytes: Vec<u8>) -> Self {
         Self { name, bytes, remark: None }
     }
+
+    fn with_remarks(self, remarks: &[&str]) -> Self {
+        Self { remark: (!remarks.is_empty()).then(|| remarks.join(" ")), ..self }
+    }
 }
 
 /// Returns the active clip unless the model's file already contains it as it plays.
@@ -75,7 +79,7 @@ fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
 /// A clip with its layers and pins baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
-    remark: Option<String>,
+    remarks: Vec<&'static str>,
 }
 
 impl Editor {
@@ -154,7 +158,7 @@ impl Editor {
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = write_clip(model, &skeleton, clip, frames_per_sec, format).map_err(|error| error.to_string())?;
-        Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(name, bytes) })
+        Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
     }
 
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
@@ -171,43 +175,35 @@ impl Editor {
         }
         let derived = baked.clip.as_ref().or_else(|| model.clip(clip));
         let clips = [derived.ok_or("there is no such clip")?];
-        let mut remark = None;
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
             Some(ModelFiles { set, name }) => write_model(set, name, &skeleton, &clips),
             None => {
-                remark = Some("Skeleton and clip only: this model has no file to add a clip to.".to_owned());
+                baked.remarks.push("Skeleton and clip only: this model has no file to add a clip to.");
                 write_motion(&model.asset, &skeleton, &clips)
             }
         };
         let name = format!("{}.glb", self.stem_with_clip(Some(clip)));
         let bytes = bytes.map_err(|error| error.to_string())?;
-        let remarks: Vec<String> = baked.remark.into_iter().chain(remark).collect();
-        Ok(ExportedFile { name, bytes, remark: (!remarks.is_empty()).then(|| remarks.join(" ")) })
+        Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
     }
 
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
-        let mut baked = self.baked_layers_and_pins(clip)?;
-        if !self.state.edits.pose.is_empty() {
-            let posed = "Manual poses aren't in it: joints move as in the clip.".to_owned();
-            baked.remark = Some(baked.remark.map_or(posed.clone(), |remark| format!("{remark} {posed}")));
-        }
-        Ok(baked)
-    }
-
-    fn baked_layers_and_pins(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.model()?;
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
         let name = model.clip_name(clip);
-        let Some(clip) = model.clip(clip) else { return Ok(BakedClip { clip: None, remark: None }) };
-        let mut baked = BakedClip { clip: None, remark: None };
+        let mut baked = BakedClip { clip: None, remarks: Vec::new() };
+        let Some(clip) = model.clip(clip) else { return Ok(baked) };
         if !below.is_empty() || !over.is_empty() {
             let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
             let baking = baking(clip, below, &periods, None);
             let layered = bake_layers(&model.asset, clip, below, &baking);
             baked.clip = Some(bake_stack(&model.asset.skeleton, &layered, &over));
             let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
-            baked.remark = (!baking.seamless).then(|| seam.to_owned());
+            baked.remarks.extend((!baking.seamless).then_some(seam));
+        }
+        if !self.state.edits.pose.is_empty() {
+            baked.remarks.push("Manual poses aren't in it: joints move as in the clip.");
         }
         // Pins repeat with the clip, not with its layers.
         let (period_secs, eye) = (f64::from(clip.duration_secs()), looks_at_camera(&self.state).then(|| self.eye()));

@@ -24,7 +24,7 @@ pub use event::Event;
 pub(crate) use export::AWAITS_IMAGES;
 pub use export::{Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};
-pub use names::{LOCAL, name_and_place, short_name};
+pub use names::{name_and_place, short_name};
 pub use validation::{ValidatorGroup, ValidatorReport};
 
 use std::collections::BTreeMap;

@@ -49,7 +49,10 @@ impl Editor {
             return Err(still.join("\n"));
         }
         // Nothing is there yet that it could move: it has a skeleton of its own.
-        if let ([motion], true) = (&*motions, is_by_hand && self.library.active().is_some_and(Model::is_placeholder)) {
+        if let [motion] = &*motions
+            && is_by_hand
+            && self.library.active().is_some_and(Model::is_placeholder)
+        {
             return self.open_alone(motion, admit);
         }
         self.check_room(&motions)?;

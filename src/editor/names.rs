@@ -2,19 +2,16 @@
 
 use crate::samples;
 
-/// Where a file without a path is.
-pub const LOCAL: &str = "Opened from this computer";
-
-/// Returns the last part of a path or URL, and where it is.
-pub fn name_and_place(source: &str) -> (String, String) {
+/// Returns the last part of a path or URL, and where it is; `None` without a path, as of a file that was dropped.
+pub fn name_and_place(source: &str) -> (String, Option<String>) {
     if let Some(sample) = source.strip_prefix("sample:") {
-        return (samples::title(sample).to_owned(), "Sample".to_owned());
+        return (samples::title(sample).to_owned(), Some("Sample".to_owned()));
     }
     let source = source.split(['?', '#']).next().unwrap_or(source);
     match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
-        Some((place, name)) => (name.to_owned(), place.to_owned()),
-        None if source.is_empty() => ("Untitled".to_owned(), String::new()),
-        None => (source.to_owned(), LOCAL.to_owned()),
+        Some((place, name)) => (name.to_owned(), Some(place.to_owned())),
+        None if source.is_empty() => ("Untitled".to_owned(), Some(String::new())),
+        None => (source.to_owned(), None),
     }
 }
 

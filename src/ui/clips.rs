@@ -5,7 +5,7 @@ use egui::{RichText, ScrollArea, Ui, vec2};
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::search::finds;
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
-use crate::editor::{LOCAL, name_and_place, short_name};
+use crate::editor::{name_and_place, short_name};
 use crate::library::{Model, ModelId, Motion};
 use crate::state::{ClipChoice, Command, changes_of, choice_of_clip, is_to_bring};
 
@@ -205,10 +205,12 @@ fn motion_heading(ui: &mut Ui, name: &str) {
 
 fn header(ui: &mut Ui, model: &Model) {
     let palette = style::palette(ui);
-    let (name, mut place) = name_and_place(&model.source);
-    if model.is_placeholder() && (is_to_bring(&model.origin) || place == LOCAL) {
-        place = text::NOT_OPENED.to_owned();
-    }
+    let (name, place) = name_and_place(&model.source);
+    let place = match place.filter(|_| !is_to_bring(&model.origin)) {
+        Some(place) => place,
+        None if model.is_placeholder() => text::NOT_OPENED.to_owned(),
+        None => text::LOCAL.to_owned(),
+    };
     ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
     ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
 }

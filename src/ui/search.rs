@@ -1,7 +1,7 @@
 //! How the panels' searches compare names.
 
 /// Whether a search finds a name, whatever their case and what separates their words: `left hand` finds `mixamorig:LeftHand` and
-/// `hand_left_hand`.
+/// `left_hand`.
 pub fn finds(search: &str, name: &str) -> bool {
     let wanted = letters(search);
     // Of signs alone, exactly these.

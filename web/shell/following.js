@@ -3,7 +3,7 @@ import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.j
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
-import { fileName, heldFor, localFiles, shareableLink, withOpenFiles } from "./held.js";
+import { fileName, heldFor, localFiles, shareableLink, withHeldFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
@@ -173,5 +173,5 @@ addEventListener("popstate", ({ state }) => {
   // An instance that is starting shows this link instead.
   if (session.app === null) session.askedLink = session.link = link;
   // The address may have been edited: files that are there aren't asked for.
-  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withOpenFiles(link)) });
+  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withHeldFiles(link)) });
 });

@@ -123,7 +123,7 @@ export const localFiles = (link) => linkedFiles(link).filter(({ name, isToBring 
  * Returns what a link shows with the local files that it asks for and that were opened before, if there are any.
  * @param {string} link
  */
-export function withOpenFiles(link) {
+export function withHeldFiles(link) {
   const names = linkedFiles(link).flatMap(({ name, isToBring }) => (isToBring ? [isLocal(name) ? name : ""] : []));
   if (names.every((name) => name === "")) return undefined;
   const known = linkWithFiles(link, names);

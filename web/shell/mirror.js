@@ -85,8 +85,8 @@ export class Mirror {
     const hadTree = this.root.querySelector("[role=tree]") !== null;
     const menu = this.#place(entries);
     // Whatever lies under a dialog can't be reached.
-    const dialog = [...this.#elements.values()].findLast(({ ariaModal }) => ariaModal === "true");
-    for (const element of /** @type {Iterable<HTMLElement>} */ (this.root.children)) element.inert = dialog !== undefined && !element.contains(dialog);
+    const dialog = this.root.querySelector("[aria-modal=true]");
+    for (const element of /** @type {Iterable<HTMLElement>} */ (this.root.children)) element.inert = dialog !== null && !element.contains(dialog);
     if (before instanceof HTMLElement) this.#keepFocus(before, menu, focus, hadTree);
     this.#focused = focus;
     this.#isShowing = false;

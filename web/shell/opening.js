@@ -66,8 +66,11 @@ let openedCount = 0;
 /** Resolves once what the user opened last is there or has failed. */
 let lastOpened = Promise.resolve();
 
-/** Files that can only be borrowed from, or shown without a model. @type {(item: Item) => boolean} */
-const isMotionOnly = (item) => /\.(bvh|vrma)$/i.test(bareName(item));
+/**
+ * Whether it has a motion and never a model.
+ * @param {Item} item
+ */
+const isMotion = (item) => /\.(bvh|vrma|npz)$/i.test(bareName(item));
 
 /**
  * Opens what the user dropped or chose. The app shows errors itself.
@@ -81,9 +84,13 @@ export async function openByHand(items, options) {
     location.hash = link;
     return hideGallery();
   }
-  if (options?.as === "motion" || toItems(items).every(isMotionOnly)) {
-    // It is for the model that is on its way.
-    for (let last; last !== lastOpened; await last) last = lastOpened;
+  if (options?.as === "motion" || toItems(items).every(isMotion)) {
+    // It is for the model that is on its way, and others may be opened meanwhile.
+    let awaitedOpening;
+    while (awaitedOpening !== lastOpened) {
+      awaitedOpening = lastOpened;
+      await awaitedOpening;
+    }
   }
   lastOpened = openNow(items, options);
   await lastOpened;
@@ -92,6 +99,7 @@ export async function openByHand(items, options) {
 }
 
 /**
+ * Opens what the user gives, without waiting for what is being opened.
  * @param {Openable[]} items
  * @param {{ as?: Role }} [options]
  */

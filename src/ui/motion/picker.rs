@@ -129,14 +129,14 @@ fn list(
 fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
     let asset = &pairing.motion.asset;
     let skeleton = &asset.skeleton;
-    let wanted = search.trim();
+    let wanted = search.trim().to_lowercase();
     let number: Option<usize> = wanted.parse().ok();
     let mut found: Vec<(bool, usize, JointIndex)> = skeleton
         .joints()
         .filter_map(|joint| {
             let (at, name) = (skeleton.source_index(joint), title(None, asset, joint));
-            let exact = number == Some(at) || name.eq_ignore_ascii_case(wanted);
-            (exact || finds(wanted, &name)).then_some((!exact, at, joint))
+            let exact = number == Some(at) || name.to_lowercase() == wanted;
+            (exact || finds(&wanted, &name)).then_some((!exact, at, joint))
         })
         .collect();
     found.sort_unstable();

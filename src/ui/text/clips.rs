@@ -15,7 +15,9 @@ pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so 
 pub const NO_SKELETON_OF_OBJ: &str = "An .obj has no skeleton by itself, so it can't borrow animations. If it has a .skel and an .attach, open them as well.";
 /// Button that opens the awaited model.
 pub const BRING: &str = "Choose files…";
-/// Stands below the awaited model's name, where others have their place.
+/// Stands below the name of a model without a path.
+pub const LOCAL: &str = "Opened from this computer";
+/// Stands there while the model is awaited.
 pub const NOT_OPENED: &str = "Not opened yet";
 /// What to do if a link's model couldn't be loaded.
 pub const NOT_LOADED: &str =

@@ -40,26 +40,22 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str) -> Response {
 }
 
 pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, size: f32) -> Response {
-    let info = |ui: &Ui| WidgetInfo::labeled(egui::accesskit::Role::Button, ui.is_enabled(), label);
-    any_icon_button(ui, icon, label, false, size, info)
+    any_icon_button(ui, icon, label, None, size)
 }
 
 /// Such a button for something that is on or off.
 pub fn icon_toggle(ui: &mut Ui, icon: Icon, label: &str, is_on: bool) -> Response {
-    let info = |ui: &Ui| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), is_on, label);
-    any_icon_button(ui, icon, label, is_on, ICON_SIZE, info)
+    any_icon_button(ui, icon, label, Some(is_on), ICON_SIZE)
 }
 
-fn any_icon_button(
-    ui: &mut Ui,
-    icon: Icon,
-    label: &str,
-    chosen: bool,
-    size: f32,
-    info: impl Fn(&Ui) -> WidgetInfo,
-) -> Response {
+/// `is_on` is `None` for a button that only acts.
+fn any_icon_button(ui: &mut Ui, icon: Icon, label: &str, is_on: Option<bool>, size: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(icon_size(ui, size), Sense::click());
-    response.widget_info(|| info(ui));
+    response.widget_info(|| {
+        let info = WidgetInfo::labeled(egui::accesskit::Role::Button, ui.is_enabled(), label);
+        WidgetInfo { selected: is_on, ..info }
+    });
+    let chosen = is_on == Some(true);
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         let is_pressed = !chosen && response.is_pointer_button_down_on();

@@ -338,6 +338,14 @@ fn a_view_of_a_loaded_model_is_announced_if_another_was_active() {
     }
 }
 
+/// Opens a view whose files are not available yet.
+fn awaiting(view: &ViewerState) -> Editor {
+    let mut editor = Editor::default();
+    let (awaited, shown) = open_view(view.clone(), true, Held::default()).expect("there is nothing to read");
+    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    editor
+}
+
 /// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
 /// is opened.
 #[test]
@@ -345,9 +353,7 @@ fn an_empty_stage_awaits_a_model() {
     let (mut view, _) =
         from_link("v=1&model=file:in/Soldier.glb&motion=file:walk.bvh&clip=run&t=0.5&camera=10,5,3,0,1,0&exposure=1");
     view.playback.playing = false;
-    let mut editor = Editor::default();
-    let (awaited, shown) = open_view(view.clone(), true, Held::default()).expect("there is nothing to read");
-    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let mut editor = awaiting(&view);
     let events = editor.take_events();
     assert_eq!((editor.state(), notices(&events)), (&view, vec![]), "no notice about its clip");
     let model = editor.library().active().expect("stands for it");
@@ -364,10 +370,7 @@ fn an_empty_stage_awaits_a_model() {
 
 #[test]
 fn what_a_link_says_of_a_motion_that_never_came_is_not_kept_for_another_model() {
-    let (view, _) = from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh&feet=plant");
-    let mut editor = Editor::default();
-    let (awaited, shown) = open_view(view, true, Held::default()).expect("there is nothing to read");
-    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let mut editor = awaiting(&from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh&feet=plant").0);
     assert!(to_link(editor.state()).contains("feet=plant"));
     open(&mut editor, "sample:walker");
     assert!(!to_link(editor.state()).contains("feet="), "{}", to_link(editor.state()));
@@ -387,10 +390,7 @@ fn a_saved_clip_says_that_it_has_no_manual_pose() {
 /// Before the model that it should move is there.
 #[test]
 fn a_motion_on_an_empty_stage_shows_its_own_skeleton() {
-    let (view, _) = from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh");
-    let mut editor = Editor::default();
-    let (awaited, shown) = open_view(view, true, Held::default()).expect("there is nothing to read");
-    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let mut editor = awaiting(&from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh").0);
     let motion = Contents { is_by_hand: true, motions: Some(vec![motion("walk")]), ..Contents::default() };
     editor.open(motion, None, &mut any).expect("has joints");
     let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();

@@ -278,8 +278,8 @@ impl Clip {
                 (frame - frame.round()).abs() < 0.02
             })
         };
-        let candidates = COMMON.into_iter().chain(self.densest_rate());
-        candidates.into_iter().find(|&rate| on_frames(rate)).unwrap_or(Self::DEFAULT_FRAMES_PER_SEC)
+        let mut rates = COMMON.into_iter().chain(self.densest_rate());
+        rates.find(|&rate| on_frames(rate)).unwrap_or(Self::DEFAULT_FRAMES_PER_SEC)
     }
 
     /// The rate at which the keys of the densest channel follow each other, such as 120.005 where a file rounded the length of a frame;

@@ -89,7 +89,7 @@ pub fn option(ui: &mut Ui, on: bool, label: &str) -> bool {
 /// Buttons of equal width, of which one is selected, in as many rows as their texts need; returns the value of the one that
 /// was pressed. The topic is the accessible name of their group.
 pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, topic: &str, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
-    segments(ui, chosen, choices, Segments::Choice { topic, is_named: false })
+    grouped(ui, Role::RadioGroup, topic, |ui| segments(ui, chosen, choices, Segments::Choice { prefix: None }))
 }
 
 /// Like [`segmented`], but each button's accessible name begins with the topic, because the labels alone are ambiguous.
@@ -99,7 +99,8 @@ pub fn segmented_about<T: Copy + PartialEq>(
     chosen: Option<T>,
     choices: &[(T, &str)],
 ) -> Option<T> {
-    segments(ui, chosen, choices, Segments::Choice { topic, is_named: true })
+    let row = Segments::Choice { prefix: Some(topic) };
+    grouped(ui, Role::RadioGroup, topic, |ui| segments(ui, chosen, choices, row))
 }
 
 /// The tabs of a panel, of which one is open, above a line; returns the one that was pressed. Some have a badge: a text about
@@ -128,8 +129,8 @@ fn columns(ui: &Ui, width: f32, texts: &mut dyn ExactSizeIterator<Item = &str>) 
 /// What a row of segments is.
 #[derive(Clone, Copy)]
 enum Segments<'a, T> {
-    /// Values to choose from. `is_named`: the topic is part of each accessible name.
-    Choice { topic: &'a str, is_named: bool },
+    /// Values to choose from; each accessible name begins with the prefix.
+    Choice { prefix: Option<&'a str> },
     /// Tabs, with their badges.
     Tabs { badge: &'a dyn Fn(T) -> Option<String> },
 }
@@ -140,23 +141,13 @@ fn segments<T: Copy + PartialEq>(
     choices: &[(T, &str)],
     row: Segments<'_, T>,
 ) -> Option<T> {
-    let Segments::Choice { topic, .. } = row else { return segments_in(ui, chosen, choices, row) };
-    grouped(ui, Role::RadioGroup, topic, |ui| segments_in(ui, chosen, choices, row))
-}
-
-fn segments_in<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    chosen: Option<T>,
-    choices: &[(T, &str)],
-    row: Segments<'_, T>,
-) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
     let (width, height) = (ui.available_width(), row_height(ui, ROW_HEIGHT));
-    let (role, about, font, columns) = match row {
-        Segments::Choice { topic, is_named } => {
+    let (role, prefix, font, columns) = match row {
+        Segments::Choice { prefix } => {
             let columns = columns(ui, width, &mut choices.iter().map(|(_, label)| *label));
-            (Role::RadioButton, is_named.then_some(topic), style::SMALL, columns)
+            (Role::RadioButton, prefix, style::SMALL, columns)
         }
         Segments::Tabs { .. } => (Role::Tab, None, style::BODY, choices.len().max(1)),
     };
@@ -175,7 +166,7 @@ fn segments_in<T: Copy + PartialEq>(
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
         response.widget_info(|| {
-            let name = about.map_or_else(|| (*label).to_owned(), |topic| text::labelled(topic, label));
+            let name = prefix.map_or_else(|| (*label).to_owned(), |prefix| text::labelled(prefix, label));
             WidgetInfo::selected(role, ui.is_enabled(), on, name)
         });
         segment(ui, cell, &response, on, label, font.clone());
