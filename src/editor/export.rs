@@ -11,7 +11,8 @@ use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
 use crate::state::{
-    ViewerState, active_clip, active_map, has_layers, looks_at_camera, pinned_clip, stacked_layers, written_skeleton,
+    ViewerState, active_clip, active_map, clip_with_manual_values, has_layers, looks_at_camera, manual_values,
+    pinned_clip, stacked_layers, written_skeleton,
 };
 
 /// Why a model without its images isn't written or recorded.
@@ -26,7 +27,7 @@ pub enum Export {
         /// Index into [`Library::motions`](crate::library::Library::motions).
         motion: usize,
     },
-    /// The model with one of its clips that is retargeted, changed, below layers or pinned.
+    /// The model with one of its clips that isn't in its file as it plays: [`derived_clip`].
     Model {
         /// Index among all clips of the active model; an unchanged one of its own is an error.
         clip: usize,
@@ -71,12 +72,16 @@ pub fn derived_clip(model: &Model, state: &ViewerState) -> Option<usize> {
     active_clip(model, state).filter(|&clip| is_derived(model, state, clip))
 }
 
-/// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or pinned.
+/// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or what is set manually, or
+/// pinned.
 fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
-    model.is_derived(clip) || has_layers(model, state) || !state.edits.pins.is_empty()
+    model.is_derived(clip)
+        || has_layers(model, state)
+        || !manual_values(model, state).is_empty()
+        || !state.edits.pins.is_empty()
 }
 
-/// A clip with its layers and pins baked in, if it has any.
+/// A clip with its layers, what is set manually, and its pins baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
     remarks: Vec<&'static str>,
@@ -202,8 +207,10 @@ impl Editor {
             let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
             baked.remarks.extend((!baking.seamless).then_some(seam));
         }
-        if !self.state.edits.pose.is_empty() {
-            baked.remarks.push("Manual poses aren't in it: joints move as in the clip.");
+        if let Some(held) = clip_with_manual_values(model, &self.state, baked.clip.as_ref().unwrap_or(clip)) {
+            baked.clip = Some(held);
+            let has_poses = !self.state.edits.pose.is_empty();
+            baked.remarks.extend(has_poses.then_some("Manually posed joints hold their pose in it."));
         }
         // Pins repeat with the clip, not with its layers.
         let (period_secs, eye) = (f64::from(clip.duration_secs()), looks_at_camera(&self.state).then(|| self.eye()));

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::manual::pose_joints;
 use super::pins::apply_pins;
-use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
+use super::playhead::{active_clip, clip_secs, play_range, sample_pose, world_from_model};
 use super::{LayerSampler, UpAxis, ViewerState};
 use crate::anim::{
     LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, Skeleton, TimeRange, model_from_joint,

@@ -15,6 +15,7 @@ mod layers;
 mod lighting;
 mod link;
 mod loop_frames;
+mod manual;
 mod map_code;
 mod map_edit;
 mod maps;
@@ -49,14 +50,12 @@ pub use link::{
     link_without_missing, linked_files, most_similar_link, public_link, shown_files,
 };
 pub use loop_frames::LoopFrames;
+pub use manual::{clip_with_manual_values, manual_degrees, manual_rotation, manual_values};
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
 pub use pins::{looks_at_camera, pinned_clip, pinning};
-pub use playhead::{
-    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, unknown_clip,
-    world_from_model,
-};
+pub use playhead::{PoseSampler, active_clip, choice_of_clip, clip_secs, play_range, unknown_clip, world_from_model};
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};

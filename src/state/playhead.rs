@@ -1,8 +1,9 @@
 //! From a view state to a pose: the active clip, its time, and the sampled pose.
 
-use glam::{Affine3A, EulerRot, Quat, Vec3};
+use glam::{Affine3A, Quat, Vec3};
 
 use super::avatar::AvatarPose;
+use super::manual::pose_joints;
 use super::pins::apply_pins;
 use super::{ClipChoice, LayerSampler, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
@@ -132,28 +133,6 @@ impl PoseSampler {
     pub fn expressions(&self) -> &[f32] {
         &self.avatar.weights
     }
-}
-
-/// Applies the rotations of manually posed joints.
-pub(super) fn pose_joints(model: &Model, state: &ViewerState, pose: &mut Pose) {
-    for (&joint, &degrees) in &state.edits.pose {
-        if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
-            let rest = model.asset.skeleton.rest().local(joint).rotation;
-            pose.set_rotation(joint, manual_rotation(rest, degrees));
-        }
-    }
-}
-
-/// Returns a manually posed joint's local rotation: from its rest rotation about its own X, then its new Y, then its new Z.
-pub fn manual_rotation(rest: Quat, degrees: [f32; 3]) -> Quat {
-    let [x, y, z] = degrees.map(f32::to_radians);
-    (rest * Quat::from_euler(EulerRot::XYZ, x, y, z)).normalize()
-}
-
-/// Returns the angles of [`manual_rotation`] for a local rotation.
-pub fn manual_degrees(rest: Quat, rotation: Quat) -> [f32; 3] {
-    let (x, y, z) = (rest.conjugate() * rotation).normalize().to_euler(EulerRot::XYZ);
-    [x, y, z].map(f32::to_degrees)
 }
 
 /// Samples a clip over the rest pose, and its layers at `elapsed_secs`; without a clip, the rest pose.

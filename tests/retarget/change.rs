@@ -13,10 +13,10 @@ use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
 use crate::figure::{Figure, Rig, build};
 use crate::laws::degrees;
 
-const KINDS: [Interpolation; 3] = [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline];
+pub const KINDS: [Interpolation; 3] = [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline];
 const NONE: ClipChanges = ClipChanges::NONE;
 
-fn dancer(interpolation: Interpolation) -> Figure {
+pub fn dancer(interpolation: Interpolation) -> Figure {
     let mut figure = build(&Rig { axes: 3, armature: true, ..Rig::default() });
     figure.dance(5, 60.0, interpolation);
     figure
@@ -40,7 +40,7 @@ fn check_same(figure: &Figure, one: (&Clip, f32), other: (&Clip, f32), tolerance
 }
 
 /// Between the keys of any channel.
-fn times(clip: &Clip) -> impl Iterator<Item = f32> + use<> {
+pub fn times(clip: &Clip) -> impl Iterator<Item = f32> + use<> {
     let duration_secs = clip.duration_secs();
     (1..40).map(move |step| duration_secs * (step as f32 + 0.37) / 41.0)
 }

@@ -19,6 +19,7 @@ mod contacts;
 mod coursework;
 mod feet;
 mod figure;
+mod hold;
 mod knees;
 mod laws;
 mod layers;

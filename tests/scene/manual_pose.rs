@@ -1,8 +1,10 @@
 //! Manually posed joints, and the turntable.
 
 use gaitway::anim::JointIndex;
+use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
+use gaitway::retarget::{Pin, PinGoal};
 use gaitway::state::{
     CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
     manual_degrees, manual_rotation,
@@ -11,10 +13,13 @@ use glam::{EulerRot, Quat, Vec3};
 
 use crate::data::walker;
 use crate::history::undo;
+use crate::pins::{check_written, exported};
 
 /// Joints of the walker, by index in the file.
 const HEAD: usize = 5;
 const SHIN: usize = 15;
+const UPPER_ARM: usize = 7;
+const HAND: usize = 9;
 
 fn local_rotation(library: &Library, state: &ViewerState, joint: usize) -> Quat {
     let model = library.active().expect("a model");
@@ -84,6 +89,28 @@ fn missing_joints_and_angles_that_are_not_finite_change_nothing() {
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([190.0, -540.0, 180.0]) });
     assert_eq!(state.edits.pose[&HEAD], [-170.0, -180.0, 180.0]);
+}
+
+/// Together with a pin, which applies afterwards.
+#[test]
+fn exports_have_what_is_set_manually() {
+    let mut editor = Editor::new(walker(), ViewerState::default());
+    let what = Export::Clip { clip: 0, format: ClipFormat::Glb };
+    assert_eq!(editor.export(what).expect("has keys").remark, None);
+    assert!(editor.export(Export::Model { clip: 0 }).is_err(), "the file has this clip");
+    let hand = Pin { goal: PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)), times: None };
+    for command in [
+        Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 10.0]) },
+        Command::SetPose { joint: UPPER_ARM, degrees: Some([20.0, 30.0, 0.0]) },
+        Command::SetPin { joint: HAND, pin: Some(hand) },
+    ] {
+        editor.apply(command);
+    }
+    let remark = editor.export(what).expect("has keys").remark;
+    assert_eq!(remark.as_deref(), Some("Manually posed joints hold their pose in it."));
+    for what in [what, Export::Model { clip: 0 }] {
+        check_written(&editor, &exported(&editor, what), 1.0, (1.8e-4, 0.1));
+    }
 }
 
 #[test]

@@ -185,7 +185,7 @@ fn malformed_pins_are_reported_and_the_rest_is_kept() {
     assert_eq!((errors, to_link(&state)), (Vec::new(), "v=1&pin=9:joint:4,0,0,0".to_owned()));
 }
 
-fn exported(editor: &Editor, what: Export) -> Library {
+pub fn exported(editor: &Editor, what: Export) -> Library {
     let file = editor.export(what).expect("can be written");
     let mut files = FileSet::default();
     files.insert(&*file.name, file.bytes);
@@ -193,7 +193,7 @@ fn exported(editor: &Editor, what: Export) -> Library {
 }
 
 /// Compares a written clip with what is shown over `secs`.
-fn check_written(editor: &Editor, written: &Library, secs: f64, (max_metres, max_degrees): (f32, f32)) {
+pub fn check_written(editor: &Editor, written: &Library, secs: f64, (max_metres, max_degrees): (f32, f32)) {
     let skeleton = &editor.library().active().expect("a model").asset.skeleton;
     let model = written.active().expect("a model");
     for step in 0..120 {

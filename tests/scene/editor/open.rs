@@ -376,17 +376,6 @@ fn what_a_link_says_of_a_motion_that_never_came_is_not_kept_for_another_model() 
     assert!(!to_link(editor.state()).contains("feet="), "{}", to_link(editor.state()));
 }
 
-#[test]
-fn a_saved_clip_says_that_it_has_no_manual_pose() {
-    let mut editor = editor("sample:pilot");
-    let remark = |editor: &Editor| {
-        editor.export(Export::Clip { clip: 0, format: ClipFormat::Glb }).expect("is written").remark.unwrap_or_default()
-    };
-    assert_eq!(remark(&editor), "");
-    editor.apply(Command::SetPose { joint: 9, degrees: Some([150.0, 0.0, 0.0]) });
-    assert!(remark(&editor).starts_with("Manual poses aren't in it"), "{}", remark(&editor));
-}
-
 /// Before the model that it should move is there.
 #[test]
 fn a_motion_on_an_empty_stage_shows_its_own_skeleton() {

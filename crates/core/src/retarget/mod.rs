@@ -3,7 +3,7 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
-//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, `stack` puts
+//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds parts of it still, `stack` puts
 //! others over it, and `pins` holds hands and feet. `pose`, `keys`, `math`, `times`, `limit` and `two_bones` are shared.
 //!
 //! ```
@@ -48,7 +48,7 @@ mod two_bones;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
-pub use change::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
+pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
 pub use map::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,

@@ -2,6 +2,7 @@
 //! its keys; trimming and blending a seam add some, and so does what must be held: the values of a reversed clip that starts late or
 //! has steps, and the joint that moves the body of a clip of an arm.
 
+mod hold;
 mod mirror;
 mod path;
 mod seam;
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::math::clamped;
 use crate::anim::{Clip, TimeRange};
 use crate::asset::Asset;
+pub use hold::{HeldValues, hold_values};
 pub use mirror::Symmetry;
 pub use seam::Seam;
 use track::Tracks;

@@ -36,7 +36,7 @@ pub struct Tracks {
 
 impl Tracks {
     pub fn of(clip: &Clip) -> Self {
-        let mut tracks: Vec<Track> = Vec::new();
+        let mut found = Self { tracks: Vec::new(), duration_secs: clip.duration_secs() };
         for channel in clip.channels() {
             let joint = channel.joint;
             let flat = |values: &[Vec3]| values.iter().flat_map(|value| value.to_array()).collect();
@@ -49,12 +49,11 @@ impl Tracks {
                 Keys::MorphWeights { values, targets } => (Target::Weights(joint), *targets, values.clone()),
             };
             let times = clip.timelines()[channel.timeline as usize].clone();
-            tracks.retain(|track| track.target != target);
-            tracks.push(Track { target, interpolation: channel.interpolation, times, width, values });
+            found.replace(Track { target, interpolation: channel.interpolation, times, width, values });
         }
         for channel in clip.properties() {
             let times = clip.property_timelines()[channel.timeline as usize].clone();
-            tracks.push(Track {
+            found.tracks.push(Track {
                 target: Target::Property(channel.target),
                 interpolation: channel.interpolation,
                 times,
@@ -62,7 +61,7 @@ impl Tracks {
                 values: channel.values.clone(),
             });
         }
-        Self { tracks, duration_secs: clip.duration_secs() }
+        found
     }
 
     /// Builds a clip of `duration_secs`: a clip ends with its last key, so if all are earlier, the last value of a track is
@@ -96,6 +95,12 @@ impl Tracks {
             debug_assert!(added.is_ok(), "{added:?}");
         }
         builder.build()
+    }
+
+    /// Adds a track, instead of the one of its target if there is one.
+    pub fn replace(&mut self, track: Track) {
+        self.tracks.retain(|other| other.target != track.target);
+        self.tracks.push(track);
     }
 
     pub fn find(&self, target: Target) -> Option<&Track> {

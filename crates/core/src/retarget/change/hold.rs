@@ -1,0 +1,59 @@
+//! Holds joints and weights still throughout a clip.
+
+use glam::Quat;
+
+use super::track::{Target, Track, Tracks};
+use crate::anim::{Clip, Interpolation, JointIndex, PropertyTarget, Skeleton};
+
+/// Values that a clip has at any time, instead of its keys.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct HeldValues {
+    /// Local rotations of joints.
+    pub rotations: Vec<(JointIndex, Quat)>,
+    /// Weights by index in [`Pose::morph_weights`](crate::anim::Pose::morph_weights).
+    pub morph_weights: Vec<(usize, f32)>,
+    /// Weights by index in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
+    pub expressions: Vec<(usize, f32)>,
+}
+
+impl HeldValues {
+    /// Whether the clip stays as it is.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Returns a clip, as long as the given one, in which some values hold still. Other channels keep their keys.
+pub fn hold_values(skeleton: &Skeleton, clip: &Clip, held: &HeldValues) -> Clip {
+    let mut tracks = Tracks::of(clip);
+    for &(joint, rotation) in &held.rotations {
+        tracks.replace(constant(Target::Rotation(joint), rotation.to_array().to_vec()));
+    }
+    for &(index, weight) in &held.expressions {
+        tracks.replace(constant(Target::Property(PropertyTarget::Expression(index)), vec![weight]));
+    }
+    for &(index, weight) in &held.morph_weights {
+        hold_morph_weight(&mut tracks, skeleton, index, weight);
+    }
+    tracks.build(clip.name(), skeleton)
+}
+
+/// A channel of all weights of a mesh stays one, and gets the weight in each key.
+fn hold_morph_weight(tracks: &mut Tracks, skeleton: &Skeleton, index: usize, weight: f32) {
+    let Some(joint) = skeleton.joints().find(|&joint| skeleton.morph_range(joint).contains(&index)) else { return };
+    let range = skeleton.morph_range(joint);
+    let target = index - range.start;
+    tracks.tracks.retain(|track| track.target != Target::Property(PropertyTarget::MorphWeight(joint, target)));
+    if tracks.find(Target::Weights(joint)).is_none() {
+        tracks.tracks.push(constant(Target::Weights(joint), skeleton.rest().morph_weights[range.clone()].to_vec()));
+    }
+    let mut weights = vec![0.0; range.len()];
+    weights[target] = weight;
+    for track in tracks.tracks.iter_mut().filter(|track| track.target == Target::Weights(joint)) {
+        track.map(|numbers| numbers[target] = 0.0, &weights);
+    }
+}
+
+fn constant(target: Target, value: Vec<f32>) -> Track {
+    Track { target, interpolation: Interpolation::Linear, times: vec![0.0], width: value.len(), values: value }
+}
