@@ -198,6 +198,9 @@ impl Editor {
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
         let name = model.clip_name(clip);
         let mut baked = BakedClip { clip: None, remarks: Vec::new() };
+        let active = active_clip(model, &self.state);
+        let is_cut = active == Some(clip) && self.state.playhead.range.is_some();
+        baked.remarks.extend(is_cut.then_some("The file has the whole clip; “Trim to range” cuts it."));
         let Some(clip) = model.clip(clip) else { return Ok(baked) };
         if !below.is_empty() || !over.is_empty() {
             let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();

@@ -7,7 +7,7 @@ use super::{Editor, Event, short_name};
 use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
 use crate::retarget::{JointMap, JointMapFile, MapError};
-use crate::state::{Command, MapEdit, MotionMap, NumberedMap, ViewerState, numbered_for, proposed_map};
+use crate::state::{Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, numbered_for, proposed_map};
 
 /// Why a map of a view is not used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -112,20 +112,26 @@ impl Editor {
             let problem = "this is a joint map, but no motion is loaded; open the motion first, or both together";
             return Err(problem.to_owned());
         }
-        let mut fitting = Vec::new();
-        let mut problem = None;
+        let playing = active_clip(model, &self.state).and_then(|clip| Some(model.borrowed(clip)?.motion));
+        let (mut fitting, mut other) = (Vec::new(), None);
         for (index, motion) in self.library.motions().iter().enumerate() {
             match map.to_joint_map(&model.asset, &motion.asset) {
                 Ok(map) => fitting.push((index, short_name(&motion.source), map)),
-                Err(error) => {
-                    let problem_of_first = MapProblem::NoFit { motion: motion.source.clone(), problem: error };
-                    problem = problem.or(Some(self.map_problem(&problem_of_first)));
-                }
+                Err(problem) if other.is_none() || playing == Some(index) => other = Some((index, problem)),
+                Err(_) => {}
             }
         }
-        if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
-            return Err(problem);
-        }
+        let problem = other.map(|(index, problem)| {
+            let motion = self.library.motions()[index].source.clone();
+            (index, self.map_problem(&MapProblem::NoFit { motion, problem }))
+        });
+        let about_playing = match problem {
+            Some((_, problem)) if fitting.is_empty() => return Err(problem),
+            Some((index, problem)) if playing == Some(index) => {
+                format!(" The motion that plays keeps its own. {problem}")
+            }
+            _ => String::new(),
+        };
         self.end_gesture();
         let steps = self.undo_steps();
         let mut names = Vec::new();
@@ -135,7 +141,7 @@ impl Editor {
         }
         self.end_gesture();
         let undoable = self.undo_steps() != steps;
-        let text = format!("Applied the joint map and its options to {}.", names.join(", "));
+        let text = format!("Applied the joint map and its options to {}.{about_playing}", names.join(", "));
         self.events.push(Event::Notice { text, undoable });
         Ok(())
     }

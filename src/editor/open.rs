@@ -410,7 +410,7 @@ impl Editor {
         self.library.active().filter(|model| model.id == id).map_or(Ok(()), admit)
     }
 
-    /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted
+    /// Activates another loaded model with the view it had: its clip, time, range and camera. Motions added since then are retargeted
     /// to it. A model that was never active plays the clip that it was written for, otherwise the retargeted clip that is active.
     ///
     /// # Errors
@@ -426,8 +426,13 @@ impl Editor {
         let last = self.shelf.get(&id).and_then(|shelved| shelved.last_view.clone());
         let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
         let is_first_time = last.is_none();
+        let mut follow = self.state.camera_options.follow;
         let (view, mut motions, playing) = match last {
-            Some(last) => (last.state, last.loaded.motions, last.playing),
+            Some(last) => {
+                // Where an orbit camera's target is depends on it.
+                follow = last.state.camera_options.follow;
+                (last.state, last.loaded.motions, last.playing)
+            }
             None => (ViewerState::of_model(origin.clone()), Vec::new(), current.playing),
         };
         // Motions loaded since then take precedence.
@@ -437,6 +442,7 @@ impl Editor {
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
         self.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
+        self.state.camera_options.follow = follow;
         self.library.set_motions(motions);
         self.retarget();
         let dropped = self.drop_incompatible_motions();

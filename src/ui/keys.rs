@@ -217,7 +217,7 @@ fn plain_press(event: &egui::Event, wanted: Key) -> Option<bool> {
     }
 }
 
-/// Handles shortcuts with modifiers. Counts every press: on a slow machine one frame can have several.
+/// Handles shortcuts with modifiers in the order in which they are pressed: on a slow machine one frame can have several.
 fn shortcuts(context: &Context, out: &mut Output) {
     // Ctrl+Shift+Z first: matching Ctrl+Z ignores Shift.
     let shortcuts = [
@@ -226,10 +226,14 @@ fn shortcuts(context: &Context, out: &mut Output) {
         (Modifiers::COMMAND, Key::Z, UiAction::Undo),
         (Modifiers::COMMAND, Key::O, UiAction::OpenFiles),
     ];
-    for (modifiers, key, action) in shortcuts {
-        let presses = context.input_mut(|input| input.count_and_consume_key(modifiers, key));
-        out.actions.extend(std::iter::repeat_n(action, presses));
-    }
+    context.input_mut(|input| {
+        input.events.retain(|event| {
+            let &egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+            let meant = shortcuts.iter().find(|(wanted, of, _)| *of == key && modifiers.matches_logically(*wanted));
+            out.actions.extend(meant.map(|(.., action)| action.clone()));
+            meant.is_none()
+        });
+    });
 }
 
 trait CommandOrAlt {

@@ -73,6 +73,19 @@ fn every_press_within_a_frame_counts() {
     assert_eq!(harness.state().actions, [UiAction::Undo, UiAction::Undo, UiAction::Undo]);
 }
 
+#[test]
+fn presses_within_a_frame_keep_their_order() {
+    let mut harness = sample_bench(WIDE);
+    for key in [Key::Z, Key::Y, Key::Z, Key::Z, Key::Y] {
+        let modifiers = egui::Modifiers::COMMAND;
+        let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        harness.input_mut().events.push(event);
+    }
+    harness.step();
+    let (undo, redo) = (UiAction::Undo, UiAction::Redo);
+    assert_eq!(harness.state().actions, [undo.clone(), redo.clone(), undo.clone(), undo, redo]);
+}
+
 /// As after the Tab key.
 #[test]
 fn a_control_with_the_keyboard_takes_its_own_keys_only() {

@@ -224,9 +224,11 @@ const isNamedFile = (item) => item !== null && typeof item === "object" && "name
 function announce(shown, { model, notice }, { clips, borrowed_clips: borrowed, joints, triangles }) {
   /** @type {(count: number, noun: string) => string} */
   const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
+  // None where a motion shows its own skeleton.
+  const lent = borrowed?.length ?? 0;
   const texts = {
     model: [`Opened ${model}.`, `${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`],
-    motion: ["Borrowed the motion.", `${counted(borrowed?.length ?? 0, "borrowed clip")}.`],
+    motion: ["Borrowed the motion.", `${lent > 0 ? counted(lent, "borrowed clip") : counted(clips.length, "clip")}.`],
     light: ["The image lights the scene."],
     map: ["Joint map applied."],
   };

@@ -145,7 +145,10 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         problem.map_or(response.clone(), |problem| response.on_disabled_hover_text(problem)).clicked()
     };
     controls::section(ui, "JOINT MAP");
-    controls::hint(ui, "The source of each joint and these options, as JSON. You can also drop a map anywhere.");
+    controls::hint(
+        ui,
+        "The source of each joint and these options, as JSON. You can also drop a map anywhere. It applies to every motion that it fits.",
+    );
     ui.add_space(2.0);
     if button(ui, text::SAVE_MAP, None) {
         out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));

@@ -135,6 +135,20 @@ fn a_camera_that_follows_goes_where_another_clip_is() {
     assert_eq!(orbit(&editor), still);
 }
 
+#[test]
+fn the_camera_follows_again_when_a_model_comes_back() {
+    let mut editor = editor("sample:pilot");
+    let pilot = id_of(&editor, "sample:pilot");
+    editor.open(Contents { is_by_hand: true, ..runner(8.0) }, None, &mut any).expect("fits");
+    editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
+    let before = orbit(&editor);
+    editor.activate(pilot, &mut any).expect("fits");
+    assert!(!editor.state().camera_options.follow, "the pilot stays in place");
+    let runner = id_of(&editor, "runner.glb");
+    editor.activate(runner, &mut any).expect("fits");
+    assert_eq!((editor.state().camera_options.follow, orbit(&editor)), (true, before));
+}
+
 fn are_automatic(editor: &Editor) -> bool {
     editor.state().retarget.feet_are_automatic
 }

@@ -1,7 +1,7 @@
 //! Copies of clips, to cut several out of one.
 
 use gaitway::anim::{Clip, TimeRange};
-use gaitway::editor::{Editor, Export};
+use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::Model;
 use gaitway::retarget::{ClipChanges, ClipLayer};
@@ -25,6 +25,14 @@ fn secs(editor: &Editor, clip: usize) -> f32 {
 fn cut(editor: &mut Editor, clip: usize, start_secs: f64, end_secs: f64) {
     let changes = ClipChanges { trim: Some(TimeRange { start_secs, end_secs }), ..ClipChanges::NONE };
     editor.apply(Command::CopyClip { clip, changes: Box::new(changes) });
+}
+
+#[test]
+fn a_saved_clip_says_that_it_is_not_cut_to_the_range() {
+    let mut editor = editor("sample:walker");
+    editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.2, end_secs: 0.6 })));
+    let remark = editor.export(Export::Clip { clip: 0, format: ClipFormat::Bvh }).expect("has keys").remark;
+    assert_eq!(remark.as_deref(), Some("The file has the whole clip; “Trim to range” cuts it."));
 }
 
 #[test]

@@ -68,6 +68,34 @@ fn a_faulty_map_is_blamed_on_its_own_file() {
     assert!(error.starts_with(expected), "{error}");
 }
 
+/// Of two motions, the second plays.
+#[test]
+fn a_map_that_does_not_fit_the_motion_that_plays_says_so() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.open(contents(&["sample:walk"]), None, &mut any).expect("fits");
+    let proposed = active_map(editor.library(), editor.state(), 1);
+    let mut open = |source: &str| {
+        let map = format!(r#"{{"gaitway_map": 1, "joints": {{"mixamorig:Hips": {{"source": "{source}"}}}}}}"#);
+        let map = JointMapFile::from_json(&map).expect("is valid");
+        editor.take_events();
+        let map = Some(OpenedMap { name: "map.json".to_owned(), map });
+        editor
+            .open(Contents { map, ..Contents::default() }, None, &mut any)
+            .map(|()| notices(&editor.take_events()).join(""))
+    };
+    let notice = open("Hips").expect("fits the first");
+    assert!(
+        notice.starts_with("Applied the joint map and its options to dance.glb. The motion that plays keeps its own"),
+        "{notice}"
+    );
+    assert!(notice.contains("map.json: doesn't fit Walk: "), "{notice}");
+    let problem = open("nope").expect_err("fits neither");
+    assert!(problem.starts_with("map.json: doesn't fit Walk: "), "{problem}");
+    assert_eq!(open("hip").expect("fits the second"), "Applied the joint map and its options to Walk.");
+    assert_ne!(active_map(editor.library(), editor.state(), 1), proposed);
+}
+
 /// A map by name waits for its motion as the text that the link has.
 #[test]
 fn a_map_waits_for_its_motion() {
