@@ -2,7 +2,8 @@
 
 use glam::{Mat3, Vec3};
 
-use super::environment::{DirectionalLight, Environment};
+use super::environment::DirectionalLight;
+use super::light::LightSources;
 use super::shadow::shadow_view;
 use super::uniforms::{FrameUniform, LightUniform};
 use crate::asset::{LightKind, MAX_LIGHTS};
@@ -57,11 +58,11 @@ pub(super) fn frame_uniform(
     frame: &Frame,
     ground: Option<&GroundPlane>,
     size: [f32; 2],
-    environment: &Environment,
+    light: &LightSources,
 ) -> (FrameUniform, Option<FrameUniform>) {
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
-    let key = look.key.map_or(environment.key, directional_light);
+    let key = look.key.map_or(light.environment.key, directional_light);
     let key_direction = Mat3::from_rotation_y(look.environment_radians) * key.direction;
     let [sky_ahead, sky_right, sky_up] = sky_directions(frame);
     // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
@@ -76,7 +77,8 @@ pub(super) fn frame_uniform(
         None if frame.lights.is_empty() => (key_direction, 0),
         None => (key_direction, NO_SHADOW),
     };
-    let shadow = if look.shadow && look.mesh { shadow_view(&frame.bounds, to_light) } else { None };
+    let shadow =
+        if look.shadow && look.mesh { shadow_view(&frame.bounds, to_light, light.shadow_map.size) } else { None };
     let on_ground = ground.zip(shadow.as_ref()).map(|(ground, view)| view.on_ground(to_light, ground.center));
     let mut uniform = FrameUniform {
         projection_from_world: (frame.view.projection_from_view * frame.view.view_from_world).to_cols_array_2d(),
@@ -85,7 +87,7 @@ pub(super) fn frame_uniform(
         exposure: look.exposure.max(1e-6),
         viewport_pixels: size,
         light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
-        environment_last_level: environment.last_level as f32,
+        environment_last_level: light.environment.last_level as f32,
         environment: [cos, sin],
         shadow_texel: shadow.map_or(0.0, |view| view.texel),
         shadow_light,

@@ -20,9 +20,10 @@ pub(super) struct LightSources {
 }
 
 impl LightSources {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) -> Self {
+    /// `samples` as for [`ShadowMap::new`].
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, samples: u32) -> Self {
         let environment = Environment::new(device, queue, Source::Dark);
-        let shadow_map = ShadowMap::new(device);
+        let shadow_map = ShadowMap::new(device, samples);
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);
         let transmission = single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[0; 4]);

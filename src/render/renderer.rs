@@ -140,7 +140,7 @@ impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
         let layouts = Layouts::new(device);
         let pipelines = Pipelines::new(queue, &layouts, options.samples);
-        let light = LightSources::new(device, queue, &layouts);
+        let light = LightSources::new(device, queue, &layouts, options.samples);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");
         let shadow_buffer = UniformBuffer::new(device, "shadow");
@@ -241,7 +241,7 @@ impl Renderer {
         }
         let ground = GroundPlane::of(frame);
         let panes = Panes::new(frame.panes, size);
-        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light.environment);
+        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light);
         self.frame_buffer.write(queue, uniform);
         self.uniform = uniform;
         let shadow = shadow_uniform.is_some();

@@ -7,9 +7,10 @@ use glam::{Mat4, Vec3};
 use crate::mesh::Bounds;
 
 pub(super) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-const SIZE: u32 = 1024;
 
 pub(super) struct ShadowMap {
+    /// Edge length in texels.
+    pub size: u32,
     pub view: wgpu::TextureView,
     /// Bound instead of the map while it is drawn.
     pub placeholder: wgpu::TextureView,
@@ -17,7 +18,9 @@ pub(super) struct ShadowMap {
 }
 
 impl ShadowMap {
-    pub fn new(device: &wgpu::Device) -> Self {
+    /// `samples` per pixel of the pictures. On software adapters, which draw one, a larger map takes as long as a picture.
+    pub fn new(device: &wgpu::Device, samples: u32) -> Self {
+        let size = if samples > 1 { 1024 } else { 512 };
         let view = |size| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("shadow map"),
@@ -38,7 +41,7 @@ impl ShadowMap {
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         });
-        Self { view: view(SIZE), placeholder: view(1), sampler }
+        Self { size, view: view(size), placeholder: view(1), sampler }
     }
 }
 
@@ -66,9 +69,9 @@ impl ShadowView {
     }
 }
 
-/// Fits an orthographic view along the light to the bounds, with a small margin. `to_light` has unit length. None for
-/// empty bounds.
-pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView> {
+/// Fits an orthographic view along the light to the bounds, with a small margin, for a map of `size` texels along each edge.
+/// `to_light` has unit length. None for empty bounds.
+pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3, size: u32) -> Option<ShadowView> {
     let diagonal = bounds.diagonal();
     if bounds.is_empty() || !diagonal.is_finite() || diagonal <= 0.0 {
         return None;
@@ -91,7 +94,7 @@ pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView>
     let world_from_light = light_from_world.inverse();
     Some(ShadowView {
         shadow_from_world: projection * light_from_world,
-        texel: 2.0 * half / SIZE as f32,
+        texel: 2.0 * half / size as f32,
         center: world_from_light.transform_point3(middle),
         right: world_from_light.transform_vector3(half * Vec3::X),
         up: world_from_light.transform_vector3(half * Vec3::Y),
@@ -106,7 +109,7 @@ mod tests {
     fn every_corner_is_inside_the_view() {
         let bounds = Bounds { min: Vec3::new(-1.0, 0.0, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
         for to_light in [Vec3::Y, Vec3::new(-0.48, 0.72, 0.5).normalize(), Vec3::X, Vec3::NEG_Y] {
-            let view = shadow_view(&bounds, to_light).unwrap();
+            let view = shadow_view(&bounds, to_light, 512).unwrap();
             for corner in bounds.corners() {
                 let at = view.shadow_from_world.project_point3(corner);
                 assert!(
@@ -124,7 +127,7 @@ mod tests {
         let bounds = Bounds { min: Vec3::new(-1.0, 0.5, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
         let to_light = Vec3::new(-0.48, 0.72, 0.5).normalize();
         let ground = Vec3::new(0.3, 0.5, -2.0);
-        let view = shadow_view(&bounds, to_light).unwrap();
+        let view = shadow_view(&bounds, to_light, 512).unwrap();
         let [center, x, y] = view.on_ground(to_light, ground).map(|[x, z]| Vec3::new(x, 0.0, z));
         for (right, up) in [(0.0, 0.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)] {
             let seen = view.shadow_from_world.project_point3(ground + center + right * x + up * y);
@@ -134,6 +137,6 @@ mod tests {
 
     #[test]
     fn empty_bounds_have_no_shadow_view() {
-        assert_eq!(shadow_view(&Bounds::EMPTY, Vec3::Y), None);
+        assert_eq!(shadow_view(&Bounds::EMPTY, Vec3::Y, 512), None);
     }
 }
