@@ -6,7 +6,7 @@ use super::apply::set_clip;
 use super::layers::clip_of_layer;
 use super::playhead::{active_clip, choice_of_clip, clip_called};
 use super::{ClipChoice, ClipCopy, Edits, Playhead, ViewerState};
-use crate::anim::{Clip, TimeRange};
+use crate::anim::{Clip, TimeRange, clip_time};
 use crate::library::Model;
 use crate::retarget::ClipChanges;
 
@@ -41,7 +41,7 @@ pub(super) fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: 
     // A link may name the clip by its index.
     state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
     if active_clip(model, state) == Some(clip) {
-        follow_changes(&mut state.playhead, &before, &changes);
+        follow_changes(state, model.unchanged_clip(clip), &before, &changes);
     }
     insert_changes(state, name, changes);
 }
@@ -74,21 +74,33 @@ pub(super) fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: 
     state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
 }
 
-/// Keeps the pose and the range of the active clip where its times only stretch. A trimmed clip starts over, and the range of
-/// a reversed one is dropped.
-fn follow_changes(playhead: &mut Playhead, before: &ClipChanges, changes: &ClipChanges) {
+/// Keeps the pose and the range of the active clip, whose times stretch and turn round. A trimmed clip starts over.
+fn follow_changes(state: &mut ViewerState, unchanged: Option<&Clip>, before: &ClipChanges, changes: &ClipChanges) {
+    let mode = state.playback.loop_mode;
+    let Playhead { range, time_secs, .. } = &mut state.playhead;
     if changes.trim != before.trim {
-        (playhead.range, playhead.time_secs) = (None, 0.0);
+        (*range, *time_secs) = (None, 0.0);
+        return;
+    }
+    let duration_secs = unchanged.map_or(0.0, |clip| f64::from(clip.duration_secs()));
+    let whole = TimeRange { start_secs: 0.0, end_secs: duration_secs };
+    let kept = before.trim.map_or(whole, |trim| TimeRange { end_secs: trim.end_secs.min(duration_secs), ..trim });
+    let end_secs = kept.length_secs() / before.speed;
+    let turns = changes.reverse != before.reverse;
+    if turns {
+        // A looping clip runs on beyond its range.
+        *time_secs = clip_time(*time_secs, range.unwrap_or(TimeRange { start_secs: 0.0, end_secs }), mode);
     }
     let stretch = before.speed / changes.speed;
-    playhead.time_secs *= stretch;
-    playhead.range = playhead
-        .range
-        .filter(|_| changes.reverse == before.reverse)
-        .map(|range| TimeRange { start_secs: range.start_secs * stretch, end_secs: range.end_secs * stretch });
+    let follow = |secs: f64| stretch * if turns { end_secs - secs } else { secs };
+    *time_secs = follow(*time_secs);
+    *range = range.map(|TimeRange { start_secs, end_secs }| {
+        let [from, to] = if turns { [end_secs, start_secs] } else { [start_secs, end_secs] };
+        TimeRange { start_secs: follow(from), end_secs: follow(to) }
+    });
 }
 
-/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that those
+/// Copies what undo covers from another state. Pose and range follow the changes of the active clip, and a range that a trim
 /// dropped returns.
 pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
     let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
@@ -103,9 +115,8 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
         return;
     }
     if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
-        follow_changes(&mut state.playhead, &before, &changes);
-        let has_dropped = changes.trim != before.trim || changes.reverse != before.reverse;
-        if has_dropped && active_clip(model, from) == Some(clip) {
+        follow_changes(state, model.unchanged_clip(clip), &before, &changes);
+        if changes.trim != before.trim && active_clip(model, from) == Some(clip) {
             state.playhead.range = from.playhead.range;
         }
     }

@@ -165,9 +165,43 @@ fn a_change_of_speed_keeps_the_pose_and_the_range() {
     check(&state, 0.25, range(0.125, 0.375));
     apply(&mut state, &library, change(0, ClipChanges { speed: 0.5, mirror: true, ..ClipChanges::NONE }));
     check(&state, 1.0, range(0.5, 1.5));
-    // The part in the range is somewhere else now.
-    apply(&mut state, &library, change(0, ClipChanges { speed: 0.5, reverse: true, ..ClipChanges::NONE }));
-    check(&state, 1.0, None);
+}
+
+#[test]
+fn a_reversed_clip_keeps_the_pose_and_the_range() {
+    let library = walker();
+    let end_secs = f64::from(library.active().expect("a model").asset.clips[0].duration_secs());
+    let range = |start_secs, end_secs| Some(TimeRange { start_secs, end_secs });
+    let change = |changes| Command::ChangeClip { clip: 0, changes: Box::new(changes) };
+    let mut state = after(&library, [Command::SetRange(range(0.25, 0.5)), Command::Seek(0.375)]);
+    apply(&mut state, &library, change(ClipChanges { reverse: true, ..ClipChanges::NONE }));
+    check_time(&state, end_secs - 0.375, range(end_secs - 0.5, end_secs - 0.25));
+    apply(&mut state, &library, change(ClipChanges { speed: 2.0, ..ClipChanges::NONE }));
+    check_time(&state, 0.1875, range(0.125, 0.25));
+    let half = 0.5 * end_secs;
+    apply(&mut state, &library, change(ClipChanges { speed: 2.0, reverse: true, ..ClipChanges::NONE }));
+    check_time(&state, half - 0.1875, range(half - 0.25, half - 0.125));
+    // Of a part, twice as fast: a quarter of a second, looping for the third time.
+    let part = ClipChanges { speed: 2.0, trim: range(0.25, 0.75), ..ClipChanges::NONE };
+    apply(&mut state, &library, change(part.clone()));
+    check_time(&state, 0.0, None);
+    state.playhead.time_secs = 0.5625;
+    apply(&mut state, &library, change(ClipChanges { reverse: true, ..part }));
+    check_time(&state, 0.1875, None);
+}
+
+fn check_time(state: &ViewerState, time_secs: f64, range: Option<TimeRange>) {
+    let numbers = |time_secs: f64, range: Option<TimeRange>| {
+        [time_secs].into_iter().chain(range.into_iter().flat_map(|range| [range.start_secs, range.end_secs]))
+    };
+    let found = numbers(state.playhead.time_secs, state.playhead.range);
+    let expected: Vec<f64> = numbers(time_secs, range).collect();
+    let is_near = found.clone().zip(&expected).all(|(found, expected)| (found - expected).abs() < 1e-9);
+    assert!(
+        is_near && found.clone().count() == expected.len(),
+        "{:?} instead of {expected:?}",
+        found.collect::<Vec<_>>()
+    );
 }
 
 #[test]
@@ -182,17 +216,18 @@ fn undoing_a_change_of_a_clip_restores_pose_and_range() {
         history.apply(&mut state, &library, Command::ChangeClip { clip: 0, changes: Box::new(changes) });
         history.end_gesture();
     }
-    assert_eq!((state.playhead.time_secs, state.playhead.range), (0.25, None));
+    let end_secs = 0.5 * f64::from(library.active().expect("a model").asset.clips[0].duration_secs());
+    check_time(&state, end_secs - 0.25, range(end_secs - 0.375, end_secs - 0.125));
     let expected =
         [(undo as Step, 0.25, range(0.125, 0.375)), (undo, 0.5, range(0.25, 0.75)), (redo, 0.25, range(0.125, 0.375))];
     for (step, time_secs, range) in expected {
         assert!(step(&mut history, &mut state, &mut library));
-        assert_eq!((state.playhead.time_secs, state.playhead.range), (time_secs, range));
+        check_time(&state, time_secs, range);
     }
     // A range that was set meanwhile stretches as well.
     apply(&mut state, &library, Command::SetRange(range(0.0, 0.25)));
     undo(&mut history, &mut state, &mut library);
-    assert_eq!((state.playhead.time_secs, state.playhead.range), (0.5, range(0.0, 0.5)));
+    check_time(&state, 0.5, range(0.0, 0.5));
 }
 
 #[test]
