@@ -95,6 +95,23 @@ fn a_dialog_has_its_title_as_its_name() {
 }
 
 #[test]
+fn a_button_says_whether_its_menu_is_open() {
+    let mut harness = motion_bench(WIDE, &[]);
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    for is_open in [false, true, false] {
+        harness.run();
+        let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+        let entries = entries(&update);
+        for (name, is_expanded) in [(text::EXPORT, is_open), (text::MENU, false)] {
+            let button = entries.iter().find(|entry| entry["name"] == name).expect("a button");
+            assert_eq!((&button["role"], &button["expanded"]), (&"button".into(), &is_expanded.into()), "{name}");
+        }
+        press(&mut harness, text::EXPORT);
+    }
+}
+
+#[test]
 fn the_edges_that_resize_panels_have_names_of_their_own() {
     let mut harness = motion_bench(WIDE, &[]);
     let update = tree_of(&mut harness);

@@ -306,7 +306,7 @@ fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
     response.widget_info(|| WidgetInfo::labeled(role, true, &heading.label));
     // A row of the table, so that headings don't divide it. No joint has a number as large.
     accessible::cell(&response, u32::MAX as usize - heading.part as usize);
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_expanded(open));
+    accessible::set_expanded(&response, open);
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         lit(ui, rect, &response);

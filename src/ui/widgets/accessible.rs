@@ -57,6 +57,11 @@ pub fn tree_item(ui: &Ui, response: &Response, depth: usize, is_expanded: Option
     }
 }
 
+/// Tells whether what a button opens is open.
+pub fn set_expanded(button: &Response, is_open: bool) {
+    button.ctx.accesskit_node_builder(button.id, |node| node.set_expanded(is_open));
+}
+
 /// Makes a control a cell of a table; `row` identifies its row.
 pub fn cell(response: &Response, row: usize) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_row_index(row));

@@ -5,12 +5,13 @@ use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{ROW_HEIGHT, follow_focus, grouped, row_height, text_width};
 use crate::ui::text;
-use crate::ui::widgets::style;
+use crate::ui::widgets::{accessible, style};
 
 /// A button with a menu. Moving the focus to a control outside closes the menu; Esc and an entry pressed by key also give the focus
 /// back to the button.
 pub fn menu_button(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let (button, menu) = egui::containers::menu::MenuButton::new(label).ui(ui, contents);
+    accessible::set_expanded(&button, menu.is_some());
     keep_menu_focus(ui, &button, menu.is_some());
     button
 }
