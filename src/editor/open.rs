@@ -9,7 +9,7 @@ use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, 
 use crate::asset::{Asset, Warning};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::state::{
-    ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
+    ClipChoice, Command, Edits, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
 };
 
 /// Data kept with a loaded model.
@@ -339,9 +339,13 @@ impl Editor {
         (id, true)
     }
 
-    /// Evicts models to make room, with everything kept about them; returns their names.
+    /// Evicts models to make room, with everything kept about them, those that the user has edited last; returns their names.
     fn evict(&mut self) -> Vec<String> {
-        let evicted = self.library.trim();
+        let is_edited = |id| {
+            let view = self.shelf.get(&id).and_then(|shelved: &Shelved| shelved.last_view.as_ref());
+            view.is_some_and(|view| view.state.edits != Edits::default() || !view.state.retarget.map.is_empty())
+        };
+        let evicted = self.library.trim(is_edited);
         let library: &Library = &self.library;
         self.shelf.retain(|id, _| library.get(*id).is_some());
         self.history.forget_gone(library);
@@ -554,7 +558,7 @@ impl Opened {
             others => text += &format!(" {} more are in the model list.", others.len()),
         }
         if !self.evicted.is_empty() {
-            text += &format!(" Closed {} to make room.", self.evicted.join(", "));
+            text += &format!(" Closed {} to make room, which undo doesn't take back.", self.evicted.join(", "));
         }
         if self.lacks_joints {
             text += " Open its .skel and .attach as well to add its joints.";

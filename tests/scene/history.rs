@@ -197,7 +197,7 @@ fn closed_models_are_evicted_first() {
     for index in 1..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
-    assert!(library.trim().is_empty(), "evicting closed models is not reported");
+    assert!(library.trim(|_| false).is_empty(), "evicting closed models is not reported");
     assert!(library.get(first).is_none() && library.get(second).is_some());
     history.forget_gone(&library);
     assert!(!undo(&mut history, &mut state, &mut library), "the steps to lists with it are dropped");
@@ -210,12 +210,21 @@ fn the_oldest_model_is_evicted_but_never_the_active_one() {
     for index in library.models().len()..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
-    assert!(library.trim().is_empty());
-    let newest = library.add(Model::new("one-more.glb".to_owned(), asset, Vec::new()));
+    assert!(library.trim(|_| false).is_empty());
+    let newest = library.add(Model::new("one-more.glb".to_owned(), asset.clone(), Vec::new()));
     library.show(first);
-    let gone: Vec<ModelId> = library.trim().iter().map(|model| model.id).collect();
+    let gone: Vec<ModelId> = library.trim(|_| false).iter().map(|model| model.id).collect();
     assert_eq!((gone, library.models().len()), (vec![second], Library::MAX_MODELS));
     assert_eq!(library.active().map(|model| model.id), Some(first));
+    // One that is precious gives way only where all are.
+    let inactive: Vec<ModelId> = library.models().iter().map(|model| model.id).filter(|id| *id != first).collect();
+    for (is_precious, evicted) in
+        [(&(|id| id == inactive[0]) as &dyn Fn(ModelId) -> bool, inactive[1]), (&|_| true, inactive[0])]
+    {
+        library.add(Model::new("another.glb".to_owned(), asset.clone(), Vec::new()));
+        library.show(first);
+        assert_eq!(library.trim(is_precious).iter().map(|model| model.id).collect::<Vec<_>>(), [evicted]);
+    }
     library.remove(first);
     assert!(library.get(first).is_some(), "the active model stays");
     library.remove(newest);

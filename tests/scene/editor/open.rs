@@ -8,7 +8,7 @@ use gaitway::editor::{AboutLink, ClipFormat, Contents, Editor, Event, Export, Mo
 use gaitway::files::{Held, open_view};
 use gaitway::formats::FileSet;
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Model, Motion};
+use gaitway::library::{Library, Model, Motion};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, active_clip,
@@ -374,6 +374,26 @@ fn what_a_link_says_of_a_motion_that_never_came_is_not_kept_for_another_model() 
     assert!(to_link(editor.state()).contains("feet=plant"));
     open(&mut editor, "sample:walker");
     assert!(!to_link(editor.state()).contains("feet="), "{}", to_link(editor.state()));
+}
+
+#[test]
+fn the_last_models_to_give_way_are_those_that_the_user_has_edited() {
+    let mut editor = editor("sample:walker");
+    editor.apply(Command::SetPose { joint: 9, degrees: Some([90.0, 0.0, 0.0]) });
+    let asset = samples::load("walker").expect("is generated").asset;
+    let mut open = |index: usize| {
+        let model = Model::new(format!("{index}.glb"), asset.clone(), Vec::new());
+        let contents = Contents { models: vec![model.into()], ..Contents::default() };
+        editor.open(contents, None, &mut any).expect("fits");
+        notices(&editor.take_events()).join("")
+    };
+    for index in 1..Library::MAX_MODELS {
+        assert_eq!(open(index), format!("Opened {index}.glb."));
+    }
+    assert_eq!(open(9), "Opened 9.glb. Closed 1.glb to make room, which undo doesn't take back.");
+    let walker = id_of(&editor, "sample:walker");
+    editor.activate(walker, &mut any).expect("fits");
+    assert_eq!(editor.state().edits.pose[&9], [90.0, 0.0, 0.0]);
 }
 
 /// Before the model that it should move is there.

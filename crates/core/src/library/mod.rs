@@ -127,18 +127,22 @@ impl Library {
         }
     }
 
-    /// Evicts closed models, then the oldest others, down to [`Library::MAX_MODELS`]. Returns the evicted models that
-    /// were listed.
-    pub fn trim(&mut self) -> Vec<Model> {
+    /// Evicts closed models, then the oldest others, down to [`Library::MAX_MODELS`]; those that are `precious` come last.
+    /// Returns the evicted models that were listed.
+    pub fn trim(&mut self, precious: impl Fn(ModelId) -> bool) -> Vec<Model> {
         let spare = (self.models.len() + self.closed.len()).saturating_sub(Self::MAX_MODELS);
         self.closed.drain(..spare.min(self.closed.len()));
         let mut evicted = Vec::new();
         while self.models.len() > Self::MAX_MODELS
-            && let Some(oldest) = self.models.iter().position(|model| model.id != self.active)
+            && let Some(oldest) = self.oldest_inactive(&precious).or_else(|| self.oldest_inactive(|_| false))
         {
             evicted.push(self.models.remove(oldest));
         }
         evicted
+    }
+
+    fn oldest_inactive(&self, is_left_out: impl Fn(ModelId) -> bool) -> Option<usize> {
+        self.models.iter().position(|model| model.id != self.active && !is_left_out(model.id))
     }
 
     /// Activates a model, listing it again if it was closed; false if it is not in the library.
