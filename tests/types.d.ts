@@ -51,6 +51,8 @@ declare global {
     reference: import("./reference/page.mjs").Reference;
     /** Files of benches/web. */
     fetched: Uint8Array[];
+    /** When an animation frame of the page was last done. */
+    drawnMs: number;
     /** Tasks of 50 ms and more, noted by benches/web/first.mjs. */
     longTasks: PerformanceEntry[];
     /** Changes counted by page.test.mjs. */

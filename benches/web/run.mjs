@@ -183,6 +183,14 @@ async function measureLoads() {
 async function loadPages() {
   const pages = [await three(), await gaitway("play=0")];
   for (const page of pages) await page.setViewportSize({ width: 320, height: 240 });
+  await pages[1].evaluate(() => {
+    const request = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (callback) =>
+      request((time) => {
+        callback(time);
+        window.drawnMs = performance.now();
+      });
+  });
   return pages;
 }
 
@@ -205,8 +213,13 @@ async function measureLoad([theirs, ours], name, figures) {
       .then((response) => response.arrayBuffer())
       .then(async (bytes) => {
         const start = performance.now();
-        await (work === "load" ? window.gaitway.benchLoad?.(bytes) : window.gaitway.open({ "model.glb": bytes }));
-        return performance.now() - start;
+        if (work === "load") {
+          await window.gaitway.benchLoad?.(bytes);
+          return performance.now() - start;
+        }
+        // Returns after its frame, with the document that describes the model.
+        await window.gaitway.open({ "model.glb": bytes });
+        return window.drawnMs - start;
       });
   await theirs.bringToFront();
   figures.parse.push(await theirs.evaluate((url) => window.bench.load(url), url));
