@@ -11,7 +11,7 @@ use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
 use crate::state::{
-    ViewerState, active_clip, active_map, clip_with_manual_values, has_layers, looks_at_camera, manual_values,
+    ViewerState, active_clip, active_map, clip_with_manual_values, has_layers, has_manual_values, looks_at_camera,
     pinned_clip, stacked_layers, written_skeleton,
 };
 
@@ -77,7 +77,7 @@ pub fn derived_clip(model: &Model, state: &ViewerState) -> Option<usize> {
 fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
     model.is_derived(clip)
         || has_layers(model, state)
-        || !manual_values(model, state).is_empty()
+        || has_manual_values(model, state)
         || !state.edits.pins.is_empty()
 }
 
@@ -198,9 +198,8 @@ impl Editor {
         let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
         let name = model.clip_name(clip);
         let mut baked = BakedClip { clip: None, remarks: Vec::new() };
-        let active = active_clip(model, &self.state);
-        let is_cut = active == Some(clip) && self.state.playhead.range.is_some();
-        baked.remarks.extend(is_cut.then_some("The file has the whole clip; “Trim to range” cuts it."));
+        let has_range = self.state.playhead.range.is_some() && active_clip(model, &self.state) == Some(clip);
+        baked.remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it."));
         let Some(clip) = model.clip(clip) else { return Ok(baked) };
         if !below.is_empty() || !over.is_empty() {
             let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();

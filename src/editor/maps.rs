@@ -113,25 +113,20 @@ impl Editor {
             return Err(problem.to_owned());
         }
         let playing = active_clip(model, &self.state).and_then(|clip| Some(model.borrowed(clip)?.motion));
-        let (mut fitting, mut other) = (Vec::new(), None);
+        let (mut fitting, mut misfits) = (Vec::new(), Vec::new());
         for (index, motion) in self.library.motions().iter().enumerate() {
             match map.to_joint_map(&model.asset, &motion.asset) {
                 Ok(map) => fitting.push((index, short_name(&motion.source), map)),
-                Err(problem) if other.is_none() || playing == Some(index) => other = Some((index, problem)),
-                Err(_) => {}
+                Err(problem) => misfits.push((index, MapProblem::NoFit { motion: motion.source.clone(), problem })),
             }
         }
-        let problem = other.map(|(index, problem)| {
-            let motion = self.library.motions()[index].source.clone();
-            (index, self.map_problem(&MapProblem::NoFit { motion, problem }))
+        let of_playing = misfits.iter().find(|(index, _)| Some(*index) == playing);
+        if let Some((_, problem)) = of_playing.or(misfits.first()).filter(|_| fitting.is_empty()) {
+            return Err(self.map_problem(problem));
+        }
+        let about_playing = of_playing.map_or_else(String::new, |(_, problem)| {
+            format!(" The motion that plays keeps its own. {}", self.map_problem(problem))
         });
-        let about_playing = match problem {
-            Some((_, problem)) if fitting.is_empty() => return Err(problem),
-            Some((index, problem)) if playing == Some(index) => {
-                format!(" The motion that plays keeps its own. {problem}")
-            }
-            _ => String::new(),
-        };
         self.end_gesture();
         let steps = self.undo_steps();
         let mut names = Vec::new();

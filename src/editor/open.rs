@@ -430,13 +430,8 @@ impl Editor {
         let last = self.shelf.get(&id).and_then(|shelved| shelved.last_view.clone());
         let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
         let is_first_time = last.is_none();
-        let mut follow = self.state.camera_options.follow;
         let (view, mut motions, playing) = match last {
-            Some(last) => {
-                // Where an orbit camera's target is depends on it.
-                follow = last.state.camera_options.follow;
-                (last.state, last.loaded.motions, last.playing)
-            }
+            Some(last) => (last.state, last.loaded.motions, last.playing),
             None => (ViewerState::of_model(origin.clone()), Vec::new(), current.playing),
         };
         // Motions loaded since then take precedence.
@@ -445,6 +440,8 @@ impl Editor {
         motions.truncate(Library::MAX_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
+        // Where an orbit camera's target is depends on it.
+        let follow = if is_first_time { &old } else { &view }.camera_options.follow;
         self.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
         self.state.camera_options.follow = follow;
         self.library.set_motions(motions);

@@ -35,27 +35,32 @@ pub(super) fn pose_joints(model: &Model, state: &ViewerState, pose: &mut Pose) {
     }
 }
 
-/// Returns what is set manually, without what the model lacks.
-pub fn manual_values(model: &Model, state: &ViewerState) -> HeldValues {
-    let weights = model.asset.skeleton.rest().morph_weights.len();
-    let expressions = state.edits.expressions.iter();
-    HeldValues {
-        rotations: rotations(model, state).collect(),
-        morph_weights: state
-            .edits
-            .morph
-            .iter()
-            .map(|(&index, &weight)| (index, weight))
-            .filter(|&(index, _)| index < weights)
-            .collect(),
-        expressions: expressions
-            .filter_map(|(name, &weight)| Some((model.asset.avatar.expression(name)?, weight)))
-            .collect(),
-    }
+/// The morph weights that are set manually and that the model has.
+fn morph_weights(model: &Model, state: &ViewerState) -> impl Iterator<Item = (usize, f32)> {
+    let count = model.asset.skeleton.rest().morph_weights.len();
+    state.edits.morph.range(..count).map(|(&index, &weight)| (index, weight))
+}
+
+/// The same for weights of expressions.
+fn expressions(model: &Model, state: &ViewerState) -> impl Iterator<Item = (usize, f32)> {
+    state.edits.expressions.iter().filter_map(|(name, &weight)| Some((model.asset.avatar.expression(name)?, weight)))
+}
+
+/// Whether anything that the model has is set manually.
+pub fn has_manual_values(model: &Model, state: &ViewerState) -> bool {
+    rotations(model, state).next().is_some()
+        || morph_weights(model, state).next().is_some()
+        || expressions(model, state).next().is_some()
 }
 
 /// Returns a clip with what is set manually in it; `None` if that is nothing.
 pub fn clip_with_manual_values(model: &Model, state: &ViewerState, clip: &Clip) -> Option<Clip> {
-    let held = manual_values(model, state);
-    (!held.is_empty()).then(|| hold_values(&model.asset.skeleton, clip, &held))
+    has_manual_values(model, state).then(|| {
+        let held = HeldValues {
+            rotations: rotations(model, state).collect(),
+            morph_weights: morph_weights(model, state).collect(),
+            expressions: expressions(model, state).collect(),
+        };
+        hold_values(&model.asset.skeleton, clip, &held)
+    })
 }

@@ -50,7 +50,7 @@ pub use link::{
     link_without_missing, linked_files, most_similar_link, public_link, shown_files,
 };
 pub use loop_frames::LoopFrames;
-pub use manual::{clip_with_manual_values, manual_degrees, manual_rotation, manual_values};
+pub use manual::{clip_with_manual_values, has_manual_values, manual_degrees, manual_rotation};
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};

@@ -133,16 +133,13 @@ impl Library {
         let spare = (self.models.len() + self.closed.len()).saturating_sub(Self::MAX_MODELS);
         self.closed.drain(..spare.min(self.closed.len()));
         let mut evicted = Vec::new();
-        while self.models.len() > Self::MAX_MODELS
-            && let Some(oldest) = self.oldest_inactive(&precious).or_else(|| self.oldest_inactive(|_| false))
-        {
-            evicted.push(self.models.remove(oldest));
+        while self.models.len() > Self::MAX_MODELS {
+            let inactive = self.models.iter().enumerate().filter(|(_, model)| model.id != self.active);
+            // Of several, the first.
+            let Some((at, _)) = inactive.min_by_key(|(_, model)| precious(model.id)) else { break };
+            evicted.push(self.models.remove(at));
         }
         evicted
-    }
-
-    fn oldest_inactive(&self, is_left_out: impl Fn(ModelId) -> bool) -> Option<usize> {
-        self.models.iter().position(|model| model.id != self.active && !is_left_out(model.id))
     }
 
     /// Activates a model, listing it again if it was closed; false if it is not in the library.

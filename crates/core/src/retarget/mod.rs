@@ -3,9 +3,9 @@
 //!
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
-//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or
-//! holds parts of it still, `stack` puts others over it, and `pins` holds hands and feet. `pose`, `keys`, `math`, `times`, `limit`
-//! and `two_bones` are shared.
+//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds
+//! parts of it still, `stack` puts others over it, and `pins` holds hands and feet. `pose`, `keys`, `math`, `times`, `limit` and
+//! `two_bones` are shared.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};

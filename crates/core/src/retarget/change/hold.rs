@@ -3,10 +3,10 @@
 use glam::Quat;
 
 use super::track::{Target, Track, Tracks};
-use crate::anim::{Clip, Interpolation, JointIndex, PropertyTarget, Skeleton};
+use crate::anim::{Clip, JointIndex, PropertyTarget, Skeleton};
 
 /// Values that a clip has at any time, instead of its keys.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct HeldValues {
     /// Local rotations of joints.
     pub rotations: Vec<(JointIndex, Quat)>,
@@ -16,21 +16,14 @@ pub struct HeldValues {
     pub expressions: Vec<(usize, f32)>,
 }
 
-impl HeldValues {
-    /// Whether the clip stays as it is.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// Returns a clip, as long as the given one, in which some values hold still. Other channels keep their keys.
 pub fn hold_values(skeleton: &Skeleton, clip: &Clip, held: &HeldValues) -> Clip {
     let mut tracks = Tracks::of(clip);
     for &(joint, rotation) in &held.rotations {
-        tracks.replace(constant(Target::Rotation(joint), rotation.to_array().to_vec()));
+        tracks.replace(Track::constant(Target::Rotation(joint), &rotation.to_array()));
     }
     for &(index, weight) in &held.expressions {
-        tracks.replace(constant(Target::Property(PropertyTarget::Expression(index)), vec![weight]));
+        tracks.replace(Track::constant(Target::Property(PropertyTarget::Expression(index)), &[weight]));
     }
     for &(index, weight) in &held.morph_weights {
         hold_morph_weight(&mut tracks, skeleton, index, weight);
@@ -44,16 +37,10 @@ fn hold_morph_weight(tracks: &mut Tracks, skeleton: &Skeleton, index: usize, wei
     let range = skeleton.morph_range(joint);
     let target = index - range.start;
     tracks.tracks.retain(|track| track.target != Target::Property(PropertyTarget::MorphWeight(joint, target)));
-    if tracks.find(Target::Weights(joint)).is_none() {
-        tracks.tracks.push(constant(Target::Weights(joint), skeleton.rest().morph_weights[range.clone()].to_vec()));
-    }
+    tracks.ensure(Target::Weights(joint), &skeleton.rest().morph_weights[range.clone()]);
     let mut weights = vec![0.0; range.len()];
     weights[target] = weight;
     for track in tracks.tracks.iter_mut().filter(|track| track.target == Target::Weights(joint)) {
         track.map(|numbers| numbers[target] = 0.0, &weights);
     }
-}
-
-fn constant(target: Target, value: Vec<f32>) -> Track {
-    Track { target, interpolation: Interpolation::Linear, times: vec![0.0], width: value.len(), values: value }
 }

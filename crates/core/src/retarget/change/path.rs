@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 
-use super::track::{Target, Track, Tracks};
-use crate::anim::{Interpolation, JointIndex, Skeleton};
+use super::track::{Target, Tracks};
+use crate::anim::{JointIndex, Skeleton};
 use crate::asset::Asset;
 use crate::retarget::math::unit;
 use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, is_within, parent_frame};
@@ -76,8 +76,8 @@ pub fn place(tracks: &mut Tracks, asset: &Asset, offset: [f64; 2], radians: f64)
         let above_turn = unit(above.to_scale_rotation_translation().1);
         let local_turn = above_turn.inverse() * turn * above_turn;
         let rest = skeleton.rest().local(joint);
-        ensure(tracks, Target::Translation(joint), &rest.translation.to_array());
-        ensure(tracks, Target::Rotation(joint), &rest.rotation.to_array());
+        tracks.ensure(Target::Translation(joint), &rest.translation.to_array());
+        tracks.ensure(Target::Rotation(joint), &rest.rotation.to_array());
         for track in &mut tracks.tracks {
             if track.target == Target::Translation(joint) {
                 let affine = local.translation.as_vec3().to_array();
@@ -102,12 +102,4 @@ fn start(tracks: &Tracks, asset: &Asset) -> Option<DVec3> {
     let clip = tracks.clone().build("", skeleton);
     let locals = clip_locals(skeleton, &clip, 0.0, &mut Scratch::default());
     Some(WorldPose::new(skeleton, locals, DQuat::IDENTITY).position(joint))
-}
-
-/// Adds a track that holds the rest value, unless there is one for this target.
-fn ensure(tracks: &mut Tracks, target: Target, rest: &[f32]) {
-    if tracks.find(target).is_none() {
-        let (interpolation, times) = (Interpolation::Step, vec![0.0]);
-        tracks.tracks.push(Track { target, interpolation, times, width: rest.len(), values: rest.to_vec() });
-    }
 }

@@ -103,12 +103,24 @@ impl Tracks {
         self.tracks.push(track);
     }
 
+    /// Adds a track that holds the rest value, unless there is one for this target.
+    pub fn ensure(&mut self, target: Target, rest: &[f32]) {
+        if self.find(target).is_none() {
+            self.tracks.push(Track::constant(target, rest));
+        }
+    }
+
     pub fn find(&self, target: Target) -> Option<&Track> {
         self.tracks.iter().find(|track| track.target == target)
     }
 }
 
 impl Track {
+    pub fn constant(target: Target, value: &[f32]) -> Self {
+        let (interpolation, times) = (Interpolation::Linear, vec![0.0]);
+        Self { target, interpolation, times, width: value.len(), values: value.to_vec() }
+    }
+
     pub fn is_spline(&self) -> bool {
         self.interpolation == Interpolation::CubicSpline
     }
