@@ -51,8 +51,10 @@ declare global {
     reference: import("./reference/page.mjs").Reference;
     /** Files of benches/web. */
     fetched: Uint8Array[];
-    /** When an animation frame of the page was last done. */
+    /** When the page's last frame was done. */
     drawnMs: number;
+    /** How many files benches/web has opened. */
+    opened: number;
     /** Tasks of 50 ms and more, noted by benches/web/first.mjs. */
     longTasks: PerformanceEntry[];
     /** Changes counted by page.test.mjs. */

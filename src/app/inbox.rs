@@ -22,9 +22,8 @@ pub enum Message {
         state: Option<Box<ViewerState>>,
         /// Whether `state` is a change of the current state rather than a link's.
         is_change: bool,
-        /// Answered with a list, the active model's inspect document and the problems that the shell shows, once the viewport shows
-        /// the model, or with the error.
-        reply: Option<Reply<serde_json::Value>>,
+        /// Answered with the problems that the shell shows, once the viewport shows the model, or with the error.
+        reply: Option<Reply<Vec<String>>>,
     },
     /// Nothing was opened; shows the message.
     OpenFailed(String),

@@ -11,7 +11,7 @@ use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Reply, ScriptCall, device};
 use crate::editor::{Admit, Contents, Editor, OpenedModel};
 use crate::files::{Role, set_largest_image, set_texture_formats};
-use crate::library::{Library, ModelId, Motion, inspect};
+use crate::library::{Library, ModelId, Motion};
 use crate::render::texture_formats;
 use crate::state::{Command, PageOptions, ViewerState, to_link};
 use crate::ui::{self, Output, Shown, UiAction, UiState};
@@ -185,8 +185,10 @@ impl App {
                 if let Err(error) = &opened {
                     self.panels.messages.fail_to_open(error, progress);
                 }
-                if let Some(reply) = reply {
-                    self.answer_opened(opened, reply);
+                match (opened, reply) {
+                    (Ok(problems), Some(reply)) => self.after_draw.push(Box::new(move || reply(Ok(problems)))),
+                    (Err(error), Some(reply)) => reply(Err(error)),
+                    (_, None) => {}
                 }
             }
             Message::OpenFailed(error) => {
@@ -204,17 +206,6 @@ impl App {
             Message::Validated(model, report) => self.end_validation(model, report),
             Message::Script(call) => self.script(call),
         }
-    }
-
-    fn answer_opened(&mut self, opened: Result<Vec<String>, String>, reply: Reply<serde_json::Value>) {
-        let problems = match opened {
-            Ok(problems) => problems,
-            Err(error) => return reply(Err(error)),
-        };
-        let sources = &self.editor.state().sources.model;
-        let document = self.editor.library().active().map(|model| inspect(model, sources)).unwrap_or_default();
-        let opened = serde_json::json!([document, problems]);
-        self.after_draw.push(Box::new(move || reply(Ok(opened))));
     }
 
     fn script(&mut self, call: ScriptCall) {

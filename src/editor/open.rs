@@ -324,11 +324,11 @@ impl Editor {
     fn add(&mut self, opened: OpenedModel) -> (ModelId, bool) {
         let OpenedModel { model, files } = opened;
         let is_same = |known: &&Model| {
-            let same_files = self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files);
+            let has_name = known.source == model.source && known.is_own == model.is_own;
             // Models not read from a file are identified by their asset; a sample is always the same.
-            let same_asset =
+            let has_asset =
                 files.is_some() || model.source.starts_with("sample:") || Arc::ptr_eq(&known.asset, &model.asset);
-            known.source == model.source && known.is_own == model.is_own && same_files && same_asset
+            has_name && has_asset && self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files)
         };
         if let Some(id) = self.library.models().iter().find(is_same).map(|known| known.id) {
             self.library.show(id);

@@ -183,9 +183,12 @@ impl<'a, S: Source> Reader<'a, S> {
             // First, since converted files may refer to more files. Others can be converted only with files that are
             // still missing.
             self.prepare().await?;
+            if self.bases.is_empty() {
+                return Ok(());
+            }
             let missing = missing_files(&self.files.set);
             let missing: Vec<String> = missing.into_iter().filter(|path| !tried.contains(path)).collect();
-            if missing.is_empty() || self.bases.is_empty() {
+            if missing.is_empty() {
                 return Ok(());
             }
             for path in &missing {

@@ -17,7 +17,7 @@ use crate::editor::{AboutLink, Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view, within};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
-use crate::library::{Environment, Model, ModelId, Motion};
+use crate::library::{Environment, Model, ModelId, Motion, inspect};
 use crate::samples;
 use crate::state::{
     EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
@@ -424,11 +424,24 @@ async fn show(
     if !shell_reports && !contents.problems.is_empty() {
         page.shell.warn(&contents.problems.join("\n"));
     }
-    let (promise, reply) = promise::<Value>(|opened| JsValue::from_str(&opened.to_string()));
+    let (promise, reply) =
+        promise::<Vec<String>>(|problems| problems.into_iter().map(JsValue::from).collect::<Array>().into());
     let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };
     page.inbox.send(opened);
-    let text = settled(promise).await?.as_string().unwrap_or_default();
-    let (document, problems) = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+    // In a task of its own: what was read may have taken this one long enough.
+    let shown = match within(pin!(settled(promise)), 0).await {
+        Ok(shown) => shown,
+        Err(shown) => {
+            page.draw();
+            shown.await
+        }
+    };
+    let problems = Array::from(&shown?).iter().filter_map(|problem| problem.as_string()).collect();
+    // After the frame: recognizing a skeleton takes milliseconds.
+    let document = with_app(page, |app| {
+        let sources = &app.state().sources.model;
+        app.library().active().map(|model| inspect(model, sources)).unwrap_or_default()
+    })?;
     Ok(Opened { kind, document, problems })
 }
 

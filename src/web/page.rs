@@ -25,6 +25,7 @@ use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missi
 /// A running instance on its canvas.
 pub(super) struct Page {
     pub runner: eframe::WebRunner,
+    frames: Frames,
     pub inbox: Inbox,
     pub context: egui::Context,
     pub shell: Shell,
@@ -44,6 +45,33 @@ pub(super) type First = (Contents, ViewerState, Vec<String>);
 pub(super) type Cancel = RefCell<Option<js_sys::Function>>;
 
 pub(super) type Rest = Pin<Box<dyn Future<Output = Result<First, String>>>>;
+
+/// Draws frames besides those of eframe's runner, which come with the browser's animation frames: what arrives between two of them
+/// would wait for up to 16 ms.
+struct Frames(web_sys::EventTarget);
+
+impl Frames {
+    const EVENT: &str = "frame";
+
+    fn new(runner: &eframe::WebRunner) -> Result<Self, JsValue> {
+        let target = web_sys::EventTarget::new()?;
+        // Only listeners get the runner that draws.
+        runner.add_event_listener(&target, Self::EVENT, |_: web_sys::Event, runner| {
+            runner.logic();
+            runner.paint();
+        })?;
+        Ok(Self(target))
+    }
+}
+
+impl Page {
+    /// Draws a frame now. Does nothing once the instance has stopped.
+    pub fn draw(&self) {
+        if let Ok(event) = web_sys::Event::new(Frames::EVENT) {
+            let _ = self.frames.0.dispatch_event(&event);
+        }
+    }
+}
 
 thread_local! {
     /// The shell may end an instance that is still starting.
@@ -133,9 +161,10 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         return Err("Gaitway was stopped".to_owned());
     }
     let (inbox, context) = started.borrow_mut().take().ok_or("Gaitway couldn't start")?;
+    let frames = Frames::new(&runner).map_err(|error| text_of(&error))?;
     let (loads, rest) = (Loads::default(), RefCell::default());
     let [cancel_load, cancel_rest] = [Cancel::default(), Cancel::default()];
-    let page = Page { runner, inbox, context, shell: shell.clone(), loads, cancel_load, rest, cancel_rest };
+    let page = Page { runner, frames, inbox, context, shell: shell.clone(), loads, cancel_load, rest, cancel_rest };
     PAGE.with_borrow_mut(|slot| *slot = Some(Rc::new(page)));
     Ok(())
 }

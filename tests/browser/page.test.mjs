@@ -200,6 +200,28 @@ for (const renderer of BACK_ENDS) {
       await whenShown(page, CESIUM_MAN_VERTICES);
     });
 
+    onSharedPage("shows what has been read without waiting for an animation frame", { data: true }, async (page) => {
+      const shown = await page.evaluate(async (url) => {
+        const bytes = await (await fetch(url)).arrayBuffer();
+        const request = window.requestAnimationFrame.bind(window);
+        /** @type {FrameRequestCallback[]} */
+        const held = [];
+        window.requestAnimationFrame = (callback) => held.push(callback);
+        // The app's own, requested before, comes first.
+        await new Promise(request);
+        try {
+          const opened = window.gaitway.open({ "Fox.glb": bytes }).then(() => true);
+          const isOpened = await Promise.race([opened, new Promise((done) => setTimeout(done, 5000, false))]);
+          return { isOpened, framesHeld: held.length, triangles: (await window.gaitway.stats()).triangles };
+        } finally {
+          window.requestAnimationFrame = request;
+          held.forEach(request);
+        }
+      }, site.data(FOX));
+      // Its triangles share no vertices.
+      assert.deepEqual(shown, { isOpened: true, framesHeld: 1, triangles: FOX_VERTICES / 3 });
+    });
+
     onSharedPage("shows the chosen clip at the chosen time", { data: true }, async (page) => {
       await open(page, site.data(FOX));
       const reference = await loadScene(dataFile(FOX));

@@ -1,6 +1,7 @@
 //! Finds the known vocabulary that a skeleton's names come from, and the slots it gives them.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use super::names::{Name, Side};
 use super::tree::Tree;
@@ -23,8 +24,8 @@ const MIN_SLOTS: usize = 8;
 pub(super) fn find(tree: &Tree) -> Option<Known> {
     let keys: Vec<[Key; 2]> = tree.names.iter().map(keys).collect();
     let mut best: Option<(i32, Known)> = None;
-    for vocabulary in VOCABULARIES {
-        let (known, misfits) = read(tree, &keys, vocabulary);
+    for (vocabulary, slots) in VOCABULARIES.iter().zip(&*SLOTS) {
+        let (known, misfits) = read(tree, &keys, vocabulary, slots);
         let slots = known.slots.values().filter(|slot| !is_finger(**slot)).count();
         if slots < MIN_SLOTS {
             continue;
@@ -45,18 +46,28 @@ fn keys(name: &Name) -> [Key; 2] {
     [name.key(), name.short_key()].map(|key| (name.side.is_some(), key))
 }
 
-/// Returns the vocabulary's slots, and how many of them do not fit the hierarchy.
-fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary) -> (Known, usize) {
-    let mut entries: [BTreeMap<Key, Slot>; 2] = Default::default();
+/// The slots of a vocabulary by both kinds of keys.
+type Slots = [BTreeMap<Key, Slot>; 2];
+
+/// Of each vocabulary. Reading their hundreds of names takes longer than looking up a skeleton's.
+static SLOTS: LazyLock<Vec<Slots>> = LazyLock::new(|| VOCABULARIES.iter().map(slots_of).collect());
+
+fn slots_of(vocabulary: &Vocabulary) -> Slots {
+    let mut slots = Slots::default();
     for &(name, slot) in vocabulary.body.iter().chain(&fingers(vocabulary)) {
-        for (entries, key) in entries.iter_mut().zip(keys(&Name::read(name))) {
-            entries.entry(key).or_insert(slot);
+        for (slots, key) in slots.iter_mut().zip(keys(&Name::read(name))) {
+            slots.entry(key).or_insert(slot);
         }
     }
+    slots
+}
+
+/// Returns the slots of the joints that the vocabulary names, and how many of them do not fit the hierarchy.
+fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary, [by_key, by_short_key]: &Slots) -> (Known, usize) {
     let mut candidates: BTreeMap<Slot, Vec<JointIndex>> = BTreeMap::new();
     for joint in tree.skeleton.joints().filter(|joint| tree.usable[joint.get()]) {
         let [exact, short] = &keys_of[joint.get()];
-        if let Some(&slot) = entries[0].get(exact).or_else(|| entries[1].get(short)) {
+        if let Some(&slot) = by_key.get(exact).or_else(|| by_short_key.get(short)) {
             let is_right = tree.names[joint.get()].side == Some(Side::Right);
             candidates.entry(if is_right { slot.mirrored() } else { slot }).or_default().push(joint);
         }
