@@ -18,7 +18,7 @@ const SOLDIER = "threejs/Soldier.glb";
 const LOADED = ["khronos/Fox/glTF-Binary/Fox.glb", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb", SOLDIER, XBOT, "threejs/RobotExpressive.glb"];
 const CROWDS = [1, 100, 1000];
 const ROUNDS = 9;
-/** More, since the wait for the next animation frame varies by 16 ms. */
+/** More, since what is measured takes only milliseconds. */
 const LOAD_ROUNDS = 25;
 /**
  * Character-frames per round: long enough for the clock, short enough that both sides run under the same conditions.

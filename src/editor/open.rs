@@ -324,11 +324,12 @@ impl Editor {
     fn add(&mut self, opened: OpenedModel) -> (ModelId, bool) {
         let OpenedModel { model, files } = opened;
         let is_same = |known: &&Model| {
-            let has_name = known.source == model.source && known.is_own == model.is_own;
             // Models not read from a file are identified by their asset; a sample is always the same.
-            let has_asset =
+            let same_asset =
                 files.is_some() || model.source.starts_with("sample:") || Arc::ptr_eq(&known.asset, &model.asset);
-            has_name && has_asset && self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files)
+            // Byte by byte, so only where everything else is the same.
+            let same_files = || self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files);
+            known.source == model.source && known.is_own == model.is_own && same_asset && same_files()
         };
         if let Some(id) = self.library.models().iter().find(is_same).map(|known| known.id) {
             self.library.show(id);

@@ -183,6 +183,7 @@ impl<'a, S: Source> Reader<'a, S> {
             // First, since converted files may refer to more files. Others can be converted only with files that are
             // still missing.
             self.prepare().await?;
+            // Nothing lies next to files in memory.
             if self.bases.is_empty() {
                 return Ok(());
             }

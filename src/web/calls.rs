@@ -40,7 +40,12 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
     let items = items_of(items).map_err(malformed)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
     let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await?;
-    Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
+    // After the frame: recognizing a skeleton takes milliseconds.
+    let document = with_app(&page, |app| {
+        let sources = &app.state().sources.model;
+        app.library().active().map(|model| inspect(model, sources)).unwrap_or_default()
+    });
+    Ok(json!({ "shown": opened.kind, "document": document.map_err(stopped)? }).to_string())
 }
 
 /// Opens a link, given the part after `#`, as far as it can be shown without the files that it waits for. Loads its files if they
@@ -310,8 +315,6 @@ enum Request {
 struct Opened {
     /// `model`, `motion`, `light` or `map`.
     kind: &'static str,
-    /// The inspect document.
-    document: Value,
     /// What could not be opened.
     problems: Vec<String>,
 }
@@ -428,21 +431,16 @@ async fn show(
         promise::<Vec<String>>(|problems| problems.into_iter().map(JsValue::from).collect::<Array>().into());
     let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };
     page.inbox.send(opened);
-    // In a task of its own: what was read may have taken this one long enough.
+    // In a task of its own, since reading may have taken this one long enough, unless an animation frame comes first.
     let shown = match within(pin!(settled(promise)), 0).await {
         Ok(shown) => shown,
         Err(shown) => {
-            page.draw();
+            page.frames.draw();
             shown.await
         }
     };
     let problems = Array::from(&shown?).iter().filter_map(|problem| problem.as_string()).collect();
-    // After the frame: recognizing a skeleton takes milliseconds.
-    let document = with_app(page, |app| {
-        let sources = &app.state().sources.model;
-        app.library().active().map(|model| inspect(model, sources)).unwrap_or_default()
-    })?;
-    Ok(Opened { kind, document, problems })
+    Ok(Opened { kind, problems })
 }
 
 /// Takes the array, so that the browser can free the files as soon as they are copied.

@@ -25,7 +25,7 @@ use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missi
 /// A running instance on its canvas.
 pub(super) struct Page {
     pub runner: eframe::WebRunner,
-    frames: Frames,
+    pub frames: Frames,
     pub inbox: Inbox,
     pub context: egui::Context,
     pub shell: Shell,
@@ -48,7 +48,7 @@ pub(super) type Rest = Pin<Box<dyn Future<Output = Result<First, String>>>>;
 
 /// Draws frames besides those of eframe's runner, which come with the browser's animation frames: what arrives between two of them
 /// would wait for up to 16 ms.
-struct Frames(web_sys::EventTarget);
+pub(super) struct Frames(web_sys::EventTarget);
 
 impl Frames {
     const EVENT: &str = "frame";
@@ -62,13 +62,11 @@ impl Frames {
         })?;
         Ok(Self(target))
     }
-}
 
-impl Page {
     /// Draws a frame now. Does nothing once the instance has stopped.
     pub fn draw(&self) {
-        if let Ok(event) = web_sys::Event::new(Frames::EVENT) {
-            let _ = self.frames.0.dispatch_event(&event);
+        if let Ok(event) = web_sys::Event::new(Self::EVENT) {
+            let _ = self.0.dispatch_event(&event);
         }
     }
 }

@@ -26,8 +26,8 @@ pub(super) fn find(tree: &Tree) -> Option<Known> {
     let mut best: Option<(i32, Known)> = None;
     for (vocabulary, slots) in VOCABULARIES.iter().zip(&*SLOTS) {
         let (known, misfits) = read(tree, &keys, vocabulary, slots);
-        let slots = known.slots.values().filter(|slot| !is_finger(**slot)).count();
-        if slots < MIN_SLOTS {
+        let found = known.slots.values().filter(|slot| !is_finger(**slot)).count();
+        if found < MIN_SLOTS {
             continue;
         }
         let score = known.slots.len() as i32 - 2 * misfits as i32;
