@@ -230,19 +230,30 @@ async function measureLoad([theirs, ours], name, figures) {
         await window.gaitway.open({ [`model-${window.opened}.glb`]: bytes });
         return window.drawnMs - start;
       });
-  await theirs.bringToFront();
+  // It may still be refining the previous file's picture, which three.js doesn't do, and would slow three.js's page down.
+  await untilStill(ours);
+  await bringToRest(theirs);
   figures.parse.push(await theirs.evaluate((url) => window.bench.load(url), url));
   if (figures.render) figures.render.push(await theirs.evaluate((url) => window.bench.open(url), url));
-  await ours.bringToFront();
-  // The previous file's picture may still be being refined, which three.js doesn't do.
-  await untilStill(ours);
+  await bringToRest(ours);
   figures.load.push(await ours.evaluate(timed, { url, work: "load" }));
   if (figures.open) figures.open.push(await ours.evaluate(timed, { url, work: "open" }));
   if (figures.images) figures.images.push(await ours.evaluate(decodeImages, url));
 }
 
 /**
- * Decodes the images of a GLB as both loaders have the browser do it, all at once, which no loader can beat. Runs in the page.
+ * Brings a page to the front and waits until the browser is done with it.
+ * @param {Page} page
+ */
+async function bringToRest(page) {
+  await page.bringToFront();
+  await page.evaluate(async () => {
+    for (let left = 20; left > 0; left--) await new Promise(requestAnimationFrame);
+  });
+}
+
+/**
+ * Decodes the images of a GLB as three.js's loader has the browser do it, all at once. Runs in the page.
  * @param {string} url
  */
 async function decodeImages(url) {
