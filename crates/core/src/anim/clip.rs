@@ -1,6 +1,6 @@
 //! Animation clips: keyframe channels for one skeleton, stored exactly as loaded. Sampling lives in `sampler`.
 
-use std::collections::HashMap;
+use foldhash::HashMap;
 
 use super::channel::{Channel, ChannelError, Interpolation, Keys};
 use super::property::{Properties, PropertyChannel, PropertyTarget, PropertyValues};

@@ -3,7 +3,7 @@
 //! Each joint keeps the extreme points of the vertices it influences, in joint space. A skinned vertex is a weighted
 //! mean of its positions by each joint, so the bounds of the kept points enclose it.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec3, Vec4};
 
 use super::Rig;
 use crate::anim::{JointIndex, model_from_joint};
@@ -162,43 +162,65 @@ fn morph_reach(primitives: &[Geometry], target: usize) -> Bounds {
     Bounds::of(deltas.flat_map(|target| target.positions.iter().copied()).chain([Vec3::ZERO]))
 }
 
-/// The extreme points along 13 axes, in both directions.
+/// The extreme points along 13 axes, in both directions; none before the first.
+#[derive(Debug, Clone, Default)]
+struct Support(Option<Extremes>);
+
 #[derive(Debug, Clone)]
-struct Support {
-    furthest: [(f32, Vec3); 26],
+struct Extremes {
+    least: [Vec4; 4],
+    most: [Vec4; 4],
+    /// The points at `least` and those at `most`.
+    points: [[Vec3; 16]; 2],
 }
 
-impl Default for Support {
-    fn default() -> Self {
-        Self { furthest: [(f32::NEG_INFINITY, Vec3::ZERO); 26] }
-    }
+/// How far a point lies along the 13 axes, the last of which is repeated.
+fn along_axes(Vec3 { x, y, z }: Vec3) -> [Vec4; 4] {
+    [
+        Vec4::new(x, y, z, x + y),
+        Vec4::new(x - y, y + z, y - z, z + x),
+        Vec4::new(z - x, x + y + z, x + y - z, x - y + z),
+        Vec4::splat(y + z - x),
+    ]
 }
 
 impl Support {
     fn add(&mut self, point: Vec3) {
-        if !point.is_finite() {
-            return;
-        }
-        let Vec3 { x, y, z } = point;
-        let along = [x, y, z, x + y, x - y, y + z, y - z, z + x, z - x, x + y + z, x + y - z, x - y + z, -x + y + z];
-        for (axis, along) in along.into_iter().enumerate() {
-            if along > self.furthest[2 * axis].0 {
-                self.furthest[2 * axis] = (along, point);
-            }
-            if -along > self.furthest[2 * axis + 1].0 {
-                self.furthest[2 * axis + 1] = (-along, point);
+        match &mut self.0 {
+            _ if !point.is_finite() => {}
+            Some(extremes) => extremes.add(point),
+            None => {
+                let along = along_axes(point);
+                self.0 = Some(Extremes { least: along, most: along, points: [[point; 16]; 2] });
             }
         }
     }
 
     fn points(&self) -> Vec<Vec3> {
-        let mut points: Vec<Vec3> = Vec::new();
-        for &(along, point) in &self.furthest {
-            if along > f32::NEG_INFINITY && !points.contains(&point) {
-                points.push(point);
+        let mut distinct: Vec<Vec3> = Vec::new();
+        for point in self.0.iter().flat_map(|extremes| extremes.points.as_flattened()) {
+            if !distinct.contains(point) {
+                distinct.push(*point);
             }
         }
-        points
+        distinct
+    }
+}
+
+impl Extremes {
+    /// Nearly every point lies between others, which four axes at a time find out sooner than one.
+    fn add(&mut self, point: Vec3) {
+        for (group, along) in along_axes(point).into_iter().enumerate() {
+            let (least, most) = (&mut self.least[group], &mut self.most[group]);
+            let beyond = [along.cmplt(*least), along.cmpgt(*most)];
+            if (beyond[0] | beyond[1]).any() {
+                (*least, *most) = (least.min(along), most.max(along));
+                for (points, beyond) in self.points.iter_mut().zip(beyond) {
+                    let lanes = points[4 * group..].iter_mut().zip(<[bool; 4]>::from(beyond));
+                    lanes.filter(|(_, is_beyond)| *is_beyond).for_each(|(kept, _)| *kept = point);
+                }
+            }
+        }
     }
 }
 

@@ -1,8 +1,7 @@
 //! MikkTSpace for triangle lists (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and his mikktspace.c): the
 //! tangents that normal maps are baked for. A test compares it with another implementation.
 
-use std::collections::HashMap;
-
+use foldhash::{HashMap, HashMapExt};
 use glam::{Vec2, Vec3, Vec4};
 
 /// No face or group.

@@ -1,7 +1,6 @@
 //! Smooth normals for primitives without normals.
 
-use std::collections::HashMap;
-
+use foldhash::{HashMap, HashMapExt};
 use glam::Vec3;
 
 use super::{Geometry, Topology};

@@ -1,8 +1,7 @@
 //! Builds one mesh from the statements of an .obj. A corner may pair a vertex with any texture coordinate and normal, so a
 //! vertex is copied where it has several of them; each group of faces has vertices of its own.
 
-use std::collections::HashMap;
-
+use foldhash::{HashMap, HashMapExt};
 use gaitway_polygon::Cutter;
 use glam::{Vec2, Vec3, Vec4};
 
