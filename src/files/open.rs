@@ -5,6 +5,7 @@ use super::sort::sort_noticing_images;
 use super::source::{Progress, Source};
 use super::{OpenError, Role, Sorted};
 use crate::editor::Contents;
+use crate::library::Derived;
 
 pub(super) async fn open_items<S: Source>(
     source: &S,
@@ -36,8 +37,9 @@ pub(super) async fn open_read<S: Source>(source: &S, read: FilesRead, role: Role
     for (name, mut asset) in std::mem::take(&mut sorted.models) {
         let started = decoding.iter().position(|(of, _)| *of == name).map(|at| decoding.swap_remove(at).1);
         let started = started.unwrap_or_else(|| source.start_decoding(&asset.images));
+        let derived = Derived::new(&asset);
         let images = source.finish_decoding(started, &mut asset).await;
-        models.push(origins.model(&set, name, asset, images));
+        models.push(origins.model(&set, name, asset, derived, images));
     }
     Ok(origins.contents(sorted, models, samples, role))
 }

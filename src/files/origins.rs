@@ -5,7 +5,7 @@ use super::{Role, Sorted};
 use crate::asset::Asset;
 use crate::editor::{Contents, ModelFiles, OpenedModel, container_of};
 use crate::formats::FileSet;
-use crate::library::{Environment, ImageData, Model, Motion};
+use crate::library::{Derived, Environment, ImageData, Model, Motion};
 use crate::state::MEMBER_SEPARATOR;
 
 #[derive(Debug, Default)]
@@ -28,9 +28,16 @@ impl Origins {
         }
     }
 
-    pub fn model(&self, set: &FileSet, name: String, asset: Asset, images: Vec<Option<ImageData>>) -> OpenedModel {
+    pub fn model(
+        &self,
+        set: &FileSet,
+        name: String,
+        asset: Asset,
+        derived: Derived,
+        images: Vec<Option<ImageData>>,
+    ) -> OpenedModel {
         let (origin, source) = self.origin_and_source(&name);
-        let mut model = Model::new(source, asset, images);
+        let mut model = Model::with_derived(source, asset, derived, images);
         model.origin = origin;
         OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
     }

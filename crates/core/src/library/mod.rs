@@ -13,7 +13,7 @@ pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expres
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;
-pub use model::{Finding, Model, ModelId};
+pub use model::{Derived, Finding, Model, ModelId};
 pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
 

@@ -43,11 +43,29 @@ pub struct Model {
     /// Changed clips and their changes, by index among all clips.
     changed: BTreeMap<usize, (ClipChanges, ChangedClip)>,
     clip_titles: Vec<String>,
-    recognized: OnceLock<(Humanoid, Recognized)>,
+    slots: Humanoid,
+    recognized: Recognized,
     findings: OnceLock<Vec<Finding>>,
     rig: Rig,
     extent: Extent,
     swept: Mutex<BTreeMap<SweptKey, Bounds>>,
+}
+
+/// What a model derives from an asset whatever its images are: their decoding needn't be awaited for it.
+#[derive(Debug)]
+pub struct Derived {
+    rig: Rig,
+    extent: Extent,
+    recognized: Recognized,
+}
+
+impl Derived {
+    /// Examines an asset.
+    pub fn new(asset: &Asset) -> Self {
+        let rig = Rig::new(asset);
+        let extent = Extent::new(asset, &rig);
+        Self { rig, extent, recognized: recognize(asset) }
+    }
 }
 
 /// A warning of a reader or a lint.
@@ -84,9 +102,20 @@ impl Model {
     /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
         let asset = asset.into();
+        let derived = Derived::new(&asset);
+        Self::with_derived(source, asset, derived, images)
+    }
+
+    /// Like [`Self::new`], with what has already been derived from the same asset.
+    pub fn with_derived(
+        source: String,
+        asset: impl Into<Arc<Asset>>,
+        derived: Derived,
+        images: Vec<Option<ImageData>>,
+    ) -> Self {
+        let asset = asset.into();
         let clip_titles = unique_titles(&source, &asset.clips, &[], &[]);
-        let rig = Rig::new(&asset);
-        let extent = Extent::new(&asset, &rig);
+        let Derived { rig, extent, recognized } = derived;
         Self {
             id: ModelId::default(),
             origin: source.clone(),
@@ -100,7 +129,8 @@ impl Model {
             clips_revision: 0,
             changed: BTreeMap::new(),
             clip_titles,
-            recognized: OnceLock::new(),
+            slots: recognized.humanoid(),
+            recognized,
             findings: OnceLock::new(),
             rig,
             extent,
@@ -283,9 +313,9 @@ impl Model {
         })
     }
 
-    /// The asset with the humanoid slots of its joints, recognized on first use.
+    /// The asset with the humanoid slots of its joints.
     pub fn body(&self) -> Body<'_> {
-        Body { asset: &self.asset, slots: &self.recognized().0 }
+        Body { asset: &self.asset, slots: &self.slots }
     }
 
     /// GPU memory of the textures in bytes.
@@ -295,12 +325,12 @@ impl Model {
 
     /// Facing direction of a recognized body at rest, in the file's axes.
     pub fn forward(&self) -> Option<Vec3> {
-        self.recognized().1.facing.forward
+        self.recognized.facing.forward
     }
 
-    /// What was recognized in the asset, on first use.
+    /// What was recognized in the asset.
     pub fn recognition(&self) -> &Recognized {
-        &self.recognized().1
+        &self.recognized
     }
 
     /// Returns an empty model that stands in for one that isn't available yet. Its name is `source` without a leading `file:`.
@@ -331,14 +361,7 @@ impl Model {
     /// Whether there is a skeleton that a motion could move: a skin, animated nodes, a recognized body, or no mesh at all.
     pub fn has_skeleton(&self) -> bool {
         let has_real = self.asset.skeleton.joints().any(|joint| self.rig.is_real(joint));
-        has_real || !self.recognized().0.0.is_empty()
-    }
-
-    fn recognized(&self) -> &(Humanoid, Recognized) {
-        self.recognized.get_or_init(|| {
-            let found = recognize(&self.asset);
-            (found.humanoid(), found)
-        })
+        has_real || !self.slots.0.is_empty()
     }
 
     /// Display names, one per clip, non-empty and unique.
