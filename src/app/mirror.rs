@@ -12,6 +12,8 @@ use serde_json::{Map, Value, json};
 
 /// Seconds between two trees while the panels change without input, such as during playback.
 const PERIOD_SECS: f64 = 0.25;
+/// Minimum seconds from a change without input, such as a newly opened model, which a tree would delay.
+const SOON_SECS: f64 = 0.05;
 /// Seconds until the first tree, which would otherwise delay the first picture.
 const FIRST_SECS: f64 = 1.0;
 
@@ -24,14 +26,16 @@ pub struct Mirror {
     events: Vec<Event>,
     /// The mirror has the focus.
     pub has_focus: bool,
-    /// When the next tree is due, in egui's time.
+    /// When the last tree was built, in egui's time.
+    last_secs: Option<f64>,
+    /// When the next one is due; `None` until a frame may have changed something.
     due_secs: Option<f64>,
 }
 
 impl Mirror {
     /// Returns a mirror that passes its lists to `show`.
     pub fn new(show: fn(&str)) -> Self {
-        Self { show, shown: String::new(), events: Vec::new(), has_focus: false, due_secs: None }
+        Self { show, shown: String::new(), events: Vec::new(), has_focus: false, last_secs: None, due_secs: None }
     }
 
     /// Queues a user's action on an entry: `focus`, `blur`, `click`, `more` or `less` (by one step), or `set` with the new value as
@@ -112,9 +116,10 @@ impl Plugin for Mirror {
             input.events.retain(|event| !matches!(event, Event::WindowFocused(false)));
         }
         let now_secs = input.time.unwrap_or_default();
-        let due_secs = *self.due_secs.get_or_insert(now_secs + FIRST_SECS);
+        let next_secs = self.last_secs.map_or(now_secs + FIRST_SECS, |last_secs| last_secs + PERIOD_SECS);
+        let due_secs = *self.due_secs.get_or_insert(next_secs.max(now_secs + SOON_SECS));
         if has_input || now_secs >= due_secs {
-            self.due_secs = Some(now_secs + PERIOD_SECS);
+            (self.last_secs, self.due_secs) = (Some(now_secs), None);
             context.enable_accesskit();
         } else {
             context.disable_accesskit();

@@ -348,7 +348,10 @@ fn lists_come_when_something_changed_and_what_is_done_reaches_the_panels() {
     act("textbox", "vanish", None);
     assert!(!SHOWN.with_borrow(|shown| shown.last().is_some_and(|list| list.to_string().contains("Less"))));
     frame(3.01);
+    let before = lists();
     frame(3.5);
+    assert_eq!(lists(), before);
+    frame(3.56);
     assert_eq!(entry(&last(), "button")["name"], "Clicked 1 times");
     assert_eq!(entry(&last(), "slider")["now"], 7.0);
     assert_eq!(entry(&last(), "textbox")["value"], "42");
