@@ -232,6 +232,18 @@ impl App {
         self.viewport.scene.rehearse(character, frame, part);
     }
 
+    /// Uploads an image of the next model; see [`Self::forget_images`].
+    #[cfg(target_arch = "wasm32")]
+    pub fn upload_image(&mut self, image: &web_sys::ImageBitmap, srgb: bool) {
+        self.viewport.scene.upload_image(image, srgb);
+    }
+
+    /// Frees the images of a model that doesn't come after all.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget_images(&mut self) {
+        self.viewport.scene.forget_images();
+    }
+
     /// Starts time: the first image is on screen.
     #[cfg(target_arch = "wasm32")]
     pub fn begin(&mut self) {
@@ -423,6 +435,7 @@ impl Drop for App {
 
 impl eframe::App for App {
     fn logic(&mut self, _context: &egui::Context, _frame: &mut eframe::Frame) {
+        self.viewport.free_others();
         self.host.before_frame(&self.inbox);
         while let Some(message) = self.inbox.take() {
             self.handle(message);

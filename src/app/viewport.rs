@@ -43,6 +43,13 @@ impl Viewport {
         Ok(())
     }
 
+    /// Frees the models that are no longer shown. Call it before a frame, so that none that shows another one waits for it.
+    pub fn free_others(&mut self) {
+        if let Some((model, beside)) = self.uploaded {
+            self.scene.retain([model, beside.unwrap_or(model)]);
+        }
+    }
+
     /// Evaluates a view that has changed since the last image, without drawing it. Call it before the panels are laid out: they read
     /// the frame, and a message may have opened another model.
     pub fn keep_up(&mut self, editor: &mut Editor) {

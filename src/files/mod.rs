@@ -39,4 +39,4 @@ pub use sort::{Role, SortError, Sorted, read_map, sort};
 pub use source::Progress;
 pub use view::Held;
 #[cfg(target_arch = "wasm32")]
-pub use web::{open_items, open_view, within};
+pub use web::{OnImage, open_items, open_view, within};

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use wgpu::util::DeviceExt;
 
 use super::UploadError;
+use super::pool::{Pool, Pooled};
 use super::texture::texture_bytes;
 use crate::mesh::{Geometry, Influences, Topology};
 
@@ -101,7 +101,7 @@ pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBuf
     buffers
 }
 
-/// A primitive on the GPU. Clones share its buffers.
+/// A primitive on the GPU. Clones share its data.
 #[derive(Clone)]
 pub struct GpuGeometry {
     /// Whether the indices form points, lines or triangles.
@@ -114,11 +114,11 @@ pub struct GpuGeometry {
     pub vertices: u32,
     /// Texels per vertex and morph target: 1 position, 2 also normal, 3 also tangent.
     pub morph_attributes: u32,
-    shape: wgpu::Buffer,
-    surface: wgpu::Buffer,
-    influence_buffer: Option<wgpu::Buffer>,
-    /// Index buffer, [`wgpu::IndexFormat::Uint32`].
-    pub indices: wgpu::Buffer,
+    shape: Pooled,
+    surface: Pooled,
+    influence_part: Option<Pooled>,
+    /// In [`wgpu::IndexFormat::Uint32`].
+    pub indices: Pooled,
     /// Length of `indices`, in indices.
     pub index_count: u32,
     /// Deltas of the morph targets, one texel each: by target, then vertex, then attribute. None without targets.
@@ -127,35 +127,60 @@ pub struct GpuGeometry {
     pub influence_view: Option<wgpu::TextureView>,
 }
 
+/// Where the vertices and indices of a model's primitives go. Drop it before anything is drawn.
+pub struct Pools<'a> {
+    vertices: Pool<'a>,
+    indices: Pool<'a>,
+}
+
+impl<'a> Pools<'a> {
+    /// Expects these primitives.
+    pub fn new<'g>(device: &'a wgpu::Device, primitives: impl Iterator<Item = &'g Geometry> + Clone) -> Self {
+        let vertices = primitives.clone().flat_map(|geometry| vertex_bytes(geometry).map(|bytes| bytes as u64));
+        let indices = primitives.map(|geometry| size_of_val(&geometry.indices[..]) as u64);
+        Self {
+            vertices: Pool::new(device, "vertices", wgpu::BufferUsages::VERTEX, vertices),
+            indices: Pool::new(device, "indices", wgpu::BufferUsages::INDEX, indices),
+        }
+    }
+}
+
+/// Bytes of a primitive's shape, surface and influences; none if the latter aren't vertex attributes.
+fn vertex_bytes(geometry: &Geometry) -> [usize; 3] {
+    let influences = match InfluenceSource::of(geometry.influences.stride) {
+        InfluenceSource::Four => size_of::<FourInfluences>(),
+        InfluenceSource::Eight => 2 * size_of::<FourInfluences>(),
+        InfluenceSource::None | InfluenceSource::Texture => 0,
+    };
+    [size_of::<ShapeVertex>(), size_of::<SurfaceVertex>(), influences].map(|bytes| bytes * geometry.positions.len())
+}
+
 impl GpuGeometry {
     /// `smooth` are the normals from [`smooth_normals`](crate::mesh::smooth_normals), used if the geometry has none. `mesh`
     /// and `primitive` are for error messages. The geometry must be valid and have indices.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
+        pools: &mut Pools<'_>,
         geometry: &Geometry,
         smooth: &[Vec3],
-        mesh: usize,
-        primitive: usize,
+        [mesh, primitive]: [usize; 2],
     ) -> Result<Self, UploadError> {
         let count = geometry.positions.len();
         let too_many = || UploadError::TooManyVertices { mesh, primitive, vertices: count };
         let max_bytes = device.limits().max_buffer_size;
         let vertices = u32::try_from(count).map_err(|_| too_many())?;
-        if count as u64 * size_of::<SurfaceVertex>().max(8 * geometry.influences.stride) as u64 > max_bytes
+        if vertex_bytes(geometry).into_iter().any(|bytes| bytes as u64 > max_bytes)
             || geometry.indices.len() as u64 * 8 > max_bytes
         {
             return Err(too_many());
         }
 
-        let buffer = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
         let influences = InfluenceSource::of(geometry.influences.stride);
         let joints = used_joints(&geometry.influences);
-        let influence_buffer = matches!(influences, InfluenceSource::Four | InfluenceSource::Eight).then(|| {
+        let influence_part = matches!(influences, InfluenceSource::Four | InfluenceSource::Eight).then(|| {
             let fours = influences_by_four(&joints, &geometry.influences.weights);
-            buffer("influences", bytemuck::cast_slice(&fours), wgpu::BufferUsages::VERTEX)
+            pools.vertices.add(bytemuck::cast_slice(&fours))
         });
         let influence_view = match influences {
             InfluenceSource::Texture => {
@@ -181,10 +206,10 @@ impl GpuGeometry {
             influence_stride: geometry.influences.stride as u32,
             vertices,
             morph_attributes,
-            shape: buffer("positions and normals", bytemuck::cast_slice(&shape), wgpu::BufferUsages::VERTEX),
-            surface: buffer("surface", bytemuck::cast_slice(&surface), wgpu::BufferUsages::VERTEX),
-            influence_buffer,
-            indices: buffer("indices", bytemuck::cast_slice(&geometry.indices), wgpu::BufferUsages::INDEX),
+            shape: pools.vertices.add(bytemuck::cast_slice(&shape)),
+            surface: pools.vertices.add(bytemuck::cast_slice(&surface)),
+            influence_part,
+            indices: pools.indices.add(bytemuck::cast_slice(&geometry.indices)),
             index_count: geometry.indices.len() as u32,
             morph_view,
             influence_view,
@@ -193,17 +218,17 @@ impl GpuGeometry {
 
     /// Returns the memory of all buffers and textures in bytes.
     pub fn device_bytes(&self) -> u64 {
-        let buffers = [Some(&self.shape), Some(&self.surface), self.influence_buffer.as_ref(), Some(&self.indices)];
+        let parts = [Some(&self.shape), Some(&self.surface), self.influence_part.as_ref(), Some(&self.indices)];
         let textures = [&self.morph_view, &self.influence_view].into_iter().flatten();
-        buffers.into_iter().flatten().map(wgpu::Buffer::size).sum::<u64>() + textures.map(texture_bytes).sum::<u64>()
+        parts.into_iter().flatten().map(Pooled::size).sum::<u64>() + textures.map(texture_bytes).sum::<u64>()
     }
 
     /// Binds the vertex buffers but not the index buffer.
     pub fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_vertex_buffer(0, self.shape.slice(..));
-        pass.set_vertex_buffer(1, self.surface.slice(..));
-        if let Some(influences) = &self.influence_buffer {
-            pass.set_vertex_buffer(2, influences.slice(..));
+        pass.set_vertex_buffer(0, self.shape.slice());
+        pass.set_vertex_buffer(1, self.surface.slice());
+        if let Some(influences) = &self.influence_part {
+            pass.set_vertex_buffer(2, influences.slice());
         }
     }
 }

@@ -17,6 +17,7 @@ mod model;
 mod overlay;
 pub mod palette;
 mod pipelines;
+mod pool;
 mod refine;
 mod renderer;
 pub mod shaders;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use super::geometry::{GpuGeometry, InfluenceSource, edges};
+use super::geometry::{GpuGeometry, InfluenceSource, Pools, edges};
 use super::lobes::{self, write_lobes, write_toon};
 use super::pipelines::{Features, Shading, primitive_layout};
 use super::shaders::SurfacePermutation;
@@ -15,7 +15,7 @@ use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
-use crate::library::{Model, ModelId};
+use crate::library::{ImageData, Model, ModelId};
 use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
 /// A material's maps by slot.
@@ -76,6 +76,9 @@ pub(super) struct ModelUploader {
     white: wgpu::TextureView,
     no_numbers: wgpu::TextureView,
     anisotropy: u16,
+    /// Images of the next model, with whether they are decoded from sRGB.
+    #[cfg(target_arch = "wasm32")]
+    ready: Vec<(web_sys::ImageBitmap, bool, Option<wgpu::TextureView>)>,
 }
 
 impl ModelUploader {
@@ -86,7 +89,45 @@ impl ModelUploader {
             white: single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]),
             no_numbers: single_texel(device, queue, wgpu::TextureFormat::Rgba32Float, &[0; 16]),
             anisotropy,
+            #[cfg(target_arch = "wasm32")]
+            ready: Vec::new(),
         }
+    }
+
+    /// Uploads an image of the next model, while the browser decodes its others.
+    #[cfg(target_arch = "wasm32")]
+    pub fn upload_image(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        bitmap: &web_sys::ImageBitmap,
+        srgb: bool,
+    ) {
+        let view = self.mips.upload(device, queue, &ImageData::Bitmap(bitmap.clone()), srgb);
+        self.ready.push((bitmap.clone(), srgb, view));
+    }
+
+    /// Frees images that no model has taken.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget_images(&mut self) {
+        self.ready.clear();
+    }
+
+    /// Returns the texture of an image: one of those that are ready, or a new one. See [`MipMaker::upload`].
+    fn image(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        image: &ImageData,
+        srgb: bool,
+    ) -> Option<wgpu::TextureView> {
+        #[cfg(target_arch = "wasm32")]
+        if let ImageData::Bitmap(bitmap) = image
+            && let Some(at) = self.ready.iter().position(|(ready, is_srgb, _)| ready == bitmap && *is_srgb == srgb)
+        {
+            return self.ready.swap_remove(at).2;
+        }
+        self.mips.upload(device, queue, image, srgb)
     }
 
     pub fn upload(
@@ -103,8 +144,10 @@ impl ModelUploader {
             model,
             images: HashMap::new(),
             samplers: HashMap::new(),
+            layouts: HashMap::new(),
             created: HashMap::new(),
         };
+        let mut pools = Pools::new(device, asset.meshes.iter().flat_map(|mesh| &mesh.primitives));
         let mut meshes = Vec::with_capacity(asset.meshes.len());
         for (mesh_index, mesh) in asset.meshes.iter().enumerate() {
             let mut primitives = Vec::with_capacity(mesh.primitives.len());
@@ -114,13 +157,22 @@ impl ModelUploader {
                 primitives.push(match drawable {
                     false => None,
                     true => {
-                        let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
+                        let gpu = GpuGeometry::new(
+                            device,
+                            queue,
+                            &mut pools,
+                            geometry,
+                            smooth,
+                            [mesh_index, primitive_index],
+                        )?;
                         Some(materials.primitive_and_variants(geometry, gpu))
                     }
                 });
             }
             meshes.push(primitives);
         }
+        #[cfg(target_arch = "wasm32")]
+        materials.uploader.forget_images();
         let uploaded = materials.images.drain().filter_map(|(key, view)| Some((key, view?)));
         let images: BTreeMap<_, _> = uploaded.collect();
         let of_file = |(index, material): (Option<usize>, GpuMaterial)| Some((index?, material.uniform));
@@ -223,6 +275,7 @@ struct Materials<'a> {
     model: &'a Model,
     images: HashMap<(usize, bool), Option<wgpu::TextureView>>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
+    layouts: HashMap<SurfacePermutation, wgpu::BindGroupLayout>,
     created: HashMap<Option<usize>, GpuMaterial>,
 }
 
@@ -266,8 +319,11 @@ impl Materials<'_> {
             lobes &= !SurfacePermutation::ANISOTROPY;
         }
         let permutation = lobes::permutation(lobes, has_map);
+        let layout = self.layouts.entry(permutation).or_insert_with(|| primitive_layout(self.device, permutation));
+        let entries = primitive_entries(permutation, gpu_material, &gpu, plain, self.uploader);
+        let bind_group = wgpu::BindGroupDescriptor { label: Some("primitive"), layout, entries: &entries };
         GpuPrimitive {
-            bind_group: primitive_bind_group(self.device, permutation, gpu_material, &gpu, plain, self.uploader),
+            bind_group: self.device.create_bind_group(&bind_group),
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
             features: features(material, has_map, geometry),
             permutation,
@@ -294,7 +350,7 @@ impl Materials<'_> {
             .entry((image, srgb))
             .or_insert_with(|| {
                 let data = self.model.images.get(image)?.as_ref()?;
-                self.uploader.mips.upload(self.device, self.queue, data, srgb)
+                self.uploader.image(self.device, self.queue, data, srgb)
             })
             .clone()?;
         let sampler = self
@@ -348,15 +404,14 @@ fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry
         .with(Features::UVS, !geometry.uvs[0].is_empty())
 }
 
-/// `plain` is the sampler of the maps that the material does not have.
-fn primitive_bind_group(
-    device: &wgpu::Device,
+/// The entries of [`primitive_layout`]. `plain` is the sampler of the maps that the material does not have.
+fn primitive_entries<'a>(
     permutation: SurfacePermutation,
-    material: &GpuMaterial,
-    geometry: &GpuGeometry,
-    plain: &wgpu::Sampler,
-    placeholders: &ModelUploader,
-) -> wgpu::BindGroup {
+    material: &'a GpuMaterial,
+    geometry: &'a GpuGeometry,
+    plain: &'a wgpu::Sampler,
+    placeholders: &'a ModelUploader,
+) -> Vec<wgpu::BindGroupEntry<'a>> {
     let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.binding() }];
     for map in permutation.maps() {
         let (view, sampler) =
@@ -370,11 +425,7 @@ fn primitive_bind_group(
         binding,
         resource: wgpu::BindingResource::TextureView(numbers.as_ref().unwrap_or(&placeholders.no_numbers)),
     }));
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("primitive"),
-        layout: &primitive_layout(device, permutation),
-        entries: &entries,
-    })
+    entries
 }
 
 /// KHR_texture_transform: `offset · rotation · scale`. The rotation is counter-clockwise on the image, whose v axis

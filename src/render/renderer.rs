@@ -180,6 +180,24 @@ impl Renderer {
         Ok(())
     }
 
+    /// Uploads an image of the next model, so that this need not be done in the frame that shows it.
+    #[cfg(target_arch = "wasm32")]
+    pub fn upload_image(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        image: &web_sys::ImageBitmap,
+        srgb: bool,
+    ) {
+        self.uploader.upload_image(device, queue, image, srgb);
+    }
+
+    /// Frees the images of a model that isn't uploaded after all.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget_images(&mut self) {
+        self.uploader.forget_images();
+    }
+
     /// Returns small copies of an uploaded model's images, gamma-encoded; `None` for those that no material uses.
     pub fn thumbnails(
         &self,
@@ -540,8 +558,8 @@ fn draw_items(
     for item in items.iter().filter(|item| item.pane.is_none_or(|item_pane| item_pane == pane)) {
         let Some(primitive) = item.primitive(models) else { continue };
         let (indices, count) = match (&primitive.edges, item.edges) {
-            (Some((edges, count)), true) => (edges, *count),
-            _ => (&primitive.geometry.indices, primitive.geometry.index_count),
+            (Some((edges, count)), true) => (edges.slice(..), *count),
+            _ => (primitive.geometry.indices.slice(), primitive.geometry.index_count),
         };
         if pipeline != Some(item.pipeline) {
             pass.set_pipeline(pipelines.get(item.pipeline));
@@ -550,7 +568,7 @@ fn draw_items(
         pass.set_bind_group(2, draw_group, &[item.offset]);
         pass.set_bind_group(3, &primitive.bind_group, &[]);
         primitive.geometry.bind(pass);
-        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.set_index_buffer(indices, wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..count, 0, 0..item.copies);
         stats.draw_calls += 1;
         if !item.edges && !item.depth_only && primitive.geometry.topology == crate::mesh::Topology::Triangles {

@@ -47,9 +47,10 @@ impl MipMaker {
         Self { module: shaders::MIPS.module(device), layout, sampler, pipelines: HashMap::new() }
     }
 
-    /// Fills every level below the first `given`.
+    /// Submits an upload with the passes that fill every level below the first `given`.
     fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture, given: u32) {
         if given == texture.mip_level_count() {
+            flush(queue);
             return;
         }
         let format = texture.format();
@@ -98,7 +99,6 @@ impl MipMaker {
             #[cfg(target_arch = "wasm32")]
             ImageData::Bitmap(bitmap) => (upload_bitmap(device, queue, bitmap, srgb)?, 1),
         };
-        flush(queue);
         self.fill(device, queue, &texture, given);
         Some(texture.create_view(&Default::default()))
     }

@@ -29,7 +29,7 @@ extern "C" {
 pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
     let items = vec![Item::File("model.glb".to_owned(), bytes)];
     let model =
-        open_items(items, Role::Model, &|_, _, _| ()).await.map_err(|error| JsError::new(&error.to_string()))?;
+        open_items(items, Role::Model, &|_, _, _| (), None).await.map_err(|error| JsError::new(&error.to_string()))?;
     std::hint::black_box(model);
     Ok(())
 }

@@ -10,6 +10,7 @@ use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
+use web_sys::ImageBitmap;
 
 use super::page::{Cancel, Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
@@ -189,6 +190,7 @@ pub async fn complete() -> String {
             _ => Err(problems.join("\n")),
         },
     };
+    forget_images(&page);
     let is_active = |app: &mut App| app.library().active().is_some_and(|active| active.id == model);
     let problem = completed.err().filter(|_| with_app(&page, is_active).unwrap_or_default());
     problem.unwrap_or_default()
@@ -206,7 +208,8 @@ pub async fn complete_again() -> String {
     let reading = page.clone();
     let rest = async move {
         let progress = |name: &str, received: u64, total: u64| rest_progress(&reading, name, received, total);
-        let contents = open_items(vec![Item::Address(origin.into())], Role::Model, &progress).await;
+        let items = vec![Item::Address(origin.into())];
+        let contents = open_items(items, Role::Model, &progress, Some(&upload_image)).await;
         contents.map(|contents| (contents, state, Vec::new())).map_err(|problem| problem.to_string())
     };
     page.rest.replace(Some((model, Box::pin(rest))));
@@ -324,6 +327,25 @@ const PATIENCE_MILLIS: i32 = 400;
 
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
+    let shown = load_and_show(page, request).await;
+    forget_images(page);
+    shown
+}
+
+/// Uploads an image of a model that is being read: while the browser decodes the next one, there is nothing else to do. Otherwise it
+/// is uploaded with the model.
+pub(super) fn upload_image(image: &ImageBitmap, srgb: bool) {
+    if let Ok(page) = page() {
+        let _ = with_app(&page, |app| app.upload_image(image, srgb));
+    }
+}
+
+/// Frees the images of a model that wasn't shown after all.
+fn forget_images(page: &Page) {
+    let _ = with_app(page, App::forget_images);
+}
+
+async fn load_and_show(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let number = page.loads.start();
     let latest = RefCell::new(Progress::default());
     let show_progress = || {
@@ -342,13 +364,13 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
-                let contents = open_items(items, role, &progress).await;
+                let contents = open_items(items, role, &progress, Some(&upload_image)).await;
                 let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
                 contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
             }
             Request::View { state, with_model, current_motions, environments, about_link } => {
                 let held = Held { motions: &current_motions, environments: &environments };
-                let opened = open_view(*state, with_model, held, &progress, None).await;
+                let opened = open_view(*state, with_model, held, &progress, None, Some(&upload_image)).await;
                 let about_link = about_link.unwrap_or_default();
                 opened.map(|(contents, state)| (Contents { about_link, ..contents }, Some(Box::new(state))))
             }

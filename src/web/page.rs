@@ -11,7 +11,7 @@ use futures_util::future::{Either, select};
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
-use super::calls::{progress_of, rest_progress, with_app};
+use super::calls::{progress_of, rest_progress, upload_image, with_app};
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
@@ -210,13 +210,13 @@ async fn open_wanted(
 ) -> Result<(Contents, ViewerState), OpenError> {
     let (mut models, mut motions, mut environments, mut problem) = (Vec::new(), Vec::new(), Vec::new(), None);
     if !items.is_empty() {
-        let found = open_items(items, Role::Model, progress).await?;
+        let found = open_items(items, Role::Model, progress, Some(&upload_image)).await?;
         models = found.models;
         environments.extend(found.environment);
         motions.extend(found.motions.into_iter().flatten());
     }
     if !motion_items.is_empty() {
-        match open_items(motion_items, Role::Motion, progress).await {
+        match open_items(motion_items, Role::Motion, progress, None).await {
             Ok(found) => {
                 motions.extend(found.motions.into_iter().flatten());
                 environments.extend(found.environment);
@@ -226,7 +226,8 @@ async fn open_wanted(
     }
     let held = Held { motions: &motions, environments: &environments };
     let early = motions.is_empty().then_some(show_early);
-    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), held, progress, early).await?;
+    let (mut contents, view) =
+        open_view(wanted.clone(), models.is_empty(), held, progress, early, Some(&upload_image)).await?;
     contents.models.extend(models);
     let is_wanted = |held: &Environment| wanted.lighting.environment == EnvironmentChoice::File(held.origin.clone());
     let light = environments.iter().position(is_wanted).map(|at| environments.swap_remove(at));
@@ -242,7 +243,7 @@ async fn open_fallback(
 ) -> Result<First, String> {
     let mut models = Vec::new();
     for motion in &wanted.sources.motion {
-        match open_items(vec![Item::Address(motion.into())], Role::Model, progress).await {
+        match open_items(vec![Item::Address(motion.into())], Role::Model, progress, None).await {
             Ok(found) => models.extend(found.models),
             Err(error) => problems.push(error.to_string()),
         }

@@ -55,7 +55,7 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
 async fn open_character() -> Library {
     let items = rehearsal_files().into_iter().map(|(name, bytes)| Item::File(name.to_owned(), bytes)).collect();
     let mut library = Library::default();
-    let opened = open_items(items, Role::Model, &|_, _, _| ()).await;
+    let opened = open_items(items, Role::Model, &|_, _, _| (), None).await;
     opened.into_iter().flat_map(|contents| contents.models).for_each(|character| _ = library.add(character.model));
     library
 }

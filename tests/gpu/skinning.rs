@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use gaitway::anim::model_from_joint;
 use gaitway::formats::{FileSet, load};
 use gaitway::mesh::{Geometry, Influences, PaletteEntry, SkinningMode, deform, palette_entry, write_palette};
-use gaitway::render::geometry::{GpuGeometry, InfluenceSource, vertex_buffers};
+use gaitway::render::geometry::{GpuGeometry, InfluenceSource, Pools, vertex_buffers};
 use gaitway::render::palette::PaletteTexture;
 use gaitway::render::shaders::SKINNED_VERTEX;
 use gaitway::render::uniforms::{DrawUniform, FrameUniform};
@@ -73,7 +73,9 @@ fn on_gpu(
     mode: SkinningMode,
 ) -> [Vec<Vec3>; 2] {
     let Gpu { device, queue } = gpu;
-    let gpu_geometry = GpuGeometry::new(device, queue, geometry, &[], 0, 0).unwrap();
+    let mut pools = Pools::new(device, [geometry].into_iter());
+    let gpu_geometry = GpuGeometry::new(device, queue, &mut pools, geometry, &[], [0, 0]).unwrap();
+    drop(pools);
     let mut palette_texture = PaletteTexture::new(device);
     // A preceding entry makes the offset matter.
     palette_texture.push_palette(&[PaletteEntry::default()]);

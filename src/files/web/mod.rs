@@ -11,6 +11,7 @@ use std::ffi::OsStr;
 use gaitway_part::Answer;
 use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
+use web_sys::ImageBitmap;
 
 pub use timer::within;
 
@@ -23,9 +24,18 @@ use crate::library::{ImageData, Model};
 use crate::samples;
 use crate::state::ViewerState;
 
+/// Called with each image of a model once it is decoded, while others still may be: once if materials decode it from sRGB, as the
+/// flag says, and once if they don't.
+pub type OnImage<'a> = &'a dyn Fn(&ImageBitmap, bool);
+
 /// Opens one set of items.
-pub async fn open_items(items: Vec<Item>, role: Role, progress: Progress<'_>) -> Result<Contents, OpenError> {
-    open::open_items(&Web::default(), items, role, progress).await
+pub async fn open_items(
+    items: Vec<Item>,
+    role: Role,
+    progress: Progress<'_>,
+    on_image: Option<OnImage<'_>>,
+) -> Result<Contents, OpenError> {
+    open::open_items(&Web { on_image, ..Web::default() }, items, role, progress).await
 }
 
 /// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. See
@@ -36,15 +46,17 @@ pub async fn open_view(
     held: Held<'_>,
     progress: Progress<'_>,
     show_early: Option<&dyn Fn(Model)>,
+    on_image: Option<OnImage<'_>>,
 ) -> Result<(Contents, ViewerState), OpenError> {
     let early = show_early.and_then(|show| EarlyWatch::of(&view, show));
-    view::open_view(&Web { early: early.into() }, view, with_model, held, progress).await
+    view::open_view(&Web { early: early.into(), on_image }, view, with_model, held, progress).await
 }
 
 #[derive(Default)]
 struct Web<'a> {
     /// Shows the only file that is opened before its images have arrived.
     early: RefCell<Option<EarlyWatch<'a>>>,
+    on_image: Option<OnImage<'a>>,
 }
 
 impl Source for Web<'_> {
@@ -118,7 +130,7 @@ impl Source for Web<'_> {
     }
 
     async fn finish_decoding(&self, decoding: Vec<images::Decoding>, asset: &mut Asset) -> Vec<Option<ImageData>> {
-        images::finish(decoding, asset).await
+        images::finish(decoding, asset, self.on_image).await
     }
 
     fn describe_omission(&self, _part: &str, error: &OpenError) -> String {

@@ -257,6 +257,15 @@ impl Asset {
         Ok(Self { parts, warnings: Warnings::default() })
     }
 
+    /// Whether any material uses an image for sRGB colours, or else for linear data.
+    pub fn uses_image(&self, image: usize, for_color: bool) -> bool {
+        let slots = || TextureSlot::ALL.into_iter().filter(|slot| slot.is_color() == for_color);
+        let texture = |material: &Material, slot| self.textures.get(material.texture(slot)?.texture);
+        self.materials.iter().any(|material| {
+            slots().filter_map(|slot| texture(material, slot)).any(|texture| texture.image == Some(image))
+        })
+    }
+
     /// Takes the asset apart, for instance to build another one. Drops the warnings.
     pub fn into_parts(self) -> AssetParts {
         self.parts

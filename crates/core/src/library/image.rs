@@ -16,7 +16,7 @@ pub enum ImageData {
     },
     /// A KTX2 image with its mip levels, in a format that the device supports.
     Ktx2(Texture),
-    /// The browser's bitmap, created with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
+    /// The browser's bitmap.
     #[cfg(target_arch = "wasm32")]
     Bitmap(web_sys::ImageBitmap),
 }
