@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 
 /// Seconds between two trees while the panels change without input, such as during playback.
 const PERIOD_SECS: f64 = 0.25;
-/// Minimum seconds from a change without input, such as a newly opened model, which a tree would delay.
+/// Minimum seconds from a frame without input to its tree, which would delay the picture of a newly opened model.
 const SOON_SECS: f64 = 0.05;
 /// Seconds until the first tree, which would otherwise delay the first picture.
 const FIRST_SECS: f64 = 1.0;

@@ -43,7 +43,8 @@ impl Viewport {
         Ok(())
     }
 
-    /// Frees the models that are no longer shown. Call it before a frame, so that none that shows another one waits for it.
+    /// Frees the models that are no longer shown. Called at the start of a frame, so that the one that shows the new model doesn't wait
+    /// for it.
     pub fn free_others(&mut self) {
         if let Some((model, beside)) = self.uploaded {
             self.scene.retain([model, beside.unwrap_or(model)]);

@@ -20,7 +20,7 @@ pub struct Pooled {
     range: Range<u64>,
 }
 
-/// Maximum bytes of a buffer, unless a single part is larger. Until the device takes it, the browser's memory holds it as well.
+/// Maximum bytes of a buffer, unless a single part is larger: until the device takes it, the program's memory holds a copy.
 const BUFFER_BYTES: u64 = 16 << 20;
 
 /// The least distance of parts that are mapped one by one.
