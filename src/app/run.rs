@@ -435,7 +435,6 @@ impl Drop for App {
 
 impl eframe::App for App {
     fn logic(&mut self, _context: &egui::Context, _frame: &mut eframe::Frame) {
-        self.viewport.free_others();
         self.host.before_frame(&self.inbox);
         while let Some(message) = self.inbox.take() {
             self.handle(message);

@@ -48,18 +48,14 @@ impl SceneTexture {
         Self { gpu, renderer, displayed: None }
     }
 
-    /// Uploads a model, and optionally the source beside it. The others stay until [`Self::retain`].
+    /// Uploads a model, and optionally the source beside it; evicts all others.
     pub fn upload(&mut self, model: &Model, beside: Option<&Model>) -> Result<(), UploadError> {
         self.renderer.upload(&self.gpu.device, &self.gpu.queue, model)?;
         if let Some(beside) = beside {
             self.renderer.upload(&self.gpu.device, &self.gpu.queue, beside)?;
         }
+        self.renderer.retain(&[model.id, beside.unwrap_or(model).id]);
         Ok(())
-    }
-
-    /// Frees all other models.
-    pub fn retain(&mut self, keep: [ModelId; 2]) {
-        self.renderer.retain(&keep);
     }
 
     /// Uploads an image of the next model, so that this need not be done in the frame that shows it.

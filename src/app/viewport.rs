@@ -43,14 +43,6 @@ impl Viewport {
         Ok(())
     }
 
-    /// Frees the models that are no longer shown. Called at the start of a frame, so that the one that shows the new model doesn't wait
-    /// for it.
-    pub fn free_others(&mut self) {
-        if let Some((model, beside)) = self.uploaded {
-            self.scene.retain([model, beside.unwrap_or(model)]);
-        }
-    }
-
     /// Evaluates a view that has changed since the last image, without drawing it. Call it before the panels are laid out: they read
     /// the frame, and a message may have opened another model.
     pub fn keep_up(&mut self, editor: &mut Editor) {
