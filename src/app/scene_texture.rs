@@ -61,13 +61,13 @@ impl SceneTexture {
     /// Uploads an image of the next model, so that this need not be done in the frame that shows it.
     #[cfg(target_arch = "wasm32")]
     pub fn upload_image(&mut self, image: &web_sys::ImageBitmap, srgb: bool) {
-        self.renderer.upload_image(&self.gpu.device, &self.gpu.queue, image, srgb);
+        self.renderer.images().prepare(&self.gpu.device, &self.gpu.queue, image, srgb);
     }
 
     /// Frees the images of a model that doesn't come after all.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_images(&mut self) {
-        self.renderer.forget_images();
+        self.renderer.images().forget();
     }
 
     /// Draws at a size in pixels.

@@ -255,7 +255,7 @@ impl Source for Disk {
 
     fn start_decoding(&self, _images: &[Image]) {}
 
-    async fn finish_decoding(&self, _decoding: (), asset: &mut Asset) -> Vec<Option<ImageData>> {
+    async fn finish_decoding(&self, _decoding: (), asset: &mut Asset, _is_only: bool) -> Vec<Option<ImageData>> {
         decode_images(asset)
     }
 

@@ -11,6 +11,8 @@ mod error;
 mod images;
 mod open;
 mod origins;
+#[cfg(any(target_arch = "wasm32", test))]
+mod plain_image;
 mod png;
 mod read;
 #[cfg(not(target_arch = "wasm32"))]

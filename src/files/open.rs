@@ -33,12 +33,13 @@ pub(super) async fn open_read<S: Source>(source: &S, read: FilesRead, role: Role
             }
         })?
     };
+    let is_only = sorted.models.len() + samples.len() == 1;
     let mut models = Vec::new();
     for (name, mut asset) in std::mem::take(&mut sorted.models) {
         let started = decoding.iter().position(|(of, _)| *of == name).map(|at| decoding.swap_remove(at).1);
         let started = started.unwrap_or_else(|| source.start_decoding(&asset.images));
         let derived = Derived::new(&asset);
-        let images = source.finish_decoding(started, &mut asset).await;
+        let images = source.finish_decoding(started, &mut asset, is_only).await;
         models.push(origins.model(&set, name, asset, derived, images));
     }
     Ok(origins.contents(sorted, models, samples, role))

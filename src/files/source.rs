@@ -43,8 +43,14 @@ pub(super) trait Source {
 
     fn start_decoding(&self, images: &[Image]) -> Self::Decoding;
 
-    /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added.
-    async fn finish_decoding(&self, decoding: Self::Decoding, asset: &mut Asset) -> Vec<Option<ImageData>>;
+    /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added. `is_only`: no
+    /// other model is opened with it, so it will be shown.
+    async fn finish_decoding(
+        &self,
+        decoding: Self::Decoding,
+        asset: &mut Asset,
+        is_only: bool,
+    ) -> Vec<Option<ImageData>>;
 
     /// Explains that a view is opened without one of the files it lists; `part` is "motion" or "map".
     fn describe_omission(&self, part: &str, error: &OpenError) -> String;

@@ -136,7 +136,7 @@ pub struct Pools<'a> {
 impl<'a> Pools<'a> {
     /// Expects these primitives.
     pub fn new<'g>(device: &'a wgpu::Device, primitives: impl Iterator<Item = &'g Geometry> + Clone) -> Self {
-        let vertices = primitives.clone().flat_map(|geometry| vertex_bytes(geometry).map(|bytes| bytes as u64));
+        let vertices = primitives.clone().flat_map(vertex_bytes);
         let indices = primitives.map(|geometry| size_of_val(&geometry.indices[..]) as u64);
         Self {
             vertices: Pool::new(device, "vertices", wgpu::BufferUsages::VERTEX, vertices),
@@ -145,14 +145,11 @@ impl<'a> Pools<'a> {
     }
 }
 
-/// Bytes of a primitive's shape, surface and influences; none if the latter aren't vertex attributes.
-fn vertex_bytes(geometry: &Geometry) -> [usize; 3] {
-    let influences = match InfluenceSource::of(geometry.influences.stride) {
-        InfluenceSource::Four => size_of::<FourInfluences>(),
-        InfluenceSource::Eight => 2 * size_of::<FourInfluences>(),
-        InfluenceSource::None | InfluenceSource::Texture => 0,
-    };
-    [size_of::<ShapeVertex>(), size_of::<SurfaceVertex>(), influences].map(|bytes| bytes * geometry.positions.len())
+/// Bytes of a primitive's vertices in each of its [`vertex_buffers`].
+fn vertex_bytes(geometry: &Geometry) -> impl Iterator<Item = u64> {
+    let count = geometry.positions.len() as u64;
+    let buffers = vertex_buffers(InfluenceSource::of(geometry.influences.stride));
+    buffers.into_iter().flatten().map(move |layout| layout.array_stride * count)
 }
 
 impl GpuGeometry {
@@ -170,9 +167,7 @@ impl GpuGeometry {
         let too_many = || UploadError::TooManyVertices { mesh, primitive, vertices: count };
         let max_bytes = device.limits().max_buffer_size;
         let vertices = u32::try_from(count).map_err(|_| too_many())?;
-        if vertex_bytes(geometry).into_iter().any(|bytes| bytes as u64 > max_bytes)
-            || geometry.indices.len() as u64 * 8 > max_bytes
-        {
+        if vertex_bytes(geometry).any(|bytes| bytes > max_bytes) || geometry.indices.len() as u64 * 8 > max_bytes {
             return Err(too_many());
         }
 

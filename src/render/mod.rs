@@ -38,6 +38,8 @@ pub use headless::headless_device;
 pub(crate) use headless::next_turn;
 pub use headless::{HeadlessError, device_descriptor, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
+#[cfg(target_arch = "wasm32")]
+pub use texture::ImageUploader;
 pub use texture::texture_formats;
 
 /// Submits the work recorded so far. A browser's graphics process serves other clients only between submissions, so each

@@ -10,12 +10,12 @@ use super::geometry::{GpuGeometry, InfluenceSource, Pools, edges};
 use super::lobes::{self, write_lobes, write_toon};
 use super::pipelines::{Features, Shading, primitive_layout};
 use super::shaders::SurfacePermutation;
-use super::texture::{MipMaker, sampler, single_texel, texture_bytes};
+use super::texture::{ImageUploader, sampler, single_texel, texture_bytes};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
-use crate::library::{ImageData, Model, ModelId};
+use crate::library::{Model, ModelId};
 use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
 /// A material's maps by slot.
@@ -70,64 +70,23 @@ impl GpuPrimitive {
     }
 }
 
-/// Uploads models. Holds the mipmap pipelines and placeholders for missing maps and vertex data.
+/// Uploads models. Holds the uploader of images and placeholders for missing maps and vertex data.
 pub(super) struct ModelUploader {
-    mips: MipMaker,
+    pub images: ImageUploader,
     white: wgpu::TextureView,
     no_numbers: wgpu::TextureView,
     anisotropy: u16,
-    /// Images of the next model, with whether they are decoded from sRGB.
-    #[cfg(target_arch = "wasm32")]
-    ready: Vec<(web_sys::ImageBitmap, bool, Option<wgpu::TextureView>)>,
 }
 
 impl ModelUploader {
     /// `anisotropy` should be 1 on software adapters.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, anisotropy: u16) -> Self {
         Self {
-            mips: MipMaker::new(device),
+            images: ImageUploader::new(device),
             white: single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]),
             no_numbers: single_texel(device, queue, wgpu::TextureFormat::Rgba32Float, &[0; 16]),
             anisotropy,
-            #[cfg(target_arch = "wasm32")]
-            ready: Vec::new(),
         }
-    }
-
-    /// Uploads an image of the next model, while the browser decodes its others.
-    #[cfg(target_arch = "wasm32")]
-    pub fn upload_image(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        bitmap: &web_sys::ImageBitmap,
-        srgb: bool,
-    ) {
-        let view = self.mips.upload(device, queue, &ImageData::Bitmap(bitmap.clone()), srgb);
-        self.ready.push((bitmap.clone(), srgb, view));
-    }
-
-    /// Frees images that no model has taken.
-    #[cfg(target_arch = "wasm32")]
-    pub fn forget_images(&mut self) {
-        self.ready.clear();
-    }
-
-    /// Returns the texture of an image: one of those that are ready, or a new one. See [`MipMaker::upload`].
-    fn image(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        image: &ImageData,
-        srgb: bool,
-    ) -> Option<wgpu::TextureView> {
-        #[cfg(target_arch = "wasm32")]
-        if let ImageData::Bitmap(bitmap) = image
-            && let Some(at) = self.ready.iter().position(|(ready, is_srgb, _)| ready == bitmap && *is_srgb == srgb)
-        {
-            return self.ready.swap_remove(at).2;
-        }
-        self.mips.upload(device, queue, image, srgb)
     }
 
     pub fn upload(
@@ -147,32 +106,25 @@ impl ModelUploader {
             layouts: HashMap::new(),
             created: HashMap::new(),
         };
-        let mut pools = Pools::new(device, asset.meshes.iter().flat_map(|mesh| &mesh.primitives));
+        let is_drawable = |geometry: &Geometry| geometry.indices.len() >= geometry.topology.indices_per_element();
+        let primitives = asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        let mut pools = Pools::new(device, primitives.filter(|geometry| is_drawable(geometry)));
         let mut meshes = Vec::with_capacity(asset.meshes.len());
         for (mesh_index, mesh) in asset.meshes.iter().enumerate() {
             let mut primitives = Vec::with_capacity(mesh.primitives.len());
             let smooth = smooth_normals(&mesh.primitives);
             for (primitive_index, (geometry, smooth)) in mesh.primitives.iter().zip(&smooth).enumerate() {
-                let drawable = geometry.indices.len() >= geometry.topology.indices_per_element();
-                primitives.push(match drawable {
+                let place = [mesh_index, primitive_index];
+                primitives.push(match is_drawable(geometry) {
                     false => None,
                     true => {
-                        let gpu = GpuGeometry::new(
-                            device,
-                            queue,
-                            &mut pools,
-                            geometry,
-                            smooth,
-                            [mesh_index, primitive_index],
-                        )?;
+                        let gpu = GpuGeometry::new(device, queue, &mut pools, geometry, smooth, place)?;
                         Some(materials.primitive_and_variants(geometry, gpu))
                     }
                 });
             }
             meshes.push(primitives);
         }
-        #[cfg(target_arch = "wasm32")]
-        materials.uploader.forget_images();
         let uploaded = materials.images.drain().filter_map(|(key, view)| Some((key, view?)));
         let images: BTreeMap<_, _> = uploaded.collect();
         let of_file = |(index, material): (Option<usize>, GpuMaterial)| Some((index?, material.uniform));
@@ -350,7 +302,7 @@ impl Materials<'_> {
             .entry((image, srgb))
             .or_insert_with(|| {
                 let data = self.model.images.get(image)?.as_ref()?;
-                self.uploader.image(self.device, self.queue, data, srgb)
+                self.uploader.images.upload(self.device, self.queue, data, srgb)
             })
             .clone()?;
         let sampler = self

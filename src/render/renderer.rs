@@ -12,6 +12,8 @@ use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
 use super::refine::{Accumulator, SAMPLE_OFFSETS};
 use super::targets::Targets;
+#[cfg(target_arch = "wasm32")]
+use super::texture::ImageUploader;
 use super::thumbnail::thumbnails;
 use super::transmission::TransmissionPass;
 use super::uniform_buffer::UniformBuffer;
@@ -180,22 +182,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Uploads an image of the next model, so that this need not be done in the frame that shows it.
+    /// Uploads images in advance.
     #[cfg(target_arch = "wasm32")]
-    pub fn upload_image(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        image: &web_sys::ImageBitmap,
-        srgb: bool,
-    ) {
-        self.uploader.upload_image(device, queue, image, srgb);
-    }
-
-    /// Frees the images of a model that isn't uploaded after all.
-    #[cfg(target_arch = "wasm32")]
-    pub fn forget_images(&mut self) {
-        self.uploader.forget_images();
+    pub fn images(&mut self) -> &mut ImageUploader {
+        &mut self.uploader.images
     }
 
     /// Returns small copies of an uploaded model's images, gamma-encoded; `None` for those that no material uses.

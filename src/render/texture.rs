@@ -27,16 +27,19 @@ pub fn texture_formats(features: wgpu::Features) -> Formats {
     Formats(pairs.into_iter().map(has).sum())
 }
 
-/// Generates mip levels.
-pub(super) struct MipMaker {
+/// Uploads images and generates their mip levels.
+pub struct ImageUploader {
     module: wgpu::ShaderModule,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     pipelines: HashMap<wgpu::TextureFormat, wgpu::RenderPipeline>,
+    /// Bitmaps uploaded in advance, each with whether it is decoded from sRGB.
+    #[cfg(target_arch = "wasm32")]
+    ready: Vec<(web_sys::ImageBitmap, bool, Option<wgpu::TextureView>)>,
 }
 
-impl MipMaker {
-    pub fn new(device: &wgpu::Device) -> Self {
+impl ImageUploader {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("mips"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -44,7 +47,27 @@ impl MipMaker {
             ..Default::default()
         });
         let layout = sampled_texture_layout(device, "mips");
-        Self { module: shaders::MIPS.module(device), layout, sampler, pipelines: HashMap::new() }
+        Self {
+            module: shaders::MIPS.module(device),
+            layout,
+            sampler,
+            pipelines: HashMap::new(),
+            #[cfg(target_arch = "wasm32")]
+            ready: Vec::new(),
+        }
+    }
+
+    /// Uploads a bitmap of the next model, so that this need not be done in the frame that shows it.
+    #[cfg(target_arch = "wasm32")]
+    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bitmap: &web_sys::ImageBitmap, srgb: bool) {
+        let view = self.upload(device, queue, &ImageData::Bitmap(bitmap.clone()), srgb);
+        self.ready.push((bitmap.clone(), srgb, view));
+    }
+
+    /// Frees the bitmaps that no model has taken.
+    #[cfg(target_arch = "wasm32")]
+    pub fn forget(&mut self) {
+        self.ready.clear();
     }
 
     /// Submits an upload with the passes that fill every level below the first `given`.
@@ -84,13 +107,19 @@ impl MipMaker {
     /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap or a KTX2 image larger than
     /// the device supports. Other oversized images are halved until they fit. Each image is a submission of its own,
     /// because a browser's graphics process serves other clients only between submissions.
-    pub fn upload(
+    pub(super) fn upload(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         image: &ImageData,
         srgb: bool,
     ) -> Option<wgpu::TextureView> {
+        #[cfg(target_arch = "wasm32")]
+        if let ImageData::Bitmap(bitmap) = image
+            && let Some(at) = self.ready.iter().position(|(ready, is_srgb, _)| ready == bitmap && *is_srgb == srgb)
+        {
+            return self.ready.swap_remove(at).2;
+        }
         let (texture, given) = match image {
             ImageData::Rgba8 { width, height, pixels } => {
                 (upload_pixels(device, queue, [*width, *height], pixels, srgb)?, 1)

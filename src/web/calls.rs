@@ -41,7 +41,7 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
     let items = items_of(items).map_err(malformed)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
     let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await?;
-    // After the frame: recognizing a skeleton takes milliseconds.
+    // After the frame: checking rig and clips takes milliseconds.
     let document = with_app(&page, |app| {
         let sources = &app.state().sources.model;
         app.library().active().map(|model| inspect(model, sources)).unwrap_or_default()
@@ -327,9 +327,9 @@ const PATIENCE_MILLIS: i32 = 400;
 
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, Refusal> {
-    let shown = load_and_show(page, request).await;
+    let opened = load_and_show(page, request).await;
     forget_images(page);
-    shown
+    opened
 }
 
 /// Uploads an image of a model that is being read: while the browser decodes the next one, there is nothing else to do. Otherwise it
@@ -341,7 +341,7 @@ pub(super) fn upload_image(image: &ImageBitmap, srgb: bool) {
 }
 
 /// Frees the images of a model that wasn't shown after all.
-fn forget_images(page: &Page) {
+pub(super) fn forget_images(page: &Page) {
     let _ = with_app(page, App::forget_images);
 }
 

@@ -11,7 +11,7 @@ use futures_util::future::{Either, select};
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
-use super::calls::{progress_of, rest_progress, upload_image, with_app};
+use super::calls::{forget_images, progress_of, rest_progress, upload_image, with_app};
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
@@ -127,6 +127,7 @@ pub async fn run(
             let problems = app.open_link(contents, state)?;
             Ok::<_, String>((app.library().active().map(|model| model.id), problems))
         });
+        forget_images(&page);
         let (model, problems) = shown??;
         if let (Some(model), Some(rest), Some(name)) = (model, rest, name) {
             page.rest.replace(Some((model, rest)));

@@ -8,9 +8,8 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::{OnImage, parts};
 use crate::asset::{Asset, Image};
-use crate::files::images::{
-    fitted, is_ktx2, is_opaque_and_untagged, largest_edge, push_decoded, texture_formats, transcoded,
-};
+use crate::files::images::{fitted, is_ktx2, largest_edge, push_decoded, texture_formats, transcoded};
+use crate::files::plain_image::is_opaque_and_untagged;
 use crate::files::source::Reading;
 use crate::formats::Part;
 use crate::library::ImageData;

@@ -24,8 +24,8 @@ use crate::library::{ImageData, Model};
 use crate::samples;
 use crate::state::ViewerState;
 
-/// Called with each image of a model once it is decoded, while others still may be: once if materials decode it from sRGB, as the
-/// flag says, and once if they don't.
+/// Called with each image of a model that is opened alone once it is decoded, while others still may be: once if materials decode it
+/// from sRGB, as the flag says, and once if they don't.
 pub type OnImage<'a> = &'a dyn Fn(&ImageBitmap, bool);
 
 /// Opens one set of items.
@@ -129,8 +129,13 @@ impl Source for Web<'_> {
         images::start(images)
     }
 
-    async fn finish_decoding(&self, decoding: Vec<images::Decoding>, asset: &mut Asset) -> Vec<Option<ImageData>> {
-        images::finish(decoding, asset, self.on_image).await
+    async fn finish_decoding(
+        &self,
+        decoding: Vec<images::Decoding>,
+        asset: &mut Asset,
+        is_only: bool,
+    ) -> Vec<Option<ImageData>> {
+        images::finish(decoding, asset, self.on_image.filter(|_| is_only)).await
     }
 
     fn describe_omission(&self, _part: &str, error: &OpenError) -> String {
