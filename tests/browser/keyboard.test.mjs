@@ -186,8 +186,9 @@ for (const renderer of BACK_ENDS)
       await until(page, () => /\.glb|PNG|clip/i.test(document.activeElement?.getAttribute("aria-label") ?? ""));
       await page.keyboard.press("Escape");
       await until(page, () => /^Export/.test(document.activeElement?.getAttribute("aria-label") ?? ""));
-      await page.keyboard.press("Enter");
       const entry = control(page, "button", "Image and video settings…");
+      await entry.waitFor({ state: "detached" });
+      await page.keyboard.press("Enter");
       await entry.waitFor({ state: "attached" });
       await tabTo(page, /^Share/);
       await entry.waitFor({ state: "detached" });
@@ -196,6 +197,20 @@ for (const renderer of BACK_ENDS)
       await page.locator("#share").waitFor({ state: "visible" });
       const link = await page.locator("#share-link").inputValue();
       assert.match(link, /model=.*Soldier\.glb.*motion=.*cmu_01_01\.bvh/);
+    });
+
+    onPage("a menu that opens late leaves the focus where it went meanwhile", () => "play=0", async (page) => {
+      await control(page, "button", "Export").focus();
+      await untilStill(page);
+      await control(page, "button", "Export").evaluate((button) => {
+        /** @type {HTMLElement} */ (button).click();
+        /** @type {HTMLElement | null} */ (document.querySelector('#mirror [aria-label^="Share"]'))?.focus();
+      });
+      await page.locator("#mirror > [role=group]").waitFor({ state: "attached" });
+      await untilStill(page);
+      assert.match((await focused(page))?.name ?? "", /^Share/);
+      await page.keyboard.press("Enter");
+      await page.locator("#share").waitFor({ state: "visible" });
     });
 
     onPage("nothing under the help has the keyboard, which comes back where it was", () => "play=0", async (page) => {

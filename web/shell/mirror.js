@@ -177,8 +177,9 @@ export class Mirror {
   }
 
   /**
-   * Moves the focus to where the user expects it: into a menu that opens, in a chooser to what is chosen, to where the program has
-   * its own, back to what opened a menu that closes, or else to what is nearest to where it was.
+   * Moves the focus to where the user expects it: into a menu that opens, unless the user has gone on meanwhile, in a chooser to
+   * what is chosen, to where the program has its own, back to what opened a menu that closes, or else to what is nearest to where
+   * it was.
    * @param {HTMLElement} before What had the focus.
    * @param {HTMLElement | null} menu What has just opened.
    * @param {string} focus
@@ -186,7 +187,8 @@ export class Mirror {
    */
   #keepFocus(before, menu, focus, hadTree) {
     if (this.#wanted === focus) this.#wanted = null;
-    const stops = menu === null ? [] : stopsIn(menu);
+    const hasGoneOn = menu?.dataset.role === "group" && before.isConnected && before !== this.#opener && before.closest("[data-role=group]") === null;
+    const stops = menu === null || hasGoneOn ? [] : stopsIn(menu);
     const isChooser = this.#opener?.dataset.role === "combobox";
     const first = (isChooser ? stops.find(({ ariaPressed }) => ariaPressed === "true") : undefined) ?? stops[0];
     const hasMoved = !before.isConnected || (this.#wanted === null && focus !== this.#focused);
