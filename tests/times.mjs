@@ -1,4 +1,4 @@
-// A reporter for Node's tests that prints which failed and how long each file took, the longest first.
+// A reporter for Node's tests that prints which failed, with what error, and how long each file took, the longest first.
 import path from "node:path";
 import { repository } from "./three/data.mjs";
 
@@ -10,7 +10,12 @@ export default async function* times(events) {
   const failures = [];
   for await (const { type, data } of events) {
     // Suites fail for what is in them.
-    if (type === "test:fail" && data.details.type !== "suite") failures.push(`${data.file && path.relative(repository, data.file)}: ${data.name}`);
+    if (type === "test:fail" && data.details.type !== "suite") {
+      const { error } = data.details;
+      const { stack = error.message } = error.cause instanceof Error ? error.cause : error;
+      const lines = stack.split("\n").filter((line) => !/^ +at .*node:/.test(line));
+      failures.push([`${data.file && path.relative(repository, data.file)}: ${data.name}`, ...lines].join("\n    "));
+    }
     // Suites and tests at a file's top level, which include everything nested.
     if ((type !== "test:pass" && type !== "test:fail") || data.nesting > 0 || data.file === undefined) continue;
     const file = path.relative(repository, data.file);
