@@ -26,8 +26,16 @@ struct Face {
     groups: [u32; 3],
 }
 
-/// Lower and higher vertex, face, and the corner at which the edge starts.
-type Edge = (u64, u32, u8);
+#[derive(Clone, Copy, Default)]
+struct Edge {
+    lower: u32,
+    higher: u32,
+    face: u32,
+    /// Where the edge starts.
+    corner: u8,
+    /// Whether it goes from the higher to the lower vertex.
+    is_down: bool,
+}
 
 /// Faces around a vertex that share a tangent: a range in the list of group members.
 struct Group {
@@ -58,16 +66,11 @@ pub(super) fn corner_tangents(
     for group in &groups {
         let members = &members[group.first..group.end];
         let normal = normals[group.vertex as usize];
-        let blend_all = |list: &mut dyn Iterator<Item = u32>| blend(&faces, list, group, positions, normal);
-        let shared = blend_all(&mut members.iter().copied());
         let split = members.len() <= MAX_COMPARED && opposed(&faces, members, normal);
+        let shared = (!split).then(|| blend(&faces, members, |_| true, group, positions, normal));
         for &face in members {
-            let tangent = if split {
-                let with = |other: &u32| agree(&faces[face as usize], &faces[*other as usize], normal);
-                blend_all(&mut members.iter().filter(|other| with(other)).copied())
-            } else {
-                shared
-            };
+            let with = |other: &Face| agree(&faces[face as usize], other, normal);
+            let tangent = shared.unwrap_or_else(|| blend(&faces, members, with, group, positions, normal));
             let sign = if group.preserving { 1.0 } else { -1.0 };
             let corner = faces[face as usize].corner_at(group.vertex);
             tangents[3 * face as usize + corner] = Some(tangent.extend(sign));
@@ -104,6 +107,12 @@ fn weld(positions: &[Vec3], normals: &[Vec3], uvs: &[Vec2]) -> Vec<u32> {
             *first.entry(key).or_insert(vertex as u32)
         })
         .collect()
+}
+
+impl Edge {
+    fn neighbor<'a>(&self, faces: &'a mut [Face]) -> &'a mut u32 {
+        &mut faces[self.face as usize].neighbors[usize::from(self.corner)]
+    }
 }
 
 fn is_zero(number: f32) -> bool {
@@ -143,50 +152,57 @@ impl Face {
 
 /// Pairs up faces that traverse an edge in opposite directions; if more than two share it, each pairs with the next.
 fn find_neighbors(faces: &mut [Face], vertices: usize) {
-    let mut edges: Vec<Edge> = Vec::with_capacity(3 * faces.len());
-    for (index, face) in faces.iter().enumerate().filter(|(_, face)| !face.degenerate) {
-        for corner in 0..3 {
-            let (from, to) = (face.vertices[corner], face.vertices[(corner + 1) % 3]);
-            edges.push((u64::from(from.min(to)) << 32 | u64::from(from.max(to)), index as u32, corner as u8));
+    let mut edges = edges_by_lower(faces, vertices);
+    for edges in edges.chunk_by_mut(|a, b| a.lower == b.lower) {
+        // Equal edges come close to each other in their order.
+        if edges.len() > MAX_COMPARED {
+            edges.sort_by_key(|edge| edge.higher);
         }
-    }
-    let edges = sorted(&edges, vertices);
-    for (at, &(edge, face, corner)) in edges.iter().enumerate() {
-        let from = faces[face as usize].vertices[corner as usize];
-        if faces[face as usize].neighbors[corner as usize] != NONE {
-            continue;
-        }
-        for &(other_edge, other, other_corner) in edges[at + 1..].iter().take(MAX_COMPARED) {
-            if other_edge != edge {
-                break;
+        for at in 0..edges.len() {
+            let edge = edges[at];
+            if *edge.neighbor(faces) != NONE {
+                continue;
             }
-            let found = &faces[other as usize];
-            let free = found.neighbors[other_corner as usize] == NONE;
-            if free && other != face && found.vertices[other_corner as usize] != from {
-                faces[face as usize].neighbors[corner as usize] = other;
-                faces[other as usize].neighbors[other_corner as usize] = face;
-                break;
+            let others = edges[at + 1..].iter().take(MAX_COMPARED);
+            for other in others.filter(|other| other.higher == edge.higher && other.is_down != edge.is_down) {
+                if other.face != edge.face && *other.neighbor(faces) == NONE {
+                    *edge.neighbor(faces) = other.face;
+                    *other.neighbor(faces) = edge.face;
+                    break;
+                }
             }
         }
     }
 }
 
-/// Sorts edges by their vertices, keeping the order of equal ones. Buckets by lower vertex come first: few edges share one, so
-/// that this takes a fraction of the time.
-fn sorted(edges: &[Edge], vertices: usize) -> Vec<Edge> {
-    let lower = |(edge, ..): &Edge| (edge >> 32) as usize;
+/// Lists the edges of all but degenerate faces by their lower vertices, those of a vertex in the order of faces.
+fn edges_by_lower(faces: &[Face], vertices: usize) -> Vec<Edge> {
+    let of_face = |(face, Face { vertices, .. }): (usize, &Face)| {
+        let [p, q, r] = *vertices;
+        [(p, q), (q, r), (r, p)].into_iter().zip(0..).map(move |((from, to), corner)| Edge {
+            lower: from.min(to),
+            higher: from.max(to),
+            face: face as u32,
+            corner,
+            is_down: from > to,
+        })
+    };
+    let edges = || faces.iter().enumerate().filter(|(_, face)| !face.degenerate).flat_map(of_face);
     let mut places = vec![0; vertices + 1];
-    edges.iter().for_each(|edge| places[lower(edge) + 1] += 1);
+    let mut count = 0;
+    for edge in edges() {
+        places[edge.lower as usize + 1] += 1;
+        count += 1;
+    }
     for vertex in 1..=vertices {
         places[vertex] += places[vertex - 1];
     }
-    let mut sorted = vec![Edge::default(); edges.len()];
-    for edge in edges {
-        let place = &mut places[lower(edge)];
-        sorted[*place] = *edge;
+    let mut sorted = vec![Edge::default(); count];
+    for edge in edges() {
+        let place = &mut places[edge.lower as usize];
+        sorted[*place] = edge;
         *place += 1;
     }
-    sorted.chunk_by_mut(|a, b| lower(a) == lower(b)).for_each(|edges| edges.sort_by_key(|&(edge, ..)| edge));
     sorted
 }
 
@@ -228,8 +244,19 @@ fn find_groups(faces: &mut [Face]) -> (Vec<Group>, Vec<u32>) {
     (groups, members)
 }
 
+fn flattened(vector: Vec3, normal: Vec3) -> Vec3 {
+    vector - normal * normal.dot(vector)
+}
+
 fn on_plane(vector: Vec3, normal: Vec3) -> Vec3 {
-    (vector - normal * normal.dot(vector)).normalize_or_zero()
+    flattened(vector, normal).normalize_or_zero()
+}
+
+/// A right angle if a length is zero.
+fn angle(a: Vec3, b: Vec3) -> f32 {
+    let lengths = (a.length_squared() * b.length_squared()).sqrt();
+    let cos = if lengths > 0.0 { a.dot(b) / lengths } else { 0.0 };
+    cos.clamp(-1.0, 1.0).acos()
 }
 
 /// Whether two faces at a vertex may share a tangent, that is, their own are not exactly opposite.
@@ -246,21 +273,22 @@ fn opposed(faces: &[Face], members: &[u32], normal: Vec3) -> bool {
     first.any || !members.iter().all(|&face| beside(&faces[face as usize]))
 }
 
-/// Averages the faces' tangents, weighted by their angles at the vertex.
+/// Averages the tangents of those faces that `with` accepts, weighted by their angles at the vertex.
 fn blend(
     faces: &[Face],
-    members: &mut dyn Iterator<Item = u32>,
+    members: &[u32],
+    with: impl Fn(&Face) -> bool,
     group: &Group,
     positions: &[Vec3],
     normal: Vec3,
 ) -> Vec3 {
     let mut sum = Vec3::ZERO;
-    for face in members.map(|face| &faces[face as usize]).filter(|face| !face.any) {
+    for face in members.iter().map(|&face| &faces[face as usize]).filter(|face| !face.any && with(face)) {
         let corner = face.corner_at(group.vertex);
         let [before, here, after] =
             [corner + 2, corner, corner + 1].map(|corner| positions[face.vertices[corner % 3] as usize]);
-        let cos = on_plane(before - here, normal).dot(on_plane(after - here, normal));
-        sum += cos.clamp(-1.0, 1.0).acos() * on_plane(face.along_u, normal);
+        let angle = angle(flattened(before - here, normal), flattened(after - here, normal));
+        sum += angle * on_plane(face.along_u, normal);
     }
     sum.normalize_or_zero()
 }
