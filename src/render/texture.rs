@@ -133,15 +133,23 @@ impl ImageUploader {
     }
 }
 
-/// A texture with a full set of mip levels.
-fn image_texture(device: &wgpu::Device, [width, height]: [u32; 2], format: Format, srgb: bool) -> wgpu::Texture {
+/// A texture with the mip levels that its image has, `given`, or more that are then generated.
+fn image_texture(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: Format,
+    given: u32,
+    srgb: bool,
+) -> wgpu::Texture {
+    /// Levels with edges below 4 texels would only show where a model is as small as that, and take a pass each.
+    const NEVER_SEEN: u32 = 2;
     use wgpu::TextureUsages as Usages;
     let format = wgpu_format(format, srgb);
     let generated = if format.is_compressed() { Usages::empty() } else { Usages::RENDER_ATTACHMENT };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("image"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: width.max(height).ilog2() + 1,
+        mip_level_count: (width.max(height).ilog2() + 1).saturating_sub(NEVER_SEEN).max(given),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
@@ -171,7 +179,7 @@ fn upload_levels(device: &wgpu::Device, queue: &wgpu::Queue, image: &Ktx2, srgb:
     if size.into_iter().any(|edge| edge > max_size) || !device.features().contains(format.required_features()) {
         return None;
     }
-    let texture = image_texture(device, size, image.format, srgb);
+    let texture = image_texture(device, size, image.format, image.levels, srgb);
     for (mip_level, ([width, height], bytes)) in (0..).zip(image.levels()) {
         let (bytes_per_row, _) = image.format.layout([width, height]);
         queue.write_texture(
@@ -202,7 +210,7 @@ fn upload_pixels(
         smaller = Some(halved(smaller.as_deref().unwrap_or(pixels), width, height));
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
     }
-    let texture = image_texture(device, [width, height], Format::Rgba8, srgb);
+    let texture = image_texture(device, [width, height], Format::Rgba8, 1, srgb);
     queue.write_texture(
         texture.as_image_copy(),
         smaller.as_deref().unwrap_or(pixels),
@@ -225,7 +233,7 @@ fn upload_bitmap(
     if size.contains(&0) || size.into_iter().any(|edge| edge > max_size) {
         return None;
     }
-    let texture = image_texture(device, size, Format::Rgba8, srgb);
+    let texture = image_texture(device, size, Format::Rgba8, 1, srgb);
     queue.copy_external_image_to_texture(
         &wgpu::CopyExternalImageSourceInfo {
             source: wgpu::ExternalImageSource::ImageBitmap(bitmap.clone()),
