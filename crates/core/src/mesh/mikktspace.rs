@@ -154,7 +154,7 @@ impl Face {
 fn find_neighbors(faces: &mut [Face], vertices: usize) {
     let mut edges = edges_by_lower(faces, vertices);
     for edges in edges.chunk_by_mut(|a, b| a.lower == b.lower) {
-        // Equal edges come close to each other in their order.
+        // Brings equal edges together, within reach of each other.
         if edges.len() > MAX_COMPARED {
             edges.sort_by_key(|edge| edge.higher);
         }
@@ -254,7 +254,7 @@ fn on_plane(vector: Vec3, normal: Vec3) -> Vec3 {
 
 /// A right angle if a length is zero.
 fn angle(a: Vec3, b: Vec3) -> f32 {
-    let lengths = (a.length_squared() * b.length_squared()).sqrt();
+    let lengths = a.length() * b.length();
     let cos = if lengths > 0.0 { a.dot(b) / lengths } else { 0.0 };
     cos.clamp(-1.0, 1.0).acos()
 }
