@@ -1,5 +1,5 @@
 //! A character that is opened and drawn unseen, so that a page compiles and optimizes its code before it is needed: a skinned sheet
-//! with the two commonest materials, a base colour map alone, and with a normal map.
+//! with the two commonest materials, a base colour map alone, and with a normal map. The image is large enough for a mip level.
 
 /// Vertices along each edge of the sheet. Browsers optimize a loop that has run often.
 const SIDE: u16 = 32;
