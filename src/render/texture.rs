@@ -133,7 +133,7 @@ impl ImageUploader {
     }
 }
 
-/// A texture with the mip levels that its image has, `given`, or more that are then generated.
+/// A texture with room for the `given` mip levels of its image and for those to be generated.
 fn image_texture(
     device: &wgpu::Device,
     [width, height]: [u32; 2],
@@ -141,15 +141,16 @@ fn image_texture(
     given: u32,
     srgb: bool,
 ) -> wgpu::Texture {
-    /// Levels with edges below 4 texels would only show where a model is as small as that, and take a pass each.
-    const NEVER_SEEN: u32 = 2;
+    /// The longer edge of the smallest level that is generated: smaller ones would only show where a model is as small as they are,
+    /// and take a pass each.
+    const MIN_EDGE: u32 = 4;
     use wgpu::TextureUsages as Usages;
     let format = wgpu_format(format, srgb);
     let generated = if format.is_compressed() { Usages::empty() } else { Usages::RENDER_ATTACHMENT };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("image"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: (width.max(height).ilog2() + 1).saturating_sub(NEVER_SEEN).max(given),
+        mip_level_count: ((width.max(height) / MIN_EDGE).max(1).ilog2() + 1).max(given),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,

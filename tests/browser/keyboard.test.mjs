@@ -200,9 +200,10 @@ for (const renderer of BACK_ENDS)
     });
 
     onPage("a menu that opens late leaves the focus where it went meanwhile", () => "play=0", async (page) => {
-      await control(page, "button", "Export").focus();
+      const opener = control(page, "button", "Export");
+      await opener.focus();
       await untilStill(page);
-      await control(page, "button", "Export").evaluate((button) => {
+      await opener.evaluate((button) => {
         /** @type {HTMLElement} */ (button).click();
         /** @type {HTMLElement | null} */ (document.querySelector('#mirror [aria-label^="Share"]'))?.focus();
       });

@@ -18,6 +18,6 @@ fn the_rehearsals_character_has_what_most_characters_have() {
         (material.base_color_texture.is_some(), material.normal_texture.is_some())
     };
     assert_eq!([maps(0), maps(1)], [(true, false), (true, true)]);
-    // Images below get no mip levels: the pipeline that makes them would be compiled only with the first real image.
+    // A smaller image gets no mip levels, and the pipeline that makes them would be compiled only with the first real image.
     assert!(asset.images[0].width >= 8);
 }

@@ -158,7 +158,7 @@ export class Mirror {
     });
     element.addEventListener("click", () => {
       // What is in a menu leaves with it.
-      if (element.closest("[data-role=group]") === null) this.#opener = element;
+      if (menuAround(element) === null) this.#opener = element;
       this.#program.mirror_act(id, "click");
     });
     if (element instanceof HTMLInputElement) {
@@ -187,7 +187,7 @@ export class Mirror {
    */
   #keepFocus(before, menu, focus, hadTree) {
     if (this.#wanted === focus) this.#wanted = null;
-    const hasGoneOn = menu?.dataset.role === "group" && before.isConnected && before !== this.#opener && before.closest("[data-role=group]") === null;
+    const hasGoneOn = menu?.dataset.role === "group" && before.isConnected && before !== this.#opener && menuAround(before) === null;
     const stops = menu === null || hasGoneOn ? [] : stopsIn(menu);
     const isChooser = this.#opener?.dataset.role === "combobox";
     const first = (isChooser ? stops.find(({ ariaPressed }) => ariaPressed === "true") : undefined) ?? stops[0];
@@ -378,8 +378,7 @@ function chooseStop(list) {
  * @param {string} key
  */
 function neighbourOf(target, key) {
-  /** @type {HTMLElement | null} */
-  const menu = target instanceof HTMLElement ? target.closest("[data-role=group]") : null;
+  const menu = target instanceof HTMLElement ? menuAround(target) : null;
   const list = target instanceof HTMLElement ? target.closest(IN_LIST) : null;
   const step = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1 }[key];
   const end = { Home: 0, End: -1 }[key];
@@ -405,6 +404,9 @@ function neighbourOf(target, key) {
 
 /** @param {Element} list */
 const itemsOf = (list) => /** @type {HTMLElement[]} */ ([...list.querySelectorAll("[data-id]")]);
+
+/** @type {(element: HTMLElement) => HTMLElement | null} */
+const menuAround = (element) => element.closest("[data-role=group]");
 
 /** @param {HTMLElement} parent */
 const stopsIn = (parent) => [.../** @type {NodeListOf<HTMLElement>} */ (parent.querySelectorAll("button, input, [tabindex]"))].filter((stop) => stop.tabIndex >= 0 && stop.closest("[inert]") === null);

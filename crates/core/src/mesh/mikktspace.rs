@@ -26,6 +26,7 @@ struct Face {
     groups: [u32; 3],
 }
 
+/// An edge of a face, between two welded vertices.
 #[derive(Clone, Copy, Default)]
 struct Edge {
     lower: u32,
@@ -109,12 +110,6 @@ fn weld(positions: &[Vec3], normals: &[Vec3], uvs: &[Vec2]) -> Vec<u32> {
         .collect()
 }
 
-impl Edge {
-    fn neighbor<'a>(&self, faces: &'a mut [Face]) -> &'a mut u32 {
-        &mut faces[self.face as usize].neighbors[usize::from(self.corner)]
-    }
-}
-
 fn is_zero(number: f32) -> bool {
     number.abs() <= f32::MIN_POSITIVE
 }
@@ -150,11 +145,18 @@ impl Face {
     }
 }
 
+impl Edge {
+    /// The face across it.
+    fn neighbor<'a>(&self, faces: &'a mut [Face]) -> &'a mut u32 {
+        &mut faces[self.face as usize].neighbors[usize::from(self.corner)]
+    }
+}
+
 /// Pairs up faces that traverse an edge in opposite directions; if more than two share it, each pairs with the next.
 fn find_neighbors(faces: &mut [Face], vertices: usize) {
     let mut edges = edges_by_lower(faces, vertices);
     for edges in edges.chunk_by_mut(|a, b| a.lower == b.lower) {
-        // Brings equal edges together, within reach of each other.
+        // Equal edges would be too far apart to be compared.
         if edges.len() > MAX_COMPARED {
             edges.sort_by_key(|edge| edge.higher);
         }
@@ -189,15 +191,11 @@ fn edges_by_lower(faces: &[Face], vertices: usize) -> Vec<Edge> {
     };
     let edges = || faces.iter().enumerate().filter(|(_, face)| !face.degenerate).flat_map(of_face);
     let mut places = vec![0; vertices + 1];
-    let mut count = 0;
-    for edge in edges() {
-        places[edge.lower as usize + 1] += 1;
-        count += 1;
-    }
+    edges().for_each(|edge| places[edge.lower as usize + 1] += 1);
     for vertex in 1..=vertices {
         places[vertex] += places[vertex - 1];
     }
-    let mut sorted = vec![Edge::default(); count];
+    let mut sorted = vec![Edge::default(); places[vertices]];
     for edge in edges() {
         let place = &mut places[edge.lower as usize];
         sorted[*place] = edge;
@@ -252,7 +250,7 @@ fn on_plane(vector: Vec3, normal: Vec3) -> Vec3 {
     flattened(vector, normal).normalize_or_zero()
 }
 
-/// A right angle if a length is zero.
+/// The exact angle, a right one if a length is zero. glam's own is approximate, and NaN then.
 fn angle(a: Vec3, b: Vec3) -> f32 {
     let lengths = a.length() * b.length();
     let cos = if lengths > 0.0 { a.dot(b) / lengths } else { 0.0 };
