@@ -391,10 +391,17 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
         clip.map_or((0.0, 0.0), |(index, clip)| (f64::from(clip.duration_secs()), 1.0 / model.frames_per_sec(index)))
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
-    let (start_secs, end_secs) = (first.min(second), first.max(second));
-    // Of less than a frame, nothing would play.
-    let end_secs = end_secs.max((start_secs + frame_secs).min(end));
-    let start_secs = start_secs.min((end_secs - frame_secs).max(0.0));
+    let (mut start_secs, mut end_secs) = (first.min(second), first.max(second));
+    // Of less than a frame, nothing would play: what is moved stops a frame before the other.
+    if end_secs - start_secs < frame_secs {
+        let end_stays = state.playhead.range.map_or(end, |before| before.end_secs) == end_secs;
+        if end_stays || start_secs + frame_secs > end {
+            end_secs = if end_stays { end_secs.max(frame_secs.min(end)) } else { end };
+            start_secs = (end_secs - frame_secs).max(0.0);
+        } else {
+            end_secs = start_secs + frame_secs;
+        }
+    }
     state.playhead.range = Some(TimeRange { start_secs, end_secs });
 }
 

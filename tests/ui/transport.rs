@@ -71,6 +71,25 @@ fn in_and_out_points_are_set_dragged_and_cleared() {
     assert_eq!(press(&mut harness, text::CLEAR_RANGE), [Command::SetRange(None)]);
 }
 
+#[test]
+fn a_dragged_in_or_out_point_stops_at_the_other() {
+    let duration = f64::from(sample_bench(WIDE).state().library().active().unwrap().asset.clips[0].duration_secs());
+    let set = TimeRange { start_secs: 0.25 * duration, end_secs: 0.75 * duration };
+    for (dragged, share) in [(text::IN_POINT, 0.9), (text::OUT_POINT, 0.1)] {
+        let mut harness = sample_bench(WIDE);
+        harness.state_mut().change(|state| state.playhead.range = Some(set));
+        harness.run();
+        let (handle, bar) = (harness.get_by_label(dragged).rect().center(), harness.get_by_label(text::TIME).rect());
+        let beyond = pos2(bar.left() + share * bar.width(), handle.y);
+        drag(&mut harness, handle, beyond, PointerButton::Primary);
+        let range = harness.state().state().playhead.range.expect("is set");
+        let (kept, was) =
+            if dragged == text::IN_POINT { (range.end_secs, set.end_secs) } else { (range.start_secs, set.start_secs) };
+        assert_eq!(kept, was, "{dragged}: the other stays");
+        assert!((range.end_secs - range.start_secs - 1.0 / 30.0).abs() < 1e-6, "{dragged}: {range:?}");
+    }
+}
+
 /// With an out point at the beginning, or an in point at the end, nothing would play.
 #[test]
 fn a_range_has_at_least_one_frame() {

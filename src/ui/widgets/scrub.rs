@@ -149,8 +149,9 @@ pub fn show(
         let secs = bar.secs_at(pointer.x);
         scrubbed = (secs != scrub.time_secs).then_some(Scrubbed::Seek(secs));
     }
-    let start = |secs: f64| TimeRange { start_secs: secs.min(range.end_secs), ..range };
-    let end = |secs: f64| TimeRange { end_secs: secs.max(range.start_secs), ..range };
+    // As `Command::SetRange` limits them, so that nothing is requested while the pointer rests beyond the other handle.
+    let start = |secs: f64| TimeRange { start_secs: secs.min((range.end_secs - step_secs).max(0.0)), ..range };
+    let end = |secs: f64| TimeRange { end_secs: secs.max((range.start_secs + step_secs).min(duration_secs)), ..range };
     let dragged = [
         handle(ui, &bar, text::IN_POINT, range.start_secs, -1.0, scrub).map(start),
         handle(ui, &bar, text::OUT_POINT, range.end_secs, 1.0, scrub).map(end),
