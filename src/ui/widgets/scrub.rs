@@ -1,6 +1,6 @@
 //! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
 
-use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
@@ -169,8 +169,8 @@ pub fn show(
 fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
     let x = bar.x_of(secs);
-    // Larger for fingers, to the sides and upwards, where nothing else is.
-    let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 8.0), vec2(18.0, 18.0));
+    // The least that can be aimed at (WCAG 2.5.8); larger for fingers, to the sides and upwards, where nothing else is.
+    let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 7.0), Vec2::splat(24.0));
     let grab = grab.expand2(vec2(bar.above, 0.0)).with_min_y(grab.top() - bar.above);
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
     handle.widget_info(|| WidgetInfo::slider(true, secs, label));
