@@ -6,7 +6,6 @@ use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle, play_bu
 use super::scrub::{self, Scrub, Scrubbed};
 use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::ModelId;
 use crate::state::Command;
 use crate::ui::widgets::accessible;
 
@@ -14,8 +13,9 @@ use crate::ui::widgets::accessible;
 const MAX_SHARE_OF_TRACKS: f32 = 0.25;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: bool, out: &mut Output) {
-    let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
-    let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
+    let model = shown.library.active();
+    let (model_id, revision) = model.map_or_else(Default::default, |model| (model.id, model.clips_revision()));
+    let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX), revision);
     // A low screen has no room for them.
     let has_tracks = !shown.state.page.embed && ui.ctx().content_rect().height() >= LOW_HEIGHT;
     let has_feet = shown.state.display.show.source && has_tracks;

@@ -29,11 +29,15 @@ const MARK_SPACING: f32 = 6.0;
 /// Minimum distance between times in points.
 const TIME_SPACING: f32 = 64.0;
 
+/// Identifies a clip: its model, its index, and [`Model::clips_revision`](crate::library::Model::clips_revision), since another clip may
+/// take the same index.
+pub type ClipId = (ModelId, usize, u32);
+
 /// Positions of a clip's keys at the resolution of the bar, cached between frames.
 #[derive(Debug, Default)]
 pub struct KeyMarks {
-    /// Identifies the clip and the width that the marks were computed for.
-    computed_for: Option<(ModelId, usize, u32, u32, usize)>,
+    /// The clip and the width that the marks were computed for.
+    computed_for: Option<(ClipId, u32)>,
     /// From 0 (start) to 1 (end). Of keys closer than [`MARK_SPACING`], only the first has a mark.
     positions: Vec<f32>,
     /// Times at regular distances, with their positions.
@@ -41,10 +45,8 @@ pub struct KeyMarks {
 }
 
 impl KeyMarks {
-    fn refresh(&mut self, clip: &Clip, clip_id: (ModelId, usize), width: f32) {
-        // The number alone is not enough: re-mapping replaces a borrowed clip under the same number.
-        let keys = clip.key_times_secs().count();
-        let key = (clip_id.0, clip_id.1, width as u32, clip.duration_secs().to_bits(), keys);
+    fn refresh(&mut self, clip: &Clip, clip_id: ClipId, width: f32) {
+        let key = (clip_id, width as u32);
         if self.computed_for == Some(key) {
             return;
         }
@@ -114,13 +116,8 @@ impl Bar {
     }
 }
 
-/// Shows the bar; returns what was dragged, and whether the playhead is held. `clip_id` identifies the clip.
-pub fn show(
-    ui: &mut Ui,
-    scrub: &Scrub<'_>,
-    clip_id: (ModelId, usize),
-    marks: &mut KeyMarks,
-) -> (Option<Scrubbed>, bool) {
+/// Shows the bar; returns what was dragged, and whether the playhead is held.
+pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMarks) -> (Option<Scrubbed>, bool) {
     // Fingers get more room above the handles and below the rail, if the screen has it.
     let is_roomy = style::is_for_fingers(ui) && ui.ctx().content_rect().height() >= ROOMY_HEIGHT;
     let (above, below) = if is_roomy { (14.0, 5.0) } else { (0.0, 0.0) };
@@ -251,7 +248,7 @@ mod tests {
         let mut clip = ClipBuilder::new("Long", &skeleton);
         clip.channel(JointIndex(0), Interpolation::Linear, &times, keys).expect("as many keys as times");
         let (mut marks, width) = (KeyMarks::default(), 372.0);
-        marks.refresh(&clip.build(), (ModelId::default(), 0), width);
+        marks.refresh(&clip.build(), (ModelId::default(), 0, 0), width);
         assert!(marks.positions.len() > 40, "{}", marks.positions.len());
         let gaps = marks.positions.windows(2).map(|pair| (pair[1] - pair[0]) * width);
         gaps.for_each(|gap| assert!((MARK_SPACING - 0.01..2.0 * MARK_SPACING).contains(&gap), "{gap}"));
