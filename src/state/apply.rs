@@ -318,24 +318,20 @@ fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
 }
 
 fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
-    let Some((model, clip)) = active(state, model) else { return };
     if !state.playback.playing || !clock_secs.is_finite() {
         return;
     }
+    let secs = clock_secs * state.playback.speed;
+    advance_fade(state, model, secs);
+    let Some((model, clip)) = active(state, model) else { return };
     let range = play_range(model, clip, state);
     let length = range.length_secs();
-    let secs = clock_secs * state.playback.speed;
     state.playhead.time_secs = whole_microseconds(state.playhead.time_secs + secs);
-    if let Some(fade) = &mut state.playhead.fade {
-        fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
-        let from = clip_of(model, &fade.clip);
-        if fade.elapsed_secs >= model.crossfade_secs(from, Some(clip)) {
-            state.playhead.fade = None;
-        }
-    }
     match state.playback.loop_mode {
         LoopMode::Once if state.playhead.time_secs >= range.end_secs => {
             state.playhead.time_secs = range.end_secs;
+            // The last pose is the clip's own.
+            state.playhead.fade = None;
             state.playback.playing = false;
         }
         // Whole loops are subtracted to keep the playhead small, however long it runs. Not with layers: they loop with
@@ -354,6 +350,14 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     if length <= 0.0 {
         state.playhead.time_secs = range.start_secs;
     }
+}
+
+/// Also into the rest pose, which has no time of its own.
+fn advance_fade(state: &mut ViewerState, model: Option<&Model>, secs: f64) {
+    let (Some(model), Some(mut fade)) = (model, state.playhead.fade.take()) else { return };
+    fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
+    let crossfade_secs = model.crossfade_secs(clip_of(model, &fade.clip), active_clip(model, state));
+    state.playhead.fade = (fade.elapsed_secs < crossfade_secs).then_some(fade);
 }
 
 /// Keeps the running playhead short in links. Times that are set are not rounded, so that they hit keys exactly.

@@ -1,5 +1,6 @@
 //! Crossfades between clips, with the duration from the joint map.
 
+use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
 use gaitway::state::{ClipChoice, Command, Playback, Playhead, PoseSampler, ViewerState, apply};
@@ -63,4 +64,31 @@ fn nothing_fades_while_paused_or_between_the_models_own_clips() {
     let mut paused =
         ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
     assert_eq!(change(&mut paused, own), None);
+}
+
+/// The rest pose has no time of its own, and a clip that ends before the crossfade ends as itself.
+#[test]
+fn a_crossfade_into_the_rest_pose_or_past_the_end_of_a_clip_completes() {
+    let library = walker_with_crossfade();
+    let own = library.active().expect("a model").asset.clips.len();
+    let playing = ViewerState {
+        playhead: Playhead { clip: ClipChoice::Named(own.to_string()), ..Playhead::default() },
+        ..ViewerState::default()
+    };
+    let mut resting = playing.clone();
+    apply(&mut resting, &library, Command::Advance(0.3));
+    apply(&mut resting, &library, Command::SetClip(ClipChoice::RestPose));
+    assert!(resting.playhead.fade.is_some());
+    apply(&mut resting, &library, Command::Advance(0.2));
+    assert!(resting.playhead.fade.is_some(), "half of it");
+    apply(&mut resting, &library, Command::Advance(0.21));
+    assert_eq!((resting.playhead.fade, resting.playhead.time_secs), (None, 0.0));
+    let mut once = playing;
+    apply(&mut once, &library, Command::SetLoopMode(LoopMode::Once));
+    apply(&mut once, &library, Command::SetClip(ClipChoice::First));
+    let secs = library.active().and_then(|model| model.clip(0)).expect("a clip").duration_secs();
+    apply(&mut once, &library, Command::SetRange(Some(TimeRange { start_secs: 0.0, end_secs: 0.2 })));
+    assert!(secs > 0.2);
+    apply(&mut once, &library, Command::Advance(0.25));
+    assert_eq!((once.playhead.fade, once.playback.playing), (None, false));
 }
