@@ -151,6 +151,7 @@ impl Editor {
         // A whole view chooses its clip itself.
         let is_map_edit = affects_retargeting && !chooses_copy && !matches!(command, Command::Replace(_));
         let playing = if is_map_edit { self.retargeted_clip() } else { None };
+        let edited = if is_map_edit { self.edited_clips() } else { Vec::new() };
         let reframes = matches!(command, Command::SetUp(_));
         let is_other_clip = (chooses_copy || matches!(command, Command::SetClip(_))) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
@@ -176,6 +177,7 @@ impl Editor {
             self.suit_automatic_follow();
         }
         if is_map_edit {
+            self.keep_edits(&edited);
             self.follow_clip(playing);
             self.hold_view(view_before);
         }

@@ -1,13 +1,15 @@
 //! Opening and removing motions, and retargeting their clips to the active model. Operations that fail change nothing; those
 //! that succeed can be undone.
 
+use std::collections::BTreeMap;
+
 use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
 use crate::asset::Warning;
 use crate::library::{BorrowError, BorrowedClip, Library, Model, ModelId, Motion, names_checksum};
 use crate::retarget::{JointMap, MapError};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
-    choice_of_clip, clip_changes, clip_copies, unknown_clip,
+    choice_of_clip, clip_called, clip_changes, clip_copies, edited_clips, name_of_clip, rename_clips, unknown_clip,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -17,6 +19,15 @@ pub(super) struct ClipIdentity {
     source: String,
     source_clip: usize,
     time_secs: f64,
+}
+
+/// A motion's clip that edits refer to.
+#[derive(Debug)]
+pub(super) struct EditedClip {
+    /// How they call it.
+    name: String,
+    title: String,
+    clip: ClipIdentity,
 }
 
 impl ClipIdentity {
@@ -121,8 +132,11 @@ impl Editor {
         let mut all: Vec<Motion> = self.others(&motions).cloned().collect();
         all.extend(motions);
         self.state.retarget.map.extend(maps);
+        let edited = self.edited_clips();
         self.set_motions(all);
-        self.retarget()
+        let problems = self.retarget();
+        self.keep_edits(&edited);
+        problems
     }
 
     /// Returns the loaded motions whose origins are not among those of `motions`.
@@ -214,12 +228,46 @@ impl Editor {
     /// Returns the active clip if it is retargeted.
     pub(super) fn retargeted_clip(&self) -> Option<ClipIdentity> {
         let model = self.library.active()?;
-        // A copy keeps its name, whatever becomes of the others.
-        let clip = active_clip(model, &self.state).filter(|&clip| !model.is_copy(clip))?;
-        let borrowed = model.borrowed(clip)?;
+        let clip = self.identity_of(model, active_clip(model, &self.state)?)?;
+        Some(ClipIdentity { time_secs: self.state.playhead.time_secs, ..clip })
+    }
+
+    /// Identifies a clip if it is retargeted. A copy keeps its name, whatever becomes of the others.
+    fn identity_of(&self, model: &Model, clip: usize) -> Option<ClipIdentity> {
+        let borrowed = model.borrowed(clip).filter(|_| !model.is_copy(clip))?;
         let first = ClipIdentity::first_of(self.library.motions().get(borrowed.motion)?);
-        let time_secs = self.state.playhead.time_secs;
-        Some(ClipIdentity { source_clip: borrowed.source_clip, time_secs, ..first })
+        Some(ClipIdentity { source_clip: borrowed.source_clip, ..first })
+    }
+
+    /// Returns the retargeted clips that edits refer to, whose names may change with the list of clips.
+    pub(super) fn edited_clips(&self) -> Vec<EditedClip> {
+        let Some(model) = self.library.active() else { return Vec::new() };
+        let edited = |name: &str| {
+            let clip = clip_called(model, name)?;
+            let (name, title) = (name.to_owned(), model.clip_titles()[clip].clone());
+            Some(EditedClip { name, title, clip: self.identity_of(model, clip)? })
+        };
+        edited_clips(&self.state.edits).into_iter().filter_map(edited).collect()
+    }
+
+    /// Makes edits refer to the same clips as before. Those of clips whose motion is gone are dropped; those of clips that only wait
+    /// for pairs in their map keep a name that no other clip has.
+    pub(super) fn keep_edits(&mut self, edited: &[EditedClip]) {
+        let Some(model) = self.library.active() else { return };
+        let is_free = |name: &&String| clip_called(model, name).is_none();
+        let new_name = |EditedClip { name, title, clip }: &EditedClip| match self.find_retargeted(clip) {
+            Some(index) if clip_called(model, name) == Some(index) => Some(name.clone()),
+            Some(index) => Some(name_of_clip(model, index)),
+            None if self.is_loaded(clip) => [name, title].into_iter().find(is_free).cloned(),
+            None => None,
+        };
+        let new_names = edited.iter().map(|edited| (edited.name.clone(), new_name(edited)));
+        let renamed: BTreeMap<_, _> = new_names.filter(|(name, new)| new.as_ref() != Some(name)).collect();
+        if !renamed.is_empty() {
+            rename_clips(&mut self.state.edits, renamed);
+            // Clips have been copied and changed by their former names.
+            self.retarget();
+        }
     }
 
     /// Plays this clip if the model has it, otherwise the first retargeted one; does nothing for `None`.
@@ -227,7 +275,7 @@ impl Editor {
         let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
         let first = model.borrowed_clips().next().map(|(clip, _)| choice_of_clip(model, clip));
         if let Some(clip) = self.find_retargeted(&choice) {
-            self.apply(Command::SetClip(clip));
+            self.apply(Command::SetClip(choice_of_clip(model, clip)));
             self.apply(Command::Seek(choice.time_secs));
         } else if let Some(first) = first {
             self.apply(Command::SetClip(first));
@@ -256,23 +304,25 @@ impl Editor {
         Some(format!("{subject} plays the motion borrowed from {}{own}.", short_name(&motion.source)))
     }
 
-    fn find_retargeted(&self, wanted: &ClipIdentity) -> Option<ClipChoice> {
+    fn is_loaded(&self, clip: &ClipIdentity) -> bool {
+        self.library.motions().iter().any(|motion| clip.is_of(motion))
+    }
+
+    fn find_retargeted(&self, wanted: &ClipIdentity) -> Option<usize> {
         let model = self.library.active()?;
         let is_wanted = |borrowed: &BorrowedClip| {
             let motion = self.library.motions().get(borrowed.motion);
             borrowed.source_clip == wanted.source_clip && motion.is_some_and(|motion| wanted.is_of(motion))
         };
-        let (clip, _) = model.borrowed_clips().find(|(_, borrowed)| is_wanted(borrowed))?;
-        Some(choice_of_clip(model, clip))
+        model.borrowed_clips().find(|(_, borrowed)| is_wanted(borrowed)).map(|(clip, _)| clip)
     }
 
     /// Makes this clip active at the time and in the range that the state has; false if the model lacks it.
     pub(super) fn keep_retargeted(&mut self, clip: &ClipIdentity) -> bool {
-        let found = self.find_retargeted(clip);
-        if let Some(clip) = &found {
-            self.state.playhead.clip.clone_from(clip);
-        }
-        found.is_some()
+        let choice = |model| Some(choice_of_clip(model, self.find_retargeted(clip)?));
+        let Some(choice) = self.library.active().and_then(choice) else { return false };
+        self.state.playhead.clip = choice;
+        true
     }
 
     /// Keeps the clip that was active before its map changed. A map without pairs leaves no clip: the rest pose is active until
@@ -280,8 +330,7 @@ impl Editor {
     pub(super) fn follow_clip(&mut self, playing: Option<ClipIdentity>) {
         let waited = self.waiting_clip.take().filter(|_| self.state.playhead.clip == ClipChoice::RestPose);
         let Some(clip) = playing.or(waited) else { return };
-        let is_loaded = self.library.motions().iter().any(|motion| clip.is_of(motion));
-        if is_loaded && !self.keep_retargeted(&clip) {
+        if self.is_loaded(&clip) && !self.keep_retargeted(&clip) {
             self.state.playhead.clip = ClipChoice::RestPose;
             self.waiting_clip = Some(clip);
         }
@@ -311,8 +360,10 @@ impl Editor {
         if motions.is_empty() {
             self.state.retarget = RetargetEdits::default();
         }
+        let edited = self.edited_clips();
         self.set_motions(motions);
         self.retarget();
+        self.keep_edits(&edited);
         (self.needs_redraw, self.is_changed) = (true, true);
     }
 

@@ -1,10 +1,10 @@
 //! Edits of clips: their changes, and copies with changes of their own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::apply::set_clip;
 use super::layers::clip_of_layer;
-use super::playhead::{active_clip, choice_of_clip, clip_called};
+use super::playhead::{active_clip, choice_of_clip, clip_called, name_of_clip};
 use super::{ClipChoice, ClipCopy, Edits, Playhead, ViewerState};
 use crate::anim::{Clip, TimeRange, clip_time};
 use crate::library::Model;
@@ -35,7 +35,7 @@ pub fn changes_of(model: &Model, state: &ViewerState, clip: usize) -> ClipChange
 /// Replaces the changes of a clip.
 pub(super) fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
     let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
-    let ClipChoice::Named(name) = choice_of_clip(model, clip) else { return };
+    let name = name_of_clip(model, clip);
     let changes = changes.clamped();
     let before = changes_of(model, state, clip);
     // A link may name the clip by its index.
@@ -50,14 +50,13 @@ pub(super) fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: 
 pub(super) fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
     let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
     let original = model.original(clip);
-    let ClipChoice::Named(of) = choice_of_clip(model, original) else { return };
     if state.edits.copies.len() == Edits::MAX_COPIES {
         return;
     }
     let titles = model.clip_titles();
     let is_free = |name: &String| !titles.contains(name) && !state.edits.has_copy(name);
     let Some(name) = (1..).map(|part: u32| format!("{} part {part}", titles[original])).find(is_free) else { return };
-    state.edits.copies.push(ClipCopy { name: name.clone(), of });
+    state.edits.copies.push(ClipCopy { name: name.clone(), of: name_of_clip(model, original) });
     insert_changes(state, name.clone(), changes.clamped());
     set_clip(state, Some(model), ClipChoice::Named(name));
 }
@@ -72,6 +71,28 @@ pub(super) fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: 
     state.edits.layers.retain(|layer| clip_of_layer(model, layer) != Some(clip));
     state.edits.copies.retain(|copy| copy.name != name);
     state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
+}
+
+/// Returns the names by which edits refer to clips.
+pub fn edited_clips(edits: &Edits) -> BTreeSet<&str> {
+    let originals = edits.copies.iter().map(|copy| &copy.of);
+    let layers = edits.layers.iter().map(|layer| &layer.clip);
+    edits.clips.keys().chain(originals).chain(layers).map(String::as_str).collect()
+}
+
+/// Makes edits refer to clips by new names, as far as `renamed` has them; `None` drops the edits of a clip, with its copies.
+pub fn rename_clips(edits: &mut Edits, mut renamed: BTreeMap<String, Option<String>>) {
+    for copy in &edits.copies {
+        if renamed.get(&copy.of) == Some(&None) {
+            renamed.insert(copy.name.clone(), None);
+        }
+    }
+    let new_name = |name: &str| renamed.get(name).map_or_else(|| Some(name.to_owned()), Clone::clone);
+    let rename = |name: &mut String| new_name(name).map(|new| *name = new).is_some();
+    edits.copies.retain_mut(|copy| rename(&mut copy.of));
+    edits.layers.retain_mut(|layer| rename(&mut layer.clip));
+    let clips = std::mem::take(&mut edits.clips).into_iter();
+    edits.clips = clips.filter_map(|(name, changes)| Some((new_name(&name)?, changes))).collect();
 }
 
 /// Keeps the pose and the range of the active clip, whose times stretch and turn round. A trimmed clip starts over.

@@ -32,7 +32,7 @@ pub use apply::apply;
 pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
-pub use clips::{changes_of, clip_changes, clip_copies};
+pub use clips::{changes_of, clip_changes, clip_copies, edited_clips, rename_clips};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use edited::Edited;
@@ -55,7 +55,10 @@ pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
 pub use pins::{looks_at_camera, pinned_clip, pinning};
-pub use playhead::{PoseSampler, active_clip, choice_of_clip, clip_secs, play_range, unknown_clip, world_from_model};
+pub use playhead::{
+    PoseSampler, active_clip, choice_of_clip, clip_called, clip_secs, name_of_clip, play_range, unknown_clip,
+    world_from_model,
+};
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};

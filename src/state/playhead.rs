@@ -32,7 +32,7 @@ pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
 }
 
 /// Finds a clip by its name, its index in decimal, or its display title.
-pub(super) fn clip_called(model: &Model, name: &str) -> Option<usize> {
+pub fn clip_called(model: &Model, name: &str) -> Option<usize> {
     if name.is_empty() {
         return None;
     }
@@ -41,12 +41,20 @@ pub(super) fn clip_called(model: &Model, name: &str) -> Option<usize> {
     find_clip(model.clips(), ClipQuery::NameOrIndex(name)).or_else(by_title)
 }
 
-/// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index.
-pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
+/// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index, or by title if another clip is called
+/// like the index.
+pub fn name_of_clip(model: &Model, clip: usize) -> String {
     let name = model.clip(clip).map_or("", |clip| clip.name());
-    let found = clip_called(model, name);
-    let unique = model.clips().filter(|other| other.name() == name).count() == 1;
-    ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
+    let is_unique = model.clips().filter(|other| other.name() == name).count() == 1;
+    let (name, index) = (is_unique.then(|| name.to_owned()), clip.to_string());
+    let title = || model.clip_titles().get(clip).cloned();
+    let is_found = |name: &String| clip_called(model, name) == Some(clip);
+    name.filter(is_found).or_else(|| title().filter(|_| !is_found(&index))).unwrap_or(index)
+}
+
+/// Returns the choice of a clip, as [`name_of_clip`] calls it.
+pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
+    ClipChoice::Named(name_of_clip(model, clip))
 }
 
 /// Returns the in and out points, clamped to the clip.

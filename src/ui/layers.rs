@@ -8,7 +8,7 @@ use super::{Output, Shown, text, tracks};
 use crate::asset::Slot;
 use crate::library::Model;
 use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use crate::state::{ClipChoice, Command, choice_of_clip, clip_of_layer, title};
+use crate::state::{Command, clip_of_layer, name_of_clip, title};
 
 const WEIGHT: SliderSettings =
     SliderSettings { range: (0.0, 1.0), default: 1.0, decimals: 2, suffix: "", logarithmic: false };
@@ -71,7 +71,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         // On the upper body, so that the legs show what a layer is for: the clip below goes on.
         let has_arms = model.body().slots.0.contains_key(&Slot::LeftUpperArm);
         let mask = if has_arms { LayerMask::of_parts(&UPPER_BODY) } else { LayerMask::default() };
-        layers.push(ClipLayer { clip: name_of(model, clip), mask, ..ClipLayer::default() });
+        layers.push(ClipLayer { clip: name_of_clip(model, clip), mask, ..ClipLayer::default() });
         ui.data_mut(|data| data.insert_temp(added_id, before.len()));
     }
     if layers != *before {
@@ -86,13 +86,6 @@ enum Moved {
     Removed {
         by_key: bool,
     },
-}
-
-fn name_of(model: &Model, clip: usize) -> String {
-    match choice_of_clip(model, clip) {
-        ClipChoice::Named(name) => name,
-        ClipChoice::First | ClipChoice::RestPose => String::new(),
-    }
 }
 
 fn title_of<'a>(model: &'a Model, layer: &'a ClipLayer) -> &'a str {
@@ -128,7 +121,7 @@ fn card(
             controls::chooser(ui, "clip", text::LAYER_CLIP, shown, choices)
         });
         if let Some(index) = picked {
-            layer.clip = name_of(model, index);
+            layer.clip = name_of_clip(model, index);
         }
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);

@@ -3,9 +3,11 @@
 use gaitway::anim::{Clip, TimeRange};
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::Model;
-use gaitway::retarget::{ClipChanges, ClipLayer};
-use gaitway::state::{ClipChoice, Command, Edits, active_clip, active_map, from_link, to_link};
+use gaitway::library::{BorrowedClip, Model};
+use gaitway::retarget::{ClipChanges, ClipLayer, JointMap};
+use gaitway::state::{
+    ClipChoice, Command, Edits, active_clip, active_map, changes_of, clip_of_layer, from_link, to_link,
+};
 
 use super::{editor, open_motion, title};
 
@@ -154,4 +156,58 @@ fn a_link_has_copies_and_says_what_they_lack() {
     )
     .expect_err("too many");
     assert_eq!(model(&again).clip_titles()[3..], ["A", "B"]);
+}
+
+/// The index of a motion's clip among all, since all motions have clips of the same names.
+fn clip_of(editor: &Editor, source: &str, source_clip: usize) -> Option<usize> {
+    let motion = editor.library().motions().iter().position(|motion| motion.source == source)?;
+    let is_wanted = |borrowed: &BorrowedClip| borrowed.motion == motion && borrowed.source_clip == source_clip;
+    model(editor).borrowed_clips().find(|(_, borrowed)| is_wanted(borrowed)).map(|(clip, _)| clip)
+}
+
+fn is_mirrored(editor: &Editor, source: &str) -> Option<bool> {
+    Some(changes_of(model(editor), editor.state(), clip_of(editor, source, 0)?).mirror)
+}
+
+/// Clips of several motions are often called alike, so that edits name them by index.
+#[test]
+fn edits_stay_with_their_clip_whatever_becomes_of_other_motions() {
+    let mut editor = editor("sample:pilot");
+    for motion in ["walk.glb", "run.glb", "jump.glb"] {
+        open_motion(&mut editor, motion);
+    }
+    let mirror = || Box::new(ClipChanges { mirror: true, ..ClipChanges::NONE });
+    let run = clip_of(&editor, "run.glb", 0).expect("borrowed");
+    editor.apply(Command::ChangeClip { clip: run, changes: mirror() });
+    editor.apply(Command::SetLayers(vec![ClipLayer { clip: run.to_string(), ..ClipLayer::default() }]));
+    cut(&mut editor, run, 0.1, 0.3);
+    let of_copy = |editor: &Editor| model(editor).original(model(editor).clip_count() - 1);
+    let check = |editor: &Editor, names: &[&str]| {
+        for name in names {
+            assert_eq!(is_mirrored(editor, name), Some(*name == "run.glb"), "{name} of {names:?}");
+        }
+        let run = clip_of(editor, "run.glb", 0).expect("borrowed");
+        assert_eq!(clip_of_layer(model(editor), &editor.state().edits.layers[0]), Some(run));
+        assert_eq!(of_copy(editor), run);
+    };
+    check(&editor, &["walk.glb", "run.glb", "jump.glb"]);
+    // A newer version of a motion comes last.
+    open_motion(&mut editor, "walk.glb");
+    check(&editor, &["walk.glb", "run.glb", "jump.glb"]);
+    open_motion(&mut editor, "run.glb");
+    check(&editor, &["walk.glb", "run.glb", "jump.glb"]);
+    editor.remove_motion(0);
+    check(&editor, &["walk.glb", "run.glb"]);
+    // Without pairs, a motion has no clips. All of the same joints share their map.
+    editor.apply(Command::SetMap { motion: 0, map: Some(Box::new(JointMap::with_proposed_options())) });
+    assert_eq!(clip_of(&editor, "run.glb", 0), None);
+    editor.apply(Command::SetMap { motion: 0, map: None });
+    check(&editor, &["walk.glb", "run.glb"]);
+    // Edits go with their motion, and come back with it.
+    let run = editor.library().motions().iter().position(|motion| motion.source == "run.glb").expect("is there");
+    editor.remove_motion(run);
+    let Edits { clips, copies, layers, .. } = &editor.state().edits;
+    assert_eq!((clips.len(), copies.len(), layers.len()), (0, 0, 0));
+    assert!(editor.undo());
+    check(&editor, &["walk.glb", "run.glb"]);
 }
