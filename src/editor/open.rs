@@ -88,7 +88,9 @@ impl Editor {
                 (Some(opened), _) => self.open_map(&opened.map),
                 // The view is of what is loaded.
                 (None, Some(view)) => {
+                    let before = self.snapshot();
                     self.apply(Command::Replace(Box::new(view)));
+                    self.remember(before.filter(|before| !before.state.has_edits_of(&self.state)));
                     Ok(())
                 }
                 (None, None) => Ok(()),

@@ -48,15 +48,14 @@ impl History {
         let before = state.clone();
         apply(state, library, command);
         // Commands that move the camera while a slider is dragged don't end the gesture.
-        if before.undoable() != state.undoable() {
+        if !before.has_edits_of(state) {
             let gesture = Some(Gesture { kind, has_ended: false, presses: 0 });
             if self.gesture != gesture {
                 self.push(Step::Edits(before));
             }
             self.future.clear();
             self.gesture = gesture;
-            let is_back =
-                |step: &mut Step| matches!(step, Step::Edits(before) if before.undoable() == state.undoable());
+            let is_back = |step: &mut Step| matches!(step, Step::Edits(before) if before.has_edits_of(state));
             if self.past.pop_if(is_back).is_some() {
                 self.gesture = None;
             }

@@ -99,6 +99,11 @@ impl ViewerState {
         UndoableEdits { retarget, edits, inspect, display, lighting }
     }
 
+    /// Whether the groups that undo covers are equal.
+    pub fn has_edits_of(&self, other: &Self) -> bool {
+        self.undoable() == other.undoable()
+    }
+
     /// Copies the groups that undo covers from another state.
     pub(super) fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();

@@ -12,7 +12,7 @@ use gaitway::library::{Library, Model, Motion};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, active_clip,
-    from_link, to_link,
+    choice_of_clip, from_link, to_link,
 };
 use glam::Vec3;
 use serde_json::json;
@@ -119,6 +119,53 @@ fn a_state_about_other_files_is_ignored() {
     assert_eq!(editor.state().playback.speed, 3.0);
     editor.apply_partial(&serde_json::json!({ "speed": 2, "fov": "wide" })).expect_err("all or none");
     assert_eq!(editor.state().playback.speed, 3.0);
+}
+
+#[test]
+fn a_link_to_the_loaded_files_can_be_undone() {
+    let mut editor = editor("sample:pilot");
+    editor.apply(Command::SetExposure(1.0));
+    let before = editor.state().clone();
+    let mut view = ViewerState::of_model("sample:pilot".to_owned());
+    view.display.exposure = 2.0;
+    let follow = |editor: &mut Editor, view: &ViewerState| {
+        editor.open(Contents::default(), Some(view.clone()), &mut any).expect("is loaded");
+    };
+    follow(&mut editor, &view);
+    assert_eq!(editor.state().display.exposure, 2.0);
+    assert!(editor.undo());
+    assert_eq!(editor.state(), &before);
+    assert!(editor.redo());
+    assert_eq!(editor.state().display.exposure, 2.0);
+    // Another time is nothing to undo.
+    let steps = editor.undo_steps();
+    view.playhead.time_secs = 0.5;
+    follow(&mut editor, &view);
+    assert_eq!((editor.state().playhead.time_secs, editor.undo_steps()), (0.5, steps));
+}
+
+#[test]
+fn a_clip_whose_number_is_the_name_of_another_can_be_chosen() {
+    let mut editor = editor("sample:pilot");
+    let walker = samples::load("walker").expect("is generated").asset;
+    let mut parts = Arc::into_inner(walker).expect("of one model").into_parts();
+    let clip = |name: &str| {
+        let mut clip = ClipBuilder::new(name, &parts.skeleton);
+        let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::Y]);
+        clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("two keys");
+        clip.build()
+    };
+    parts.clips = ["1", "", "Walk", "Walk"].map(clip).to_vec();
+    let model = Model::new("odd.glb".to_owned(), Asset::new(parts).expect("valid indices"), Vec::new());
+    let models = vec![OpenedModel { model, files: None }];
+    editor.open(Contents { models, ..Contents::default() }, None, &mut any).expect("fits");
+    for wanted in 0..4 {
+        let model = editor.library().active().expect("a model");
+        let choice = choice_of_clip(model, wanted);
+        editor.apply(Command::SetClip(choice.clone()));
+        let model = editor.library().active().expect("a model");
+        assert_eq!(active_clip(model, editor.state()), Some(wanted), "{choice:?}");
+    }
 }
 
 #[test]
