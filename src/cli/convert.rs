@@ -33,6 +33,11 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
     }
     let found = models.iter().map(|(name, _)| name.clone()).collect();
     let Ok([(name, asset)]) = <[_; 1]>::try_from(models) else { return Err(SortError::SeveralModels { found }.into()) };
+    if arguments.unit.is_some() && asset.format != "bvh" {
+        let failure =
+            Failure::expected("a .bvh", format!("a .{}", asset.format)).with_hint("other files say their unit");
+        return Err(failure.at("--unit").in_file(&name));
+    }
     let options = LoadOptions { bvh_unit_metres: arguments.unit.map(Unit::metres), ..LoadOptions::default() };
     let format = clip_format_of(&arguments.out).filter(|&format| {
         let is_copy = asset.format == "vrma" && arguments.clip.is_none() && arguments.edits.is_none();
@@ -51,6 +56,11 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         }
         print_warnings(&name, &asset.warnings);
         let clip = changed_clip(&name, &asset, arguments)?.renamed();
+        if !clip.properties().is_empty() {
+            warn(&format!(
+                "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
+            ));
+        }
         let bytes = write_model(&set, &name, &asset.skeleton, &[&clip])?;
         return Ok((bytes, model_extensions(&asset)));
     }
@@ -89,6 +99,14 @@ fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outc
 
 /// Writes a model of another format in the pose of a link.
 fn posed(arguments: &ConvertArguments, link: &str, disk: &Disk) -> Outcome<Vec<u8>> {
+    let others = [
+        ("--clip", arguments.clip.is_some()),
+        ("--unit", arguments.unit.is_some()),
+        ("its changes, layers and pins", !arguments.edits.is_none()),
+    ];
+    if let Some((other, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Failure::expected("a pose alone", other).at("--view"));
+    }
     // Motions and maps beside the model are not part of its pose.
     let opened = Opened { motions: Vec::new(), map: None, ..open(&arguments.input.files, disk)? };
     let format = opened.model.asset.format;

@@ -170,6 +170,20 @@ fn convert_writes_a_motion_in_the_requested_unit() {
 }
 
 #[test]
+fn convert_refuses_options_that_would_have_no_effect() {
+    let (folder, _) = folder("convert-options");
+    let out = folder.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    check_fails(&["convert", "assets/samples/pilot.glb", "--unit", "cm", "--out", out], 1, "--unit: expected a .bvh");
+    let view = ["convert", "assets/samples/ssd.obj", "--view", "pose=1:0:0:20", "--out", out];
+    for (options, found) in [(["--unit", "cm"], "--unit"), (["--clip", "0"], "--clip"), (["--speed", "2"], "changes")] {
+        let arguments: Vec<&str> = view.iter().chain(&options).copied().collect();
+        check_fails(&arguments, 1, "--view: expected a pose alone, found ");
+        check_fails(&arguments, 1, found);
+    }
+}
+
+#[test]
 fn errors_say_what_to_do() {
     let (folder, motion) = folder("errors");
     let file = |name: &str, content: Value| {
