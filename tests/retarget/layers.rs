@@ -47,3 +47,24 @@ fn a_stretched_spline_has_the_same_curve() {
         }
     }
 }
+
+/// A layer that fits no number of loops ends with the clip, and the clip is no longer than it was.
+#[test]
+fn a_layer_that_does_not_fit_is_cut_off() {
+    let (model, tail) = (model(), JointIndex(1));
+    let mut layer = ClipBuilder::new("Idle", &model.skeleton);
+    let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::X * 2.0]);
+    layer.channel(tail, Interpolation::Linear, &[0.0, 2.0], keys).expect("a good channel");
+    let layer = LayerClip { clip: layer.build(), duration_secs: 2.0, frozen: false };
+    let mut clip = ClipBuilder::new("Walk", &model.skeleton);
+    let steps = Keys::Translation(vec![Vec3::ZERO, Vec3::X]);
+    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 0.75], steps).expect("a good channel");
+    let clip = clip.build();
+    for (loops, tail_at_end) in [(1, 0.75), (3, 0.25)] {
+        let baked = bake_layers(&model, &clip, std::slice::from_ref(&layer), &Baking { loops, seamless: false });
+        let end = 0.75 * loops as f32;
+        assert_eq!(baked.duration_secs(), end);
+        let found = pose_at(&baked, &model.skeleton, end).local(tail).translation;
+        assert!(found.abs_diff_eq(Vec3::X * tail_at_end, 1e-5), "{found} at the end of {loops} loops");
+    }
+}

@@ -6,7 +6,7 @@ mod hold;
 mod mirror;
 mod path;
 mod seam;
-mod time;
+pub(in crate::retarget) mod time;
 pub(in crate::retarget) mod track;
 
 use serde::{Deserialize, Serialize};

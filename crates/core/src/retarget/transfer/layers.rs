@@ -4,6 +4,7 @@ use std::ops::Mul;
 
 use crate::anim::{Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton};
 use crate::asset::Asset;
+use crate::retarget::change::{time::trim, track::Tracks};
 use crate::retarget::map::ResolvedMap;
 
 /// One of the model's own clips, cut down to the joints that play it.
@@ -140,7 +141,14 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
     }
     let period_secs = f64::from(clip.duration_secs());
     add(clip, Some(Repeat { loops: baking.loops, period_secs, stretch: 1.0, total_secs }));
-    builder.build()
+    let baked = builder.build();
+    if f64::from(baked.duration_secs()) <= total_secs + MAX_GAP_SECS {
+        return baked;
+    }
+    // A layer that doesn't fit ends with the clip, wherever it is.
+    let mut tracks = Tracks::of(&baked);
+    trim(&mut tracks, 0.0, total_secs as f32);
+    tracks.build(clip.name(), &model.skeleton)
 }
 
 /// How often a clip is repeated, and how long one loop is after stretching.
@@ -169,7 +177,7 @@ fn repeated_times(times: &[f32], repeat: &Repeat) -> (Vec<f32>, Vec<usize>) {
             }
             repeated.push(time);
             kept.push(key);
-            if exact >= repeat.total_secs && round > 0 {
+            if exact >= repeat.total_secs {
                 return (repeated, kept);
             }
         }
