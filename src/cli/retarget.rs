@@ -84,8 +84,8 @@ pub(super) fn make(
         warnings.push(("nowhere-to-extract", message));
     }
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
-    let clip = with_layers(&model.asset, &resolved, &retargeted, choices.loops.map(usize::from), &mut warnings);
-    let clip = with_expressions(clip, &model.asset, &motion.asset, source_clip);
+    let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip);
+    let clip = with_layers(&model.asset, &resolved, clip, choices.loops.map(usize::from), &mut warnings);
     let recognized = || model.recognition().clone();
     let is_looped = choices.loops.is_some();
     let ChangedClip { clip, seam } = choices.edits.bake(&model.asset, clip, &recognized, is_looped, &mut warnings)?;
@@ -220,15 +220,15 @@ pub(super) fn clip_named(asset: &Asset, requested: &str) -> Result<usize, Unknow
 fn with_layers(
     model: &Asset,
     map: &ResolvedMap,
-    retargeted: &Retargeted,
+    clip: Clip,
     loops: Option<usize>,
     warnings: &mut Vec<(&'static str, String)>,
 ) -> Clip {
     let layers = layer_clips(model, map);
     if layers.is_empty() && loops.is_none_or(|loops| loops == 1) {
-        return retargeted.clip.clone();
+        return clip;
     }
-    let baking = baking(&retargeted.clip, &layers, &[], loops);
+    let baking = baking(&clip, &layers, &[], loops);
     if !baking.seamless {
         let message = format!(
             "the loop has a seam: {} loops of the retargeted clip don't end on a whole loop of the model's own clip on unmapped \
@@ -237,7 +237,7 @@ fn with_layers(
         );
         warnings.push(("loop-seam", message));
     }
-    bake_layers(model, &retargeted.clip, &layers, &baking)
+    bake_layers(model, &clip, &layers, &baking)
 }
 
 fn document(
