@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gaitway::anim::PropertyTarget;
+use gaitway::anim::{PropertyTarget, TextureSlot};
 use gaitway::asset::Asset;
 use gaitway::avatar::{Expression, Override, resolve_weights};
 use gaitway::library::{Motion, inspect};
@@ -104,7 +104,24 @@ fn expressions_override_the_groups_blink_look_at_and_mouth() {
     check_weights(&[("happy", true, BLEND_ALL, 0.6), ("blink", false, NOTHING, 1.0)], &[1.0, 0.0]);
     check_weights(&[("happy", true, BLEND_ALL, 0.5), ("blink", false, NOTHING, 1.0)], &[0.0, 1.0]);
     check_weights(&[("happy", false, BLEND_ALL, 0.1), ("blink", true, NOTHING, 1.0)], &[0.1, 0.0]);
+    // What overrides its own group is invalid.
+    check_weights(&[("blink", false, [Override::Block; 3], 0.75), ("aa", false, NOTHING, 0.5)], &[0.75, 0.0]);
     check_weights(&[("happy", false, NOTHING, 7.0), ("sad", false, NOTHING, -1.0)], &[1.0, 0.0]);
+}
+
+#[test]
+fn expressions_leave_the_matcap_where_it_is() {
+    let mut build = face_vrm_1();
+    let toon = json!({ "specVersion": "1.0", "matcapTexture": { "index": 0 } });
+    build.json["materials"][0]["extensions"] = json!({ "VRMC_materials_mtoon": toon });
+    let library = library(build);
+    let mut state = ViewerState::default();
+    apply(&mut state, &library, Command::SetExpression { name: "happy".to_owned(), weight: Some(1.0) });
+    let happy = frame(&library, &state);
+    let [(0, material)] = &happy.characters[0].materials[..] else { panic!("one animated material") };
+    let offset = |slot| material.texture(slot).expect("a texture").uv_transform.offset;
+    assert_eq!(offset(TextureSlot::BaseColor), Vec2::new(0.25, 0.5));
+    assert_eq!(offset(TextureSlot::Matcap), Vec2::ZERO);
 }
 
 #[test]

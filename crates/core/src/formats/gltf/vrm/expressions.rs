@@ -226,7 +226,8 @@ fn add_color(reader: &Reader, at: usize, kind: &str, target: &Value, expression:
 
 fn add_texture_transform(reader: &Reader, at: usize, scale: [f32; 2], offset: [f32; 2], expression: &mut Expression) {
     let Some(material) = reader.context.materials.get(at) else { return };
-    for slot in TextureSlot::ALL {
+    // MToon's matcap isn't looked up by texture coordinates (VRMC_vrm, TextureTransformBind).
+    for slot in TextureSlot::ALL.into_iter().filter(|&slot| slot != TextureSlot::Matcap) {
         let Some(texture) = material.texture(slot) else { continue };
         let uvs = texture.uv_transform;
         let vec4 = |[x, y]: [f32; 2]| Vec4::new(x, y, 0.0, 0.0);
