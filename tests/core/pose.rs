@@ -30,6 +30,20 @@ fn a_mirroring_matrix_survives_decomposition() {
 }
 
 #[test]
+fn a_flattened_matrix_keeps_its_rotation() {
+    let rotation = Quat::from_euler(glam::EulerRot::XYZ, 0.3, 1.2, -0.7);
+    for flat in [Vec3::new(0.0, 1.0, 2.0), Vec3::new(1.0, 0.0, 2.0), Vec3::new(1.0, 2.0, 0.0)] {
+        let matrix = Mat4::from_scale_rotation_translation(flat, rotation, Vec3::X);
+        let transform = Transform::from_matrix(&matrix);
+        assert!(transform.rotation.angle_between(rotation) < 1e-3, "{transform:?}, expected {rotation}");
+        check_matrix(matrix);
+    }
+    for line in Vec3::AXES {
+        check_matrix(Mat4::from_scale_rotation_translation(line, rotation, Vec3::X));
+    }
+}
+
+#[test]
 fn a_singular_matrix_decomposes_to_finite_values() {
     for matrix in [Mat4::ZERO, Mat4::from_scale(Vec3::new(0.0, 1.0, 1.0)), Mat4::from_scale(Vec3::new(0.0, 0.0, 1.0))] {
         let transform = Transform::from_matrix(&matrix);
