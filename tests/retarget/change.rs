@@ -142,15 +142,20 @@ fn joints_that_are_no_body_parts_are_mirrored_by_the_sides_in_their_names() {
     }
 }
 
-#[test]
-fn mirroring_swaps_morph_targets_named_for_a_side() {
+/// A mesh with six morph targets, four of which are of a side.
+fn face() -> Asset {
     let names = ["browDown_L", "jawOpen", "browDown_R", "eyeBlinkLeft", "lonely_L", "eyeBlinkRight"];
     let mesh = Mesh { target_names: names.map(str::to_owned).to_vec(), ..Mesh::default() };
     let face = Joint { morph_weights: vec![0.0; names.len()], ..Joint::default() };
     let skeleton = Skeleton::new(vec![face]).expect("a joint");
     let instances = vec![MeshInstance::new(JointIndex(0), 0, None)];
     let parts = AssetParts { skeleton, meshes: vec![mesh], instances, ..AssetParts::default() };
-    let asset = Asset::new(parts).expect("is valid");
+    Asset::new(parts).expect("is valid")
+}
+
+#[test]
+fn mirroring_swaps_morph_targets_named_for_a_side() {
+    let asset = face();
     let mut builder = ClipBuilder::new("", &asset.skeleton);
     let values: Vec<f32> = (1..=12).map(|weight| weight as f32).collect();
     let keys = Keys::MorphWeights { values, targets: 6 };
@@ -159,6 +164,23 @@ fn mirroring_swaps_morph_targets_named_for_a_side() {
     let clip = change_clip(&asset, &builder.build(), &mirror, || symmetry(&asset)).clip;
     let Keys::MorphWeights { values, .. } = &clip.channels()[0].keys else { panic!("weights become something else") };
     assert_eq!(values[..], [3.0, 2.0, 1.0, 6.0, 5.0, 4.0, 9.0, 8.0, 7.0, 12.0, 11.0, 10.0]);
+}
+
+/// As `KHR_animation_pointer` animates them.
+#[test]
+fn mirroring_swaps_single_morph_weights() {
+    let (asset, joint) = (face(), JointIndex(0));
+    let mut builder = ClipBuilder::new("", &asset.skeleton);
+    for (target, weight) in [(0, 0.25), (1, 0.5), (5, 0.75)] {
+        let target = PropertyTarget::MorphWeight(joint, target);
+        builder.property(target, Interpolation::Linear, &[0.0], vec![weight]).expect("valid");
+    }
+    let mirror = ClipChanges { mirror: true, ..NONE };
+    let clip = change_clip(&asset, &builder.build(), &mirror, || symmetry(&asset)).clip;
+    let found: Vec<(PropertyTarget, f32)> =
+        clip.properties().iter().map(|channel| (channel.target, channel.values[0])).collect();
+    let expected = [(1, 0.5), (2, 0.25), (3, 0.75)];
+    assert_eq!(found, expected.map(|(target, weight)| (PropertyTarget::MorphWeight(joint, target), weight)));
 }
 
 #[test]

@@ -96,6 +96,12 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
                     *index = pair[usize::from(pair[0] == *index)];
                 }
             }
+            Target::Property(PropertyTarget::MorphWeight(joint, target)) => {
+                let mut pairs = pairs_by_side(target_names(asset, *joint));
+                if let Some(pair) = pairs.find(|pair| pair.contains(target)) {
+                    *target = pair[usize::from(pair[0] == *target)];
+                }
+            }
             Target::Weights(joint) => {
                 for [left, right] in pairs_by_side(target_names(asset, *joint).take(track.width)) {
                     track.map(|weights| weights.swap(left, right), &[]);
