@@ -92,6 +92,24 @@ fn added_clips_load_bit_by_bit_after_the_models_own() {
     assert_eq!((&accessors[3]["min"], &accessors[3]["max"]), (&json!([0.0]), &json!([f64::from(0.3_f32)])));
 }
 
+/// §3.11 asks for two keys of a spline; a trimmed one may keep a single one.
+#[test]
+fn a_spline_with_one_key_is_written_as_a_step() {
+    let files = one("model.glb", morphing_triangle().glb());
+    let asset = load(&files).expect("readable");
+    let mut builder = ClipBuilder::new("still", &asset.skeleton);
+    let keys = Keys::Translation(vec![Vec3::ONE, Vec3::X, Vec3::NEG_ONE]);
+    builder.channel(JointIndex(0), Interpolation::CubicSpline, &[0.0], keys).expect("valid");
+    let keys = Keys::MorphWeights { values: vec![9.0, 9.0, 0.25, 0.75, 9.0, 9.0], targets: 2 };
+    builder.channel(JointIndex(0), Interpolation::CubicSpline, &[0.0], keys).expect("valid");
+    let written = write_model(&files, "model.glb", &asset.skeleton, &[&builder.build()]).expect("writable");
+    let again = loaded(written);
+    let channels = again.clips[0].channels();
+    assert!(channels.iter().all(|channel| channel.interpolation == Interpolation::Step), "{channels:?}");
+    assert_eq!(channels[0].keys, Keys::Translation(vec![Vec3::X]));
+    assert_eq!(channels[1].keys, Keys::MorphWeights { values: vec![0.25, 0.75], targets: 2 });
+}
+
 #[test]
 fn nothing_of_the_original_is_lost() {
     let text = r#"{ "extras": {"z": 1, "a": [1.0000000000000000000001, 1E+2, -0.0, 12345678901234567890123]},

@@ -115,13 +115,19 @@ fn animation(
                 *times.entry(channel.timeline).or_insert(data.accessor("SCALAR", 1, secs, true))
             }
         };
-        let (path, shape, width, numbers) = numbers(channel);
+        let (path, shape, width, mut numbers) = numbers(channel);
+        let mut interpolation = channel.interpolation;
+        if interpolation == Interpolation::CubicSpline && clip.timelines()[channel.timeline as usize].len() == 1 {
+            // A spline has at least two keys (§3.11): the value between the tangents of a single one is constant.
+            let third = numbers.len() / 3;
+            (interpolation, numbers) = (Interpolation::Step, numbers[third..2 * third].to_vec());
+        }
         if numbers.iter().any(|number| !number.is_finite()) {
             let (clip, joint) = (clip.name().to_owned(), skeleton.label(channel.joint));
             return Err(WriteError::NotFinite { clip, joint });
         }
         let output = data.accessor(shape, width, &numbers, false);
-        let interpolation = match channel.interpolation {
+        let interpolation = match interpolation {
             Interpolation::Linear => "LINEAR",
             Interpolation::Step => "STEP",
             Interpolation::CubicSpline => "CUBICSPLINE",
