@@ -67,6 +67,12 @@ impl ExportedFile {
     }
 }
 
+/// Says what a glTF file written by Gaitway lacks of a clip.
+fn about_properties(clip: &Clip) -> Option<&'static str> {
+    let lost = "Only joints and morph weights are animated in the file, not the clip's materials, lights, visibility or expressions.";
+    (!clip.properties().is_empty()).then_some(lost)
+}
+
 /// Returns the active clip unless the model's file already contains it as it plays.
 pub fn derived_clip(model: &Model, state: &ViewerState) -> Option<usize> {
     active_clip(model, state).filter(|&clip| is_derived(model, state, clip))
@@ -158,9 +164,12 @@ impl Editor {
         // Of these, only a GLB could be mistaken for the model.
         let suffix = if format == ClipFormat::Glb { "-clip" } else { "" };
         let name = format!("{stem}{suffix}.{}", format.extension());
-        let baked = self.baked_clip(clip)?;
+        let mut baked = self.baked_clip(clip)?;
         let frames_per_sec = model.frames_per_sec(clip);
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
+        if format == ClipFormat::Glb {
+            baked.remarks.extend(about_properties(clip));
+        }
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = write_clip(model, &skeleton, clip, frames_per_sec, format).map_err(|error| error.to_string())?;
         Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
@@ -180,6 +189,7 @@ impl Editor {
         }
         let derived = baked.clip.as_ref().or_else(|| model.clip(clip));
         let clips = [derived.ok_or("there is no such clip")?];
+        baked.remarks.extend(about_properties(clips[0]));
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
             Some(ModelFiles { set, name }) => write_model(set, name, &skeleton, &clips),
