@@ -9,7 +9,7 @@ use crate::fit::Corner;
 /// are followed less closely.
 const MIN_EVALUATIONS: u64 = 2_000_000;
 const EVALUATIONS_PER_KEY: u64 = 40;
-/// Maximum number of keys of one channel, including all repetitions.
+/// Maximum number of keys of one channel, including all repetitions; keys of several curves at the same time count once.
 const MAX_CORNERS: usize = 1 << 18;
 /// Maximum number of keys read from a file, counting those of repetitions and shared curves wherever they appear.
 const MAX_KEYS: usize = 1 << 22;
@@ -128,17 +128,7 @@ impl<'a> Drivers<'a> {
                 add_corners(curve, [from, to], &mut corners, limits);
             }
         }
-        if corners.len() > MAX_CORNERS {
-            return Err(format!(
-                "an animation curve has too many keys: expected at most {MAX_CORNERS}, found {}. Export it with fewer.",
-                corners.len()
-            ));
-        }
-        limits.keys = limits.keys.saturating_sub(corners.len());
         limits.evaluations += EVALUATIONS_PER_KEY * corners.len() as u64;
-        if limits.keys == 0 {
-            return Err(format!("the animation has too many keys: expected at most {MAX_KEYS}. Export fewer takes."));
-        }
         corners.retain(|corner| (0.0..=end).contains(&corner.time));
         sort(&mut corners, |a, b| a.time < b.time);
         corners.dedup_by(|later, earlier| {
@@ -146,6 +136,16 @@ impl<'a> Drivers<'a> {
             earlier.jump |= same && later.jump;
             same
         });
+        if corners.len() > MAX_CORNERS {
+            return Err(format!(
+                "an animation curve has too many keys: expected at most {MAX_CORNERS}, found {}. Export it with fewer.",
+                corners.len()
+            ));
+        }
+        limits.keys = limits.keys.saturating_sub(corners.len());
+        if limits.keys == 0 {
+            return Err(format!("the animation has too many keys: expected at most {MAX_KEYS}. Export fewer takes."));
+        }
         Ok(corners)
     }
 }

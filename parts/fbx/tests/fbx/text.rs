@@ -267,6 +267,20 @@ fn a_pivot_moves_what_turns_about_it() {
     }
 }
 
+/// A translation about a pivot has the keys of the rotation as well, at the same times.
+#[test]
+fn keys_of_several_curves_at_the_same_time_count_once() {
+    const COUNT: usize = 135_000;
+    let mut fbx = Fbx::new(1.0);
+    let node = fbx.node("Prop", "Null", 0, &[("RotationPivot", [1.0, 0.0, 0.0])]);
+    let layer = fbx.take("long", COUNT as f64 / 120.0);
+    let keys = |step: f64| (0..COUNT).map(|key| (key as f64 / 120.0, (key % 7) as f64 * step)).collect::<Vec<_>>();
+    fbx.curve(layer, (node, "Lcl Translation", "d|X"), 4, &keys(1.0));
+    fbx.curve(layer, (node, "Lcl Rotation", "d|Z"), 4, &keys(10.0));
+    let (glb, _) = fbx.glb();
+    assert_eq!(glb.duration(0), COUNT as f64 / 120.0);
+}
+
 #[test]
 fn constant_keys_become_steps() {
     let mut fbx = Fbx::new(100.0);
