@@ -79,10 +79,11 @@ fn quoted(text: &str) -> Option<&str> {
     text[1..].split(quote).next()
 }
 
-/// `(100, 156)`, `(1,)` or `()`.
+/// `(100, 156)`, `(1,)` or `()`; Python 2 also wrote `(100L, 156L)`.
 fn shape(text: &str) -> Option<Vec<usize>> {
     let (sides, _) = text.strip_prefix('(')?.split_once(')')?;
-    sides.split(',').map(str::trim).filter(|side| !side.is_empty()).map(|side| side.parse().ok()).collect()
+    let sides = sides.split(',').map(|side| side.trim().trim_end_matches('L')).filter(|side| !side.is_empty());
+    sides.map(|side| side.parse().ok()).collect()
 }
 
 /// A type of number.

@@ -138,6 +138,9 @@ fn arrays_of_any_layout_are_equal() {
     let data: Vec<u8> = by_columns.iter().flat_map(|value: &f64| value.to_le_bytes()).collect();
     let fortran = npy("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }", &data);
     assert_eq!(gaitway_npz::convert(&npz(&with(person(22), "trans", fortran))), expected);
+    // As Python 2 wrote it on 64-bit Windows.
+    let long = npy("{'descr': '<f8', 'fortran_order': True, 'shape': (2L, 3L), }", &data);
+    assert_eq!(gaitway_npz::convert(&npz(&with(person(22), "trans", long))), expected);
 }
 
 #[test]
