@@ -55,13 +55,14 @@ impl Mirror {
         self.events.push(Event::AccessKitActionRequest(ActionRequest { action, target_tree, target_node, data }));
     }
 
-    /// Queues a key that the mirror doesn't handle itself; `name` is the `key` of the DOM's event. Drops one that moves the focus while
-    /// several wait, as when it is held on a slow machine.
-    pub fn key(&mut self, name: &str, pressed: bool, modifiers: egui::Modifiers) {
+    /// Queues a key that the mirror doesn't handle itself; `name` and `code` are the `key` and `code` of the DOM's event. The code, which
+    /// is the key's place on the keyboard, stands in for letters of other scripts. Drops a key that moves the focus while several wait,
+    /// as when it is held on a slow machine.
+    pub fn key(&mut self, name: &str, code: &str, pressed: bool, modifiers: egui::Modifiers) {
         const MAX_WAITING: usize = 4;
         let name = if name == " " { "Space" } else { name };
         let upper = name.to_uppercase();
-        if let Some(key) = egui::Key::from_name(name).or_else(|| egui::Key::from_name(&upper)) {
+        if let Some(key) = [name, &upper, code].into_iter().find_map(egui::Key::from_name) {
             let event = Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
             let waiting = self.events.iter().filter(|event| moves_focus(event)).count();
             if !moves_focus(&event) || waiting < MAX_WAITING {

@@ -17,9 +17,9 @@ pub fn mirror_act(id: &str, action: &str, value: JsValue) {
 
 /// Passes on a key that the mirror doesn't handle itself.
 #[wasm_bindgen]
-pub fn mirror_key(name: &str, pressed: bool, alt: bool, ctrl: bool, shift: bool, meta: bool) {
+pub fn mirror_key(name: &str, code: &str, pressed: bool, alt: bool, ctrl: bool, shift: bool, meta: bool) {
     let modifiers = Modifiers { alt, ctrl, shift, mac_cmd: meta, command: ctrl || meta };
-    with_mirror(|mirror| mirror.key(name, pressed, modifiers));
+    with_mirror(|mirror| mirror.key(name, code, pressed, modifiers));
 }
 
 /// Reports whether the mirror has the focus. When it loses the focus, so do the panels.

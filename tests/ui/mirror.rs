@@ -149,7 +149,7 @@ fn every_key_moves_the_focus() {
     context.memory_mut(|memory| memory.request_focus(ids[0]));
     let mut check = |keys: &[&str], expected: usize| {
         for pressed in keys.iter().flat_map(|key| [(key, true), (key, false)]) {
-            let press = |mirror: &mut Mirror| mirror.key(pressed.0, pressed.1, egui::Modifiers::NONE);
+            let press = |mirror: &mut Mirror| mirror.key(pressed.0, "", pressed.1, egui::Modifiers::NONE);
             context.with_plugin(press).expect("a mirror");
         }
         (0..10).for_each(|_| drop(frame()));
@@ -158,6 +158,24 @@ fn every_key_moves_the_focus() {
     check(&["ArrowDown", "ArrowDown", "ArrowDown", "ArrowUp"], 2);
     // Held for long: it stops soon after it is released.
     check(&["ArrowUp"; 40], 0);
+}
+
+#[test]
+fn shortcuts_work_with_every_keyboard_layout() {
+    let context = Context::default();
+    context.add_plugin(Mirror::new(|_| ()));
+    // German layout: Z and Y have changed places; Russian: both have other letters.
+    for (name, code, expected) in
+        [("z", "KeyY", egui::Key::Z), ("я", "KeyZ", egui::Key::Z), ("н", "KeyY", egui::Key::Y)]
+    {
+        let press = |mirror: &mut Mirror| mirror.key(name, code, true, egui::Modifiers::COMMAND);
+        context.with_plugin(press).expect("a mirror");
+        let mut is_pressed = false;
+        let mut output =
+            context.run_ui(RawInput::default(), |ui| is_pressed |= ui.input(|input| input.key_pressed(expected)));
+        output.textures_delta.clear();
+        assert!(is_pressed, "{name} at {code}");
+    }
 }
 
 /// On a slow machine, one frame may have what is typed and the step to the next control.

@@ -205,7 +205,7 @@ export class Mirror {
 
   /** @param {KeyboardEvent} event */
   #passKey(event) {
-    const { key, target, altKey, ctrlKey, shiftKey, metaKey } = event;
+    const { key, code, target, altKey, ctrlKey, shiftKey, metaKey } = event;
     const { type = "", role = null } = target instanceof HTMLInputElement || target instanceof HTMLButtonElement ? target : {};
     const kind = role === "spinbutton" ? role : type;
     const isCommand = ctrlKey || metaKey;
@@ -233,7 +233,7 @@ export class Mirror {
       if (event.type === "keydown") this.#program.mirror_act(id ?? "", "blur");
     }
     if (key === "Tab" || (!isCommand && OWN_KEYS[/** @type {keyof typeof OWN_KEYS} */ (kind)]?.test(key))) return;
-    this.#program.mirror_key(key, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
+    this.#program.mirror_key(key, code, event.type === "keydown", altKey, ctrlKey, shiftKey, metaKey);
     // The browser's own commands stay, also those of function keys.
     if (!(isCommand || altKey || /^F([2-9]|1.)$/.test(key)) || /^[ozsy]$/i.test(key)) event.preventDefault();
   }

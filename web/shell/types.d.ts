@@ -100,7 +100,7 @@ export interface Bindings {
   rehearse_opening(): Promise<void>;
   destroy(): void;
   mirror_act(id: string, action: "focus" | "blur" | "click" | "more" | "less" | "set", value?: number | string): void;
-  mirror_key(name: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
+  mirror_key(name: string, code: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
   mirror_focus(hasFocus: boolean): void;
   open(items: ReadItem[], role: Role, isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
