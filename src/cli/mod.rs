@@ -217,7 +217,7 @@ struct RetargetOptions {
     /// Translations of joints other than the hips.
     #[arg(long, value_enum)]
     translations: Option<KeepArgument>,
-    /// Scales of joints other than the hips.
+    /// Scales of all mapped joints, the hips included.
     #[arg(long, value_enum)]
     scales: Option<KeepArgument>,
     /// The rest pose of the model.
@@ -275,7 +275,7 @@ struct ConvertArguments {
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
-    /// A link of the page, or its part after `#`: writes an .obj with the link's pose and joint names [default: the rest pose].
+    /// A link of the page, or its part after `#`: the pose and joint names with which an .obj is written as .glb [default: the rest pose].
     #[arg(long, value_name = "LINK")]
     view: Option<String>,
 }

@@ -13,7 +13,7 @@ pub const TRIM_TO_RANGE: &str = "Trim to range";
 /// Button that adds that part as a clip of its own.
 pub const TRIM_TO_COPY: &str = "Trim to a new clip";
 /// Why that button is disabled.
-pub const ENOUGH_COPIES: &str = "There are as many new clips as there can be: remove one first.";
+pub const ENOUGH_COPIES: &str = "The maximum number of new clips is reached: remove one first.";
 /// Button that removes such a clip.
 pub const REMOVE_COPY: &str = "Remove this clip";
 /// Why that button is disabled.

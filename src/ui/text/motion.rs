@@ -246,7 +246,7 @@ pub const REST_OF_MODEL: &str = "Rest pose of the model";
 pub const REST_OF_MOTION: &str = "Rest pose of the motion";
 /// Choice of what happens to translations of joints other than the hips.
 pub const TRANSLATIONS: &str = "Joint translations";
-/// Choice of what happens to scales of joints other than the hips.
+/// Choice of what happens to scales of all mapped joints, the hips included.
 pub const SCALES: &str = "Joint scales";
 
 /// Returns the option of doing what the map sets for all unmapped joints.
