@@ -226,6 +226,8 @@ export class Mirror {
       event.preventDefault();
       return;
     }
+    // The browser does it in its field, and then sets the program's.
+    if (kind === "text" && isCommand && /^([yz]|Backspace|Delete)$/i.test(key)) return;
     if (kind === "spinbutton" && isCommand && /^[yz]$/i.test(key)) {
       // The browser takes back what is being typed, the program what was entered: its own field would take back the text alone.
       const { id, typing } = /** @type {HTMLElement} */ (target).dataset;
