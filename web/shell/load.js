@@ -15,17 +15,19 @@ import { running, unlessStopped } from "./session.js";
  * @param {Item[]} items
  * @returns {Promise<ReadItem[]>}
  */
-export async function read(items) {
-  return await Promise.all(
-    items.map(async (item) => {
-      if (typeof item === "string") return item;
-      try {
-        return [item.name, new Uint8Array(item.content instanceof Blob ? await item.content.arrayBuffer() : item.content)];
-      } catch {
-        throw coded("not-found", `${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
-      }
-    }),
-  );
+export const read = (items) => Promise.all(items.map(readItem));
+
+/**
+ * @param {Item} item
+ * @returns {Promise<ReadItem>}
+ */
+async function readItem(item) {
+  if (typeof item === "string") return item;
+  try {
+    return [item.name, new Uint8Array(item.content instanceof Blob ? await item.content.arrayBuffer() : item.content)];
+  } catch {
+    throw coded("not-found", `${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
+  }
 }
 
 /** @param {Item[]} items */
@@ -90,8 +92,9 @@ export function takeNews(answer) {
  * @param {Item[]} items
  * @param {(message: string) => void} report
  */
-export const readOrReport = (items, report) =>
-  read(items).catch((error) => {
-    report(messageOf(error));
-    return /** @type {ReadItem[]} */ ([]);
-  });
+export async function readOrReport(items, report) {
+  const results = await Promise.allSettled(items.map(readItem));
+  const problems = results.flatMap((result) => (result.status === "rejected" ? [messageOf(result.reason)] : []));
+  if (problems.length > 0) report(problems.join(" "));
+  return results.flatMap((result) => (result.status === "fulfilled" ? [result.value] : []));
+}
