@@ -18,10 +18,12 @@ const isShared = ({ target }) => target === canvas() && (isGuest() || byId("stag
 /** @param {TouchEvent} event */
 function start(event) {
   // Not one that was handed on.
-  if (!event.isTrusted || !isShared(event)) return;
+  if (!event.isTrusted) return;
+  if (event.touches.length === 1) isScrolling = false;
+  if (!isShared(event)) return;
   if (event.touches.length > 1) return handOn();
   event.stopImmediatePropagation();
-  [undecided, isScrolling] = [event, false];
+  undecided = event;
 }
 
 /** @param {TouchEvent} event */
