@@ -273,6 +273,8 @@ async fn open_state(
 ) -> Result<String, Refusal> {
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
+        // What is being loaded for another link is no longer wanted.
+        page.loads.start();
         let contents = Contents { about_link: about_link.unwrap_or_default(), ..Contents::default() };
         let (contents, state) = (Box::new(contents), Some(Box::new(state)));
         page.inbox.send(Message::Opened { contents, state, is_change: false, reply: None });

@@ -3,9 +3,10 @@ import { awaitCopies, awaitFiles, forgetAwaited, showAwaited } from "./awaited.j
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { forgetCompanions } from "./companions.js";
 import { button, byId, dialog, messageOf, showDialog, showList } from "./dom.js";
+import { codeOf } from "./errors.js";
 import { fileName, heldFor, localFiles, shareableLink, withHeldFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
-import { linkWithoutMissing, linkedFiles } from "./links.js";
+import { linkWithoutMissing, linkedFiles, shownFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
 import { panel, sayProblem } from "./panels.js";
 import { rememberPrivateVisit } from "./privacy.js";
@@ -24,6 +25,8 @@ import { isStageEmpty, linkOfAddress, session, unlessStopped } from "./session.j
  */
 
 let lastFollow = 0;
+/** How many links are being followed: all but the last are overtaken. */
+let pendingCount = 0;
 
 /**
  * Shows what a link says, with the local files that its entry of the history held.
@@ -37,6 +40,8 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
   lastFollow += 1;
   const number = lastFollow;
   const isLatest = () => number === lastFollow && session.app === app;
+  const [shownBefore, overtakes] = [shownFiles(session.link), pendingCount > 0];
+  pendingCount += 1;
   beginFollowing();
   dialog("missing").close();
   if (wasPrivate) rememberPrivateVisit();
@@ -64,14 +69,21 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     if (number !== lastFollow) return;
     // The same names now mean other files.
     const meansOthers = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
-    if (again || meansOthers || linkForNow !== session.link) {
+    // What is shown is followed as well if something else is on its way.
+    if (again || meansOthers || overtakes || linkForNow !== session.link) {
       const readAll = again || (meansOthers && items.length + motionItems.length === 0);
       report(takeNews(await unlessStopped(app, app.follow_link(heldLink, readAll))).problems);
     }
     if (number === lastFollow) showAwaited();
   } catch (error) {
-    report([messageOf(error)], true);
+    if (codeOf(error) !== "cancelled") report([messageOf(error)], true);
+    else if (isLatest()) {
+      app.notify(`${messageOf(error).replace(/\.$/, "")}.`);
+      // What was opened meanwhile gets an entry of its own; after “Cancel”, the address has what the screen lacks.
+      if (shownFiles(session.link) === shownBefore) keepTypedAddress();
+    }
   } finally {
+    pendingCount -= 1;
     endFollowing();
     summarizeSoon();
   }
@@ -165,13 +177,30 @@ function showProblems(problems, { title, rest, without, again }) {
   if (panel() === null && !dialog("missing").open) showDialog("missing", button("missing-again"));
 }
 
+/** Takes the entry of the history that was asked for, if any: its link, and what it showed. */
+export function takeAsked() {
+  const { asked } = session;
+  session.asked = null;
+  if (asked === null) return null;
+  const { link, visit, wasPrivate } = asked;
+  /** The address may have been edited: files that are there aren't asked for. @type {Followed} */
+  const entry = { wasPrivate, ...(visit ?? withHeldFiles(link)) };
+  return { link, entry };
+}
+
+/** Follows the entry of the history that was asked for, if any. */
+export function followAsked() {
+  const asked = takeAsked();
+  if (asked !== null) follow(asked.link, asked.entry);
+}
+
 addEventListener("popstate", ({ state }) => {
   cancelSummary();
   forgetCompanions();
   const visit = moveToEntry(state);
   const link = linkOfAddress();
-  // An instance that is starting shows this link instead.
-  if (session.app === null) session.askedLink = session.link = link;
-  // The address may have been edited: files that are there aren't asked for.
-  else follow(link, { wasPrivate: state?.own === true, ...(visit ?? withHeldFiles(link)) });
+  session.asked = { link, visit, wasPrivate: state?.own === true };
+  // An instance that is starting, or the next one, shows it instead.
+  if (session.app === null) session.link = visit?.link ?? link;
+  else followAsked();
 });

@@ -2,7 +2,7 @@
 // one. Entries with local files keep them as long as the page lives.
 import { awaited } from "./awaited.js";
 import { heldFor, shareableLink } from "./held.js";
-import { shownFiles } from "./links.js";
+import { linkWithMissing, shownFiles } from "./links.js";
 import { isPrivate } from "./privacy.js";
 import { session } from "./session.js";
 
@@ -46,27 +46,38 @@ export function endFollowing() {
 /** Writes the current view to the address bar. */
 export function recordView() {
   if (followingCount > 0) return;
-  const asking = askingLink();
-  // The address stays as it was until something else is shown.
-  if (asking !== null) return remember(asking);
-  if (session.link === entry.typed) return;
+  if (session.link === entry.typed) {
+    const asking = askingLink();
+    return asking === null ? undefined : remember(asking);
+  }
   entry.typed = null;
   const files = shownFiles(session.link);
-  const address = `#${shareableLink(session.link)}`;
+  const link = withMissing(session.link);
+  const address = `#${shareableLink(link)}`;
   if (files === entry.files) {
-    history.replaceState({ gaitway: entry.number, own: isPrivate() }, "", address);
+    const own = isPrivate() || awaited()?.isOwn === true;
+    history.replaceState({ gaitway: entry.number, own }, "", address);
   } else {
     lastNumber += 1;
     [entry.number, entry.files] = [lastNumber, files];
     history.pushState({ gaitway: entry.number, own: isPrivate() }, "", address);
   }
-  remember(session.link);
+  remember(link);
 }
 
 /** The link of the current entry if files are asked for that it needs, with the names of those that have arrived. */
-export function askingLink() {
+function askingLink() {
   const asking = awaited();
   return asking !== null && asking.missing.length > 0 && shownFiles(session.link) === entry.files ? asking.link : null;
+}
+
+/**
+ * Returns a link of the current view with the files that its entry asks for.
+ * @param {string} link
+ */
+export function withMissing(link) {
+  const asking = askingLink();
+  return asking === null ? link : linkWithMissing(link, asking);
 }
 
 /** Keeps the address as it is until something is set. */
@@ -106,7 +117,7 @@ function remember(link) {
 export function moveToEntry(state) {
   // The entry's link lags behind the latest changes.
   const left = visits.get(entry.number);
-  if (followingCount === 0 && left !== undefined) left.link = askingLink() ?? session.link;
+  if (followingCount === 0 && left !== undefined) left.link = withMissing(session.link);
   if (state?.gaitway === undefined) {
     lastNumber += 1;
     entry.number = lastNumber;

@@ -1,13 +1,13 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
 import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
-import { awaitFiles, awaited, showAwaited } from "./awaited.js";
+import { awaitFiles, awaited, showAwaited, withAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
-import { follow, showMissing, showMissingImages } from "./following.js";
+import { followAsked, showMissing, showMissingImages, takeAsked } from "./following.js";
 import { setInert, showGallery } from "./gallery.js";
 import { heldFor } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
@@ -88,9 +88,9 @@ async function start(renderer) {
     hasProgram = true;
     shareFont(bindings);
     readLinksWith(bindings);
-    session.link = session.askedLink ?? awaited()?.link ?? session.link;
+    const asked = takeAsked();
+    session.link = asked === null ? withAwaited(session.link) : (asked.entry.link ?? asked.link);
     awaitFiles(session.link);
-    session.askedLink = null;
     const { items, motionItems } = heldFor(session.link);
     const files = await Promise.all([items, motionItems].map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
@@ -154,7 +154,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   summarize();
   showMissing(missing, awaited()?.link ?? link);
   showAwaited();
-  if (session.askedLink !== null) follow(session.askedLink);
+  followAsked();
   return null;
 }
 

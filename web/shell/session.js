@@ -38,8 +38,11 @@ export const session = {
    * Ends the running instance and starts another one; set by instance.js, which depends on the modules that call it.
    */
   restart: () => {},
-  /** A link that was followed while an instance was starting with an earlier one. */
-  askedLink: /** @type {string | null} */ (null),
+  /**
+   * The entry of the history that was gone to while no instance could show it.
+   * @type {{ link: string, visit: import("./history.js").Visit | undefined, wasPrivate: boolean } | null}
+   */
+  asked: null,
 };
 
 /** Whether an instance runs that shows no model. */

@@ -1,8 +1,8 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
 import { byId, button, dialog, field, listOf, messageOf, showList } from "./dom.js";
 import { companionsOf, localFiles, shareableLink } from "./held.js";
-import { askingLink } from "./history.js";
-import { embeddedLink, linkWithMissing, linkedFiles } from "./links.js";
+import { withMissing } from "./history.js";
+import { embeddedLink, linkedFiles } from "./links.js";
 import { parts } from "./parts.js";
 import { session } from "./session.js";
 
@@ -24,8 +24,7 @@ export function addressOf(link) {
  */
 export function share(link) {
   if (session.app === null) return;
-  const asking = askingLink();
-  if (asking !== null) link = linkWithMissing(link, asking);
+  link = withMissing(link);
   const address = addressOf(link);
   // Others lack the files that are missing here, too.
   const local = [...localFiles(link), ...linkedFiles(link).filter(({ isToBring }) => isToBring)];
