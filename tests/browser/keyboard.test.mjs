@@ -132,6 +132,26 @@ for (const renderer of BACK_ENDS)
       assert.equal((await state(page)).pose, "", "leaving the field enters nothing");
     });
 
+    onPage("undo and deleting a word in a text field happen once", () => "model=sample:pilot&play=0", async (page) => {
+      const field = control(page, "textbox", /^Search/);
+      // The field shows what the program has once it is left.
+      const leave = async () => {
+        await page.keyboard.press("Tab");
+        await page.waitForTimeout(300);
+        return await field.inputValue();
+      };
+      await field.focus();
+      await page.keyboard.type("left upper arm");
+      await page.keyboard.press("Control+Backspace");
+      assert.equal(await field.inputValue(), "left upper ");
+      assert.equal(await leave(), "left upper ");
+      await field.focus();
+      await page.keyboard.type("leg");
+      await page.keyboard.press("Control+z");
+      const undone = await field.inputValue();
+      assert.equal(await leave(), undone);
+    });
+
     onPage("keys reach the program while nothing has the focus", () => "play=0", async (page) => {
       assert.equal(await focused(page), null);
       await page.keyboard.press("Space");
