@@ -352,7 +352,7 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     }
 }
 
-/// Also into the rest pose, which has no time of its own.
+/// Advances the crossfade, also one into the rest pose, which has no time of its own.
 fn advance_fade(state: &mut ViewerState, model: Option<&Model>, secs: f64) {
     let (Some(model), Some(mut fade)) = (model, state.playhead.fade.take()) else { return };
     fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
