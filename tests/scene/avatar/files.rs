@@ -1,5 +1,6 @@
 //! Metadata, real files, and files with invalid values.
 
+use gaitway::formats::load;
 use gaitway::library::{Model, Motion, inspect};
 use gaitway::state::{Command, LookTarget, ViewerState, apply};
 use glam::{Quat, Vec3};
@@ -10,7 +11,8 @@ use super::expressions::{face_vrm_0, face_vrm_1};
 use super::look_at::{eyes, looking_at};
 use super::springs::{chain, swinging};
 use super::{frame, is_near, library, model, person, rotation};
-use crate::build_gltf::Build;
+use crate::build_gltf::{Build, one};
+use crate::cli::run;
 use crate::data::{library_of, open};
 use crate::data_folder::data_folder;
 
@@ -104,6 +106,26 @@ fn a_real_vrma_animates_a_real_avatar() {
     }
     let max = weights.iter().copied().fold(0.0, f32::max);
     assert!(max > 0.5 && weights.iter().any(|&weight| weight < 0.5 * max), "{weights:?}");
+}
+
+#[test]
+fn expressions_repeat_with_the_loops_of_a_retargeted_clip() {
+    let Some(data) = data_folder() else { return };
+    let path = |name: &str| data.join(name).to_str().expect("a plain path").to_owned();
+    let (avatar, motion) =
+        (path("vrm/vrm1_VRMC_vrm_expressions_isBinary_Overridden.vrm"), path("vrm/three-vrm_test.vrma"));
+    let out = std::env::temp_dir().join(format!("gaitway-loops-{}.vrma", std::process::id()));
+    let last_keys = |loops: &str| {
+        let arguments = ["retarget", "--model", &avatar, "--motion", &motion, "--loops", loops, "--out"];
+        let done = run(&[&arguments[..], &[out.to_str().expect("a plain path")]].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let written = load(&one("out.vrma", std::fs::read(&out).expect("is written"))).expect("is readable");
+        std::fs::remove_file(&out).expect("is there");
+        let clip = &written.clips[0];
+        clip.property_timelines().iter().filter_map(|times| times.last().copied()).fold(0.0, f32::max)
+    };
+    let (once, twice) = (last_keys("1"), last_keys("2"));
+    assert!(once > 0.0 && twice > 1.5 * once, "{once}, {twice}");
 }
 
 /// Collects the JSON pointers of a value and of everything in it.
