@@ -90,6 +90,30 @@ fn a_dragged_in_or_out_point_stops_at_the_other() {
     }
 }
 
+#[test]
+fn handles_that_meet_can_both_be_grabbed() {
+    let duration = f64::from(sample_bench(NARROW).state().library().active().unwrap().asset.clips[0].duration_secs());
+    let middle = 0.5 * duration;
+    for side in [-1.0, 1.0] {
+        let mut harness = sample_bench(NARROW);
+        let set = TimeRange { start_secs: middle, end_secs: middle + 1.0 / 30.0 };
+        harness.state_mut().change(|state| state.playhead.range = Some(set));
+        harness.run();
+        let [start, end] = [text::IN_POINT, text::OUT_POINT].map(|label| harness.get_by_label(label).rect());
+        assert!(start.right() <= end.left() + 0.01, "{start:?} {end:?}");
+        let inner = if side < 0.0 { start.right() } else { end.left() };
+        let from = pos2(inner + side * 4.0, start.center().y);
+        drag(&mut harness, from, pos2(from.x + side * 100.0, from.y), PointerButton::Primary);
+        let range = harness.state().state().playhead.range.expect("is set");
+        let (moved, kept) = if side < 0.0 {
+            (set.start_secs - range.start_secs, range.end_secs - set.end_secs)
+        } else {
+            (range.end_secs - set.end_secs, range.start_secs - set.start_secs)
+        };
+        assert!(moved > 1.0 / 30.0 && kept == 0.0, "{side}: {range:?}");
+    }
+}
+
 /// With an out point at the beginning, or an in point at the end, nothing would play.
 #[test]
 fn a_range_has_at_least_one_frame() {

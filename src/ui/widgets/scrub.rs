@@ -1,6 +1,6 @@
 //! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
 
-use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
@@ -149,9 +149,10 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMark
     // As `Command::SetRange` limits them, so that nothing is requested while the pointer rests beyond the other handle.
     let start = |secs: f64| TimeRange { start_secs: secs.min((range.end_secs - step_secs).max(0.0)), ..range };
     let end = |secs: f64| TimeRange { end_secs: secs.max((range.start_secs + step_secs).min(duration_secs)), ..range };
+    let middle = 0.5 * (bar.x_of(range.start_secs) + bar.x_of(range.end_secs));
     let dragged = [
-        handle(ui, &bar, text::IN_POINT, range.start_secs, -1.0, scrub).map(start),
-        handle(ui, &bar, text::OUT_POINT, range.end_secs, 1.0, scrub).map(end),
+        handle(ui, &bar, text::IN_POINT, (range.start_secs, -1.0), middle, scrub).map(start),
+        handle(ui, &bar, text::OUT_POINT, (range.end_secs, 1.0), middle, scrub).map(end),
     ];
     for range in dragged.into_iter().flatten() {
         scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
@@ -162,13 +163,17 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMark
     (scrubbed, is_held)
 }
 
-/// A handle of the range; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point.
-fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
+/// A handle of the range at a time; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point;
+/// `middle` is halfway between the two.
+fn handle(ui: &Ui, bar: &Bar, label: &str, (secs, side): (f64, f32), middle: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
     let x = bar.x_of(secs);
-    // The least that can be aimed at (WCAG 2.5.8); larger for fingers, to the sides and upwards, where nothing else is.
-    let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 7.0), Vec2::splat(24.0));
-    let grab = grab.expand2(vec2(bar.above, 0.0)).with_min_y(grab.top() - bar.above);
+    // The least that can be aimed at (WCAG 2.5.8); larger for fingers, to the sides and upwards, where nothing else is. Where the
+    // handles meet, each keeps its side.
+    let (width, beyond) = (24.0 + 2.0 * bar.above, 9.0 + bar.above);
+    let inner = if side < 0.0 { (x + beyond).min(middle) } else { (x - beyond).max(middle) };
+    let center = pos2(inner + side * 0.5 * width, bar.rect.top() + 7.0 - 0.5 * bar.above);
+    let grab = Rect::from_center_size(center, vec2(width, 24.0 + bar.above));
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
     handle.widget_info(|| WidgetInfo::slider(true, secs, label));
     let requested = accessible::time_slider(ui, &handle, secs, bar.duration_secs, 1.0 / scrub.frames_per_sec);
