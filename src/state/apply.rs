@@ -19,6 +19,9 @@ use crate::retarget::{ClipLayer, JointMap};
 
 const MAX_NAME_CHARS: usize = 80;
 
+/// Differences of times that rounding explains.
+const ROUNDING_SECS: f64 = 1e-9;
+
 const MAX_PITCH_RADIANS: f32 = 89.9 * PI / 180.0;
 
 /// Applies a command; nothing else changes a view state. Values out of range are clamped; numbers that aren't finite and
@@ -396,15 +399,10 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
     let (mut start_secs, mut end_secs) = (first.min(second), first.max(second));
-    // Of less than a frame, nothing would play: what is moved stops a frame before the other.
-    if end_secs - start_secs < frame_secs {
-        let end_stays = state.playhead.range.map_or(end, |before| before.end_secs) == end_secs;
-        if end_stays || start_secs + frame_secs > end {
-            end_secs = if end_stays { end_secs.max(frame_secs.min(end)) } else { end };
-            start_secs = (end_secs - frame_secs).max(0.0);
-        } else {
-            end_secs = start_secs + frame_secs;
-        }
+    // Of less than a frame, nothing would play.
+    if end_secs - start_secs < frame_secs - ROUNDING_SECS {
+        end_secs = (start_secs + frame_secs).min(end);
+        start_secs = start_secs.min((end_secs - frame_secs).max(0.0));
     }
     state.playhead.range = Some(TimeRange { start_secs, end_secs });
 }

@@ -44,12 +44,14 @@ pub fn clip_called(model: &Model, name: &str) -> Option<usize> {
 /// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index, or by title if another clip is called
 /// like the index.
 pub fn name_of_clip(model: &Model, clip: usize) -> String {
-    let name = model.clip(clip).map_or("", |clip| clip.name());
+    let (name, index) = (model.clip(clip).map_or("", |clip| clip.name()), clip.to_string());
     let is_unique = model.clips().filter(|other| other.name() == name).count() == 1;
-    let (name, index) = (is_unique.then(|| name.to_owned()), clip.to_string());
-    let title = || model.clip_titles().get(clip).cloned();
-    let is_found = |name: &String| clip_called(model, name) == Some(clip);
-    name.filter(is_found).or_else(|| title().filter(|_| !is_found(&index))).unwrap_or(index)
+    let refers = |name: &str| clip_called(model, name) == Some(clip);
+    match model.clip_titles().get(clip) {
+        _ if is_unique && refers(name) => name.to_owned(),
+        Some(title) if !refers(&index) => title.clone(),
+        _ => index,
+    }
 }
 
 /// Returns the choice of a clip, as [`name_of_clip`] calls it.

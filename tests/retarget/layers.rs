@@ -17,6 +17,14 @@ fn model() -> Asset {
     asset(vec![joint("hips", None, Transform::IDENTITY), joint("tail", Some(0), Transform::IDENTITY)])
 }
 
+/// A joint goes so many metres along X.
+fn moving(model: &Asset, name: &str, joint: JointIndex, secs: f32, metres: f32) -> Clip {
+    let mut clip = ClipBuilder::new(name, &model.skeleton);
+    let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::X * metres]);
+    clip.channel(joint, Interpolation::Linear, &[0.0, secs], keys).expect("a good channel");
+    clip.build()
+}
+
 #[test]
 fn a_stretched_spline_has_the_same_curve() {
     let (model, tail) = (model(), JointIndex(1));
@@ -29,10 +37,7 @@ fn a_stretched_spline_has_the_same_curve() {
         layer.channel(tail, Interpolation::CubicSpline, &[0.0, 1.0], keys).expect("a good channel");
     }
     let layer = LayerClip { clip: layer.build(), duration_secs: 1.0, frozen: false };
-    let mut clip = ClipBuilder::new("Walk", &model.skeleton);
-    let steps = Keys::Translation(vec![Vec3::ZERO, Vec3::X]);
-    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 2.125], steps).expect("a good channel");
-    let clip = clip.build();
+    let clip = moving(&model, "Walk", JointIndex(0), 2.125, 1.0);
     // Two loops of the layer, each a sixteenth longer than it.
     let baked = bake_layers(&model, &clip, std::slice::from_ref(&layer), &Baking { loops: 1, seamless: true });
     assert_eq!(baked.duration_secs(), 2.125);
@@ -52,14 +57,8 @@ fn a_stretched_spline_has_the_same_curve() {
 #[test]
 fn a_layer_that_does_not_fit_is_cut_off() {
     let (model, tail) = (model(), JointIndex(1));
-    let mut layer = ClipBuilder::new("Idle", &model.skeleton);
-    let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::X * 2.0]);
-    layer.channel(tail, Interpolation::Linear, &[0.0, 2.0], keys).expect("a good channel");
-    let layer = LayerClip { clip: layer.build(), duration_secs: 2.0, frozen: false };
-    let mut clip = ClipBuilder::new("Walk", &model.skeleton);
-    let steps = Keys::Translation(vec![Vec3::ZERO, Vec3::X]);
-    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 0.75], steps).expect("a good channel");
-    let clip = clip.build();
+    let layer = LayerClip { clip: moving(&model, "Idle", tail, 2.0, 2.0), duration_secs: 2.0, frozen: false };
+    let clip = moving(&model, "Walk", JointIndex(0), 0.75, 1.0);
     for (loops, tail_at_end) in [(1, 0.75), (3, 0.25)] {
         let baked = bake_layers(&model, &clip, std::slice::from_ref(&layer), &Baking { loops, seamless: false });
         let end = 0.75 * loops as f32;

@@ -2,7 +2,7 @@
 // model that couldn't be loaded, without asking for it.
 import { button, byId, dialog, listOf, showDialog, showList } from "./dom.js";
 import { companionWords, fileName } from "./held.js";
-import { linkWithMissing, linkedFiles, publicLink } from "./links.js";
+import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
 
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
@@ -34,17 +34,6 @@ export const awaited = () => current;
 
 /** The link that files complete, if any. */
 export const completable = () => current ?? passedOver;
-
-/**
- * Returns the link of the current view with what it waits for, which a new instance shows.
- * @param {string} link
- */
-export function withAwaited(link) {
-  if (current === null) return link;
-  const whole = linkWithMissing(link, current.link);
-  // Something else is shown in place of what couldn't be loaded: all of it is tried again.
-  return current.missing.length === 0 || whole === link ? current.link : whole;
-}
 
 /** Stops waiting. */
 export function forgetAwaited() {

@@ -25,8 +25,6 @@ import { isStageEmpty, linkOfAddress, session, unlessStopped } from "./session.j
  */
 
 let lastFollow = 0;
-/** How many links are being followed: all but the last are overtaken. */
-let pendingCount = 0;
 
 /**
  * Shows what a link says, with the local files that its entry of the history held.
@@ -40,9 +38,8 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
   lastFollow += 1;
   const number = lastFollow;
   const isLatest = () => number === lastFollow && session.app === app;
-  const [shownBefore, overtakes] = [shownFiles(session.link), pendingCount > 0];
-  pendingCount += 1;
-  beginFollowing();
+  const overtakes = beginFollowing();
+  const shownBefore = shownFiles(session.link);
   dialog("missing").close();
   if (wasPrivate) rememberPrivateVisit();
   awaitFiles(heldLink, isOwn);
@@ -83,7 +80,6 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
       if (shownFiles(session.link) === shownBefore) keepTypedAddress();
     }
   } finally {
-    pendingCount -= 1;
     endFollowing();
     summarizeSoon();
   }

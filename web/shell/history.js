@@ -35,8 +35,10 @@ const visits = new Map();
 /** Links being followed now. What the app shows on the way is no entry. */
 let followingCount = 0;
 
+/** Returns whether another one is under way. */
 export function beginFollowing() {
   followingCount += 1;
+  return followingCount > 1;
 }
 
 export function endFollowing() {
@@ -46,15 +48,18 @@ export function endFollowing() {
 /** Writes the current view to the address bar. */
 export function recordView() {
   if (followingCount > 0) return;
+  // A typed address stays as it is until something is set.
   if (session.link === entry.typed) {
     const asking = askingLink();
-    return asking === null ? undefined : remember(asking);
+    if (asking !== null) remember(asking);
+    return;
   }
   entry.typed = null;
   const files = shownFiles(session.link);
   const link = withMissing(session.link);
   const address = `#${shareableLink(link)}`;
   if (files === entry.files) {
+    // Files that were open before a reload are still the user's own when they are asked for.
     const own = isPrivate() || awaited()?.isOwn === true;
     history.replaceState({ gaitway: entry.number, own }, "", address);
   } else {

@@ -1,7 +1,7 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
 import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
-import { awaitFiles, awaited, showAwaited, withAwaited } from "./awaited.js";
+import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
@@ -10,6 +10,7 @@ import { drawOffScreen } from "./first-frame.js";
 import { followAsked, showMissing, showMissingImages, takeAsked } from "./following.js";
 import { setInert, showGallery } from "./gallery.js";
 import { heldFor } from "./held.js";
+import { withMissing } from "./history.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
 import { Mirror } from "./mirror.js";
@@ -89,7 +90,7 @@ async function start(renderer) {
     shareFont(bindings);
     readLinksWith(bindings);
     const asked = takeAsked();
-    session.link = asked === null ? withAwaited(session.link) : (asked.entry.link ?? asked.link);
+    session.link = asked === null ? linkToRestore() : (asked.entry.link ?? asked.link);
     awaitFiles(session.link);
     const { items, motionItems } = heldFor(session.link);
     const files = await Promise.all([items, motionItems].map((items) => readOrReport(items, sayProblem)));
@@ -102,6 +103,15 @@ async function start(renderer) {
   }
   showCannotRun(problems, hasProgram ? graphicsToTry(renderer) : TRY_DOWNLOAD);
   throw coded(hasProgram ? "unsupported" : "not-found", problems.join(" "));
+}
+
+/**
+ * Returns the link that the next instance shows: of the current view, with the files that it lacks, or, if something stands in for
+ * them, the link that asked for them.
+ */
+function linkToRestore() {
+  const whole = withMissing(session.link);
+  return whole === session.link ? (awaited()?.link ?? whole) : whole;
 }
 
 /**

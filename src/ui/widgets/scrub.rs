@@ -146,14 +146,10 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMark
         let secs = bar.secs_at(pointer.x);
         scrubbed = (secs != scrub.time_secs).then_some(Scrubbed::Seek(secs));
     }
-    // As `Command::SetRange` limits them, so that nothing is requested while the pointer rests beyond the other handle.
+    // Each stops a frame before the other, which `Command::SetRange` would push along.
     let start = |secs: f64| TimeRange { start_secs: secs.min((range.end_secs - step_secs).max(0.0)), ..range };
     let end = |secs: f64| TimeRange { end_secs: secs.max((range.start_secs + step_secs).min(duration_secs)), ..range };
-    let middle = 0.5 * (bar.x_of(range.start_secs) + bar.x_of(range.end_secs));
-    let dragged = [
-        handle(ui, &bar, text::IN_POINT, (range.start_secs, -1.0), middle, scrub).map(start),
-        handle(ui, &bar, text::OUT_POINT, (range.end_secs, 1.0), middle, scrub).map(end),
-    ];
+    let dragged = [handle(ui, &bar, range, -1.0, scrub).map(start), handle(ui, &bar, range, 1.0, scrub).map(end)];
     for range in dragged.into_iter().flatten() {
         scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
     }
@@ -163,15 +159,17 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMark
     (scrubbed, is_held)
 }
 
-/// A handle of the range at a time; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point;
-/// `middle` is halfway between the two.
-fn handle(ui: &Ui, bar: &Bar, label: &str, (secs, side): (f64, f32), middle: f32, scrub: &Scrub<'_>) -> Option<f64> {
+/// A handle of the range; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point.
+fn handle(ui: &Ui, bar: &Bar, range: TimeRange, side: f32, scrub: &Scrub<'_>) -> Option<f64> {
     let palette = style::palette(ui);
+    let is_start = side < 0.0;
+    let (label, secs) = if is_start { (text::IN_POINT, range.start_secs) } else { (text::OUT_POINT, range.end_secs) };
     let x = bar.x_of(secs);
+    let middle = 0.5 * (bar.x_of(range.start_secs) + bar.x_of(range.end_secs));
     // The least that can be aimed at (WCAG 2.5.8); larger for fingers, to the sides and upwards, where nothing else is. Where the
     // handles meet, each keeps its side.
     let (width, beyond) = (24.0 + 2.0 * bar.above, 9.0 + bar.above);
-    let inner = if side < 0.0 { (x + beyond).min(middle) } else { (x - beyond).max(middle) };
+    let inner = if is_start { (x + beyond).min(middle) } else { (x - beyond).max(middle) };
     let center = pos2(inner + side * 0.5 * width, bar.rect.top() + 7.0 - 0.5 * bar.above);
     let grab = Rect::from_center_size(center, vec2(width, 24.0 + bar.above));
     let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());

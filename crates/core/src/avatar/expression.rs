@@ -119,7 +119,7 @@ pub fn resolve_weights(expressions: &[Expression], weights: &mut [f32]) {
             true => f32::from(*weight > 0.5),
             false => weight.clamp(0.0, 1.0),
         };
-        // Overriding the own group is invalid (VRMC_vrm, “Override”).
+        // An expression can't override its own group (VRMC_vrm, “Override”).
         let own = expression.group.map(|group| group as usize);
         let others = factors.iter_mut().zip(expression.overrides).enumerate().filter(|(group, _)| Some(*group) != own);
         for (_, (factor, mode)) in others {

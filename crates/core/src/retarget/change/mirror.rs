@@ -92,15 +92,10 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
             Target::Scale(joint) => *joint = symmetry.opposite[joint.get()],
             Target::Property(PropertyTarget::LookAt) => track.map(|angles| angles[0] = -angles[0], &[]),
             Target::Property(PropertyTarget::Expression(index)) => {
-                if let Some(pair) = expressions.iter().find(|pair| pair.contains(index)) {
-                    *index = pair[usize::from(pair[0] == *index)];
-                }
+                *index = partner(expressions.iter().copied(), *index);
             }
             Target::Property(PropertyTarget::MorphWeight(joint, target)) => {
-                let mut pairs = pairs_by_side(target_names(asset, *joint));
-                if let Some(pair) = pairs.find(|pair| pair.contains(target)) {
-                    *target = pair[usize::from(pair[0] == *target)];
-                }
+                *target = partner(pairs_by_side(target_names(asset, *joint)), *target);
             }
             Target::Weights(joint) => {
                 for [left, right] in pairs_by_side(target_names(asset, *joint).take(track.width)) {
@@ -110,6 +105,11 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
             Target::Property(_) => {}
         }
     }
+}
+
+/// Returns the other one of the pair that an index is in, else the index itself.
+fn partner(mut pairs: impl Iterator<Item = [usize; 2]>, index: usize) -> usize {
+    pairs.find(|pair| pair.contains(&index)).map_or(index, |[left, right]| if index == left { right } else { left })
 }
 
 /// Returns the names of a node's morph targets, as far as they have any.
