@@ -5,8 +5,8 @@ use crate::process::{run, target_folder, text};
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
 const MAX_BYTES: [(&str, u32); 11] = [
-    ("webgpu", 1_250_000),
-    ("webgl2", 1_670_000),
+    ("webgpu", 1_450_000),
+    ("webgl2", 1_900_000),
     ("parts/draco", 65_000),
     ("parts/fbx", 125_000),
     ("parts/ktx2", 87_000),
