@@ -12,13 +12,13 @@ use super::{JointIndex, Pose, Skeleton};
 /// A named set of channels for one skeleton. Immutable once built; clones share the keys.
 #[derive(Debug, Clone)]
 pub struct Clip {
-    name: Arc<str>,
-    tracks: Arc<Tracks>,
+    name: String,
+    shared: Arc<Shared>,
 }
 
-/// Everything of a clip but its name.
+/// Everything but the name, which clones share.
 #[derive(Debug, Clone)]
-struct Tracks {
+struct Shared {
     duration_secs: f32,
     timelines: Vec<Vec<f32>>,
     channels: Vec<Channel>,
@@ -177,8 +177,7 @@ impl<'a> ClipBuilder<'a> {
         let timelines = timelines.times_secs;
         let sampler = Sampler::new(&timelines, &channels, skeleton.rest());
         let properties = Properties::new(property_timelines.times_secs, properties);
-        let tracks = Arc::new(Tracks { duration_secs, timelines, channels, sampler, properties });
-        Clip { name: name.into(), tracks }
+        Clip { name, shared: Arc::new(Shared { duration_secs, timelines, channels, sampler, properties }) }
     }
 }
 
@@ -213,50 +212,50 @@ impl Clip {
     }
 
     /// Returns the clip under another name.
-    pub fn with_name(self, name: impl Into<Arc<str>>) -> Self {
-        Self { name: name.into(), ..self }
+    pub fn with_name(self, name: String) -> Self {
+        Self { name, ..self }
     }
 
     /// Time of the last key of any channel, in seconds.
     pub fn duration_secs(&self) -> f32 {
-        self.tracks.duration_secs
+        self.shared.duration_secs
     }
 
     /// Distinct lists of key times of [`Self::channels`], in strictly increasing seconds.
     pub fn timelines(&self) -> &[Vec<f32>] {
-        &self.tracks.timelines
+        &self.shared.timelines
     }
 
     /// All channels in the order they were added, including those that a later one overrides.
     pub fn channels(&self) -> &[Channel] {
-        &self.tracks.channels
+        &self.shared.channels
     }
 
     /// The channels of materials, lights, cameras, visibility, expressions and single morph weights: one per target,
     /// sorted.
     pub fn properties(&self) -> &[PropertyChannel] {
-        &self.tracks.properties.channels
+        &self.shared.properties.channels
     }
 
     /// Distinct lists of key times of [`Self::properties`], in strictly increasing seconds.
     pub fn property_timelines(&self) -> &[Vec<f32>] {
-        &self.tracks.properties.timelines
+        &self.shared.properties.timelines
     }
 
     /// Adds property channels of another clip, such as the source of a retarget: those for which `map` returns a
     /// target.
     pub fn with_properties_of(mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) -> Self {
         if other.properties().iter().any(|channel| map(channel.target).is_some()) {
-            let tracks = Arc::make_mut(&mut self.tracks);
-            tracks.properties.add_mapped(&other.tracks.properties, map);
-            tracks.duration_secs = tracks.duration_secs.max(other.tracks.duration_secs);
+            let shared = Arc::make_mut(&mut self.shared);
+            shared.properties.add_mapped(&other.shared.properties, map);
+            shared.duration_secs = shared.duration_secs.max(other.shared.duration_secs);
         }
         self
     }
 
     /// The key times of all channels; a time may occur several times.
     pub fn key_times_secs(&self) -> impl Iterator<Item = f32> + '_ {
-        self.tracks.timelines.iter().chain(&self.tracks.properties.timelines).flatten().copied()
+        self.shared.timelines.iter().chain(&self.shared.properties.timelines).flatten().copied()
     }
 
     /// Samples joints and morph weights at `time_secs` into `pose`. Properties without a channel keep their values, so
@@ -264,15 +263,9 @@ impl Clip {
     /// clip was built for, and `pose` matches its size. Allocates only if the clip has more timelines than any clip
     /// sampled with this cursor before.
     pub fn sample(&self, skeleton: &Skeleton, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) {
-        self.tracks.sampler.sample(
-            &self.tracks.timelines,
-            &self.tracks.channels,
-            skeleton,
-            time_secs,
-            &mut cursor.segments,
-            pose,
-        );
-        self.tracks.properties.sample_weights(time_secs, &mut cursor.property_segments, |joint, target, weight| {
+        let Shared { timelines, channels, sampler, properties, .. } = &*self.shared;
+        sampler.sample(timelines, channels, skeleton, time_secs, &mut cursor.segments, pose);
+        properties.sample_weights(time_secs, &mut cursor.property_segments, |joint, target, weight| {
             pose.morph_weights[skeleton.morph_range(joint)][target] = weight;
         });
     }
@@ -281,7 +274,7 @@ impl Clip {
     /// outside the keys hold the first or the last value. Allocates only if the clip has more of these than any clip
     /// sampled before.
     pub fn sample_properties(&self, time_secs: f32, cursor: &mut SampleCursor, out: &mut PropertyValues) {
-        self.tracks.properties.sample(time_secs, &mut cursor.property_segments, out);
+        self.shared.properties.sample(time_secs, &mut cursor.property_segments, out);
     }
 
     /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times don't reveal
@@ -305,7 +298,7 @@ impl Clip {
         const MIN_KEYS: usize = 8;
         const MIN_RATE: f64 = 10.0;
         let times =
-            self.tracks.timelines.iter().max_by_key(|times| times.len()).filter(|times| times.len() >= MIN_KEYS)?;
+            self.shared.timelines.iter().max_by_key(|times| times.len()).filter(|times| times.len() >= MIN_KEYS)?;
         let length_secs = f64::from(times.last()? - times.first()?);
         let rate = (times.len() - 1) as f64 / length_secs;
         (rate.is_finite() && rate >= MIN_RATE).then_some(rate)

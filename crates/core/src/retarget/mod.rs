@@ -4,8 +4,8 @@
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
 //! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds
-//! parts of it still, `stack` puts others over it, and `pins` holds hands and feet; `baker` makes a clip of what they do. `pose`,
-//! `keys`, `math`, `times`, `limit` and `two_bones` are shared.
+//! parts of it still, `stack` puts others over it, through `baker`, and `pins` holds hands and feet. `pose`, `keys`, `math`,
+//! `times`, `limit` and `two_bones` are shared.
 //!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
@@ -50,7 +50,6 @@ mod two_bones;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
-pub use baker::Baker;
 pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
 pub use map::{
@@ -63,7 +62,5 @@ pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub(crate) use recognize::words;
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};
-pub use stack::{
-    BakedStack, BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack,
-};
+pub use stack::{BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

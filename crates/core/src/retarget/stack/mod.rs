@@ -11,7 +11,7 @@ use super::math::clamped;
 use super::transfer::LayerClip;
 use crate::anim::{Clip, JointMask, Pose, SampleCursor, Skeleton};
 
-pub use bake::{BakedStack, StackedLayer, bake_stack};
+pub use bake::{StackedLayer, bake_stack};
 pub use mask::{BodyPart, LayerMask};
 
 /// A clip over the one that plays.
