@@ -28,6 +28,11 @@ pub fn expected_and_found(said: &str) -> Option<(String, String)> {
     Some((expected_words(expected), found_words(found)))
 }
 
+/// The parser's message in plain words, without the position at its end.
+pub fn message(problem: &serde_json::Error) -> String {
+    plain(split_position(&problem.to_string()).0)
+}
+
 /// Rewrites a message without a position.
 pub fn plain(said: &str) -> String {
     if said.starts_with("EOF while parsing") {

@@ -4,7 +4,8 @@
 
 use glam::{Affine3A, BVec4A, Mat3A, Quat, Vec3, Vec4};
 
-use super::{JointIndex, Transform};
+use super::joint::JointIndex;
+use super::transform::Transform;
 
 /// Joints per group.
 pub(super) const LANES: usize = 4;

@@ -22,8 +22,10 @@
 
 mod channel;
 mod clip;
+mod joint;
 mod kernels;
 mod layer;
+mod model_space;
 mod playback;
 mod polar;
 mod pose;
@@ -34,13 +36,15 @@ mod transform;
 
 pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
+pub use joint::JointIndex;
 pub use layer::JointMask;
+pub use model_space::{model_from_joint, model_from_single_joint};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
-pub use pose::{Pose, model_from_joint, model_from_single_joint};
+pub use pose::Pose;
 pub use property::{
     CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
     TextureSlot, ToonColor,
 };
-pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
+pub use skeleton::{Joint, Skeleton, SkeletonError};
 pub use transform::Transform;

@@ -1,14 +1,15 @@
-//! Poses, and the conversion from local to model space.
+//! Poses: one local transform per joint.
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Quat, Vec3};
 
-use super::kernels::{self, LANES, Transformx4};
-use super::{JointIndex, Skeleton, Transform};
+use super::joint::JointIndex;
+use super::kernels::{LANES, Transformx4};
+use super::transform::Transform;
 
 /// The output of sampling and the input of skinning: one local transform per joint, and the morph weights of all meshes,
-/// concatenated (see [`Skeleton::morph_range`]). A pose of a skeleton starts as a copy of its rest pose.
+/// concatenated (see [`Skeleton::morph_range`](super::Skeleton::morph_range)). A pose of a skeleton starts as a copy of its rest pose.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Pose {
     /// Four joints each, sorted by depth, so that a joint rarely has to wait for the parent just before it. The last
@@ -120,23 +121,4 @@ impl Pose {
             *own = other + (*own - other) * weight;
         }
     }
-}
-
-/// Computes the transform of every joint. `pose` belongs to this skeleton; `out` gets one entry per joint.
-/// `world_from_model` is applied to root joints; identity gives model space.
-pub fn model_from_joint(skeleton: &Skeleton, pose: &Pose, world_from_model: Affine3A, out: &mut Vec<Affine3A>) {
-    debug_assert_eq!(skeleton.len(), pose.len());
-    out.resize(skeleton.len(), Affine3A::IDENTITY);
-    kernels::model_from_joint(&pose.groups, skeleton.by_depth(), world_from_model, out);
-}
-
-/// Returns one joint's transform in model space. For many joints, [`model_from_joint`] is cheaper.
-pub fn model_from_single_joint(skeleton: &Skeleton, pose: &Pose, joint: JointIndex) -> Affine3A {
-    let mut model_from_joint = pose.local(joint).to_affine();
-    let mut ancestor = skeleton.parent(joint);
-    while let Some(joint) = ancestor {
-        model_from_joint = pose.local(joint).to_affine() * model_from_joint;
-        ancestor = skeleton.parent(joint);
-    }
-    model_from_joint
 }

@@ -5,18 +5,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use super::{Pose, Transform};
-
-/// Index of a joint in its skeleton.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct JointIndex(pub u32);
-
-impl JointIndex {
-    /// The index as a `usize`, for slices with one entry per joint.
-    pub fn get(self) -> usize {
-        self.0 as usize
-    }
-}
+use super::joint::JointIndex;
+use super::pose::Pose;
+use super::transform::Transform;
 
 /// Input for building a skeleton; `parent` is an index into the same list.
 #[derive(Debug, Clone, Default)]

@@ -30,6 +30,7 @@ mod hdr;
 pub mod limits;
 mod lines;
 mod obj;
+mod part;
 mod prepare;
 
 use std::collections::BTreeSet;
@@ -38,9 +39,10 @@ pub use error::LoadError;
 pub use file_set::FileSet;
 pub use gltf::{Early, WriteError, early, pointer_to};
 pub use hdr::{HdrError, is_hdr, read_hdr};
+pub use part::Part;
 #[cfg(not(target_arch = "wasm32"))]
 pub use prepare::prepare;
-pub use prepare::{Part, Preparation, next_preparation};
+pub use prepare::{Preparation, next_preparation};
 
 use glam::Vec3;
 

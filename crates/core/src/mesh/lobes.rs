@@ -4,7 +4,7 @@ use std::slice;
 
 use glam::Vec3;
 
-use super::TextureRef;
+use super::texture::TextureRef;
 use crate::anim::{LobeFactor, TextureSlot};
 
 /// Number of slots in [`Lobes::textures`].

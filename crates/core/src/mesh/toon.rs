@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::TextureRef;
+use super::texture::TextureRef;
 use crate::anim::{TextureSlot, ToonColor};
 
 /// Number of slots in [`Toon::textures`].

@@ -9,7 +9,7 @@
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::hierarchy::Hierarchy;
-use super::motion::{Frames, position, rotation};
+use super::motion::Frames;
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadOptions;
 
@@ -123,7 +123,7 @@ fn extent(hierarchy: &Hierarchy, numbers: Option<&[f64]>) -> DVec3 {
         let channels = first..first + joint.channels.len();
         first = channels.end;
         let (at, turn) = match numbers.and_then(|numbers| numbers.get(channels)) {
-            Some(numbers) => (position(joint, numbers), rotation(joint, numbers)),
+            Some(numbers) => (joint.position(numbers), joint.rotation(numbers)),
             None => (joint.offset, DQuat::IDENTITY),
         };
         let (origin, parent_turn) = joint.parent.map_or((DVec3::ZERO, DQuat::IDENTITY), |parent| placed[parent]);

@@ -1,7 +1,7 @@
 //! HIERARCHY: joints with their offsets and channels, in file order. Read without recursion, so that files may nest to any
 //! depth.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
@@ -32,6 +32,39 @@ pub struct BvhJoint {
     pub parent: Option<usize>,
     pub offset: DVec3,
     pub channels: Vec<Channel>,
+}
+
+impl BvhJoint {
+    /// Multiplies the joint's rotation channels, the first listed being the outermost. `numbers` are those of its channels.
+    pub fn rotation(&self, numbers: &[f64]) -> DQuat {
+        self.channels.iter().zip(numbers).fold(DQuat::IDENTITY, |product, (channel, degrees)| match channel {
+            // The remainder is exact and keeps large angles precise.
+            Channel::Rotation(axis) => product * about(*axis, (degrees % 360.0).to_radians()),
+            _ => product,
+        })
+    }
+
+    /// Returns the joint's position relative to its parent: its OFFSET, except on axes that have a channel.
+    pub fn position(&self, numbers: &[f64]) -> DVec3 {
+        let mut at = self.offset;
+        for (channel, &number) in self.channels.iter().zip(numbers) {
+            match channel {
+                Channel::Position(Axis::X) => at.x = number,
+                Channel::Position(Axis::Y) => at.y = number,
+                Channel::Position(Axis::Z) => at.z = number,
+                _ => {}
+            }
+        }
+        at
+    }
+}
+
+fn about(axis: Axis, radians: f64) -> DQuat {
+    match axis {
+        Axis::X => DQuat::from_rotation_x(radians),
+        Axis::Y => DQuat::from_rotation_y(radians),
+        Axis::Z => DQuat::from_rotation_z(radians),
+    }
 }
 
 #[derive(Debug, Default)]

@@ -14,6 +14,7 @@
 //! replace the OFFSET. Units and up axis are not stated: see [`frame_of_reference`]. End Sites give the length of the
 //! last bones and help to guess the size; they are not joints and have no number.
 
+mod clip;
 mod frame_of_reference;
 mod hierarchy;
 mod motion;

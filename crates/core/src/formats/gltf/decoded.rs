@@ -80,13 +80,3 @@ impl Decoding {
         Ok(())
     }
 }
-
-/// Removes the extensions from an object.
-pub fn without_extensions(object: &mut Object, names: &[&str]) {
-    let Some(mut extensions) = object.read::<Object>("extensions") else { return };
-    names.iter().for_each(|name| extensions.remove(name));
-    match extensions.is_empty() {
-        true => object.remove("extensions"),
-        false => object.set("extensions", &extensions),
-    }
-}

@@ -15,7 +15,7 @@ use serde_json::Value;
 use serde_json::value::RawValue;
 
 use super::container::Container;
-use super::loosen::{NONE, leave_out, loosen};
+use super::loosen::{NONE, leave_out, loosen, text};
 use super::strict;
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
@@ -104,11 +104,6 @@ pub fn json_error(file: &str, text: &str, is_glb: bool, problem: &serde_json::Er
     LoadError::Json { file: file.to_owned(), place, problem: json_text::plain(said) }
 }
 
-/// The parser's message in plain words, without the position at its end.
-pub fn message(problem: &serde_json::Error) -> String {
-    json_text::plain(json_text::split_position(&problem.to_string()).0)
-}
-
 fn too_many(file: &str, max: usize, what: &str) -> LoadError {
     let (expected, found) = (format!("at most {max} {what} in all"), "more".to_owned());
     LoadError::Invalid { file: file.to_owned(), place: "JSON".to_owned(), expected, found }
@@ -166,10 +161,6 @@ fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -
         Some(version) if version != "2.0" => Err(unsupported(format!("{version} at least (asset.minVersion)"))),
         _ => Ok(()),
     }
-}
-
-pub fn text(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 /// Whether the text has an integer of ten digits or more, which may not fit into 32 bits. Inspects every tenth byte.

@@ -9,7 +9,6 @@ use serde_json::Value;
 
 use super::accessor::Accessors;
 use super::container::Container;
-use super::decoded::without_extensions;
 use super::document::Document;
 use super::object::{Array, Object, raw};
 use super::resolve_buffers;
@@ -238,7 +237,7 @@ impl Rewritten {
         primitive.set("attributes", &attributes);
         // A strip is decoded into a list, which is the default.
         primitive.remove("mode");
-        without_extensions(primitive, &NAMES);
+        primitive.remove_extensions(&NAMES);
     }
 
     /// Points an accessor, or a new one, at a view. An accessor that already has another view is copied. Returns the

@@ -6,9 +6,8 @@
 use glam::{Vec3, Vec4};
 use serde_json::{Map, Value};
 
-use super::materials::TextureReader;
+use super::material_reader::{TextureReader, ignore, member, read_numbers, read_textures};
 use crate::anim::{LobeFactor, TextureSlot};
-use crate::asset::Warning;
 use crate::formats::error::Problem;
 use crate::mesh::{Lobes, Material};
 
@@ -66,25 +65,6 @@ pub const TEXTURES: [(&str, TextureSlot); 14] = [
     ("KHR_materials_diffuse_transmission/diffuseTransmissionTexture", TextureSlot::DiffuseTransmission),
     ("KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture", TextureSlot::DiffuseTransmissionColor),
 ];
-/// Maximum number of textures of a material. WebGL2 has 16 texture units, of which lighting, skinning and transmission
-/// take eight.
-const MAX_TEXTURES: usize = 8;
-/// The textures to drop first if a material has too many, least noticeable first.
-const DISPENSABLE: [TextureSlot; 12] = [
-    TextureSlot::ShadingShift,
-    TextureSlot::IridescenceThickness,
-    TextureSlot::SheenRoughness,
-    TextureSlot::Specular,
-    TextureSlot::Thickness,
-    TextureSlot::ClearcoatRoughness,
-    TextureSlot::ClearcoatNormal,
-    TextureSlot::Iridescence,
-    TextureSlot::DiffuseTransmissionColor,
-    TextureSlot::Anisotropy,
-    TextureSlot::SheenColor,
-    TextureSlot::Clearcoat,
-];
-
 /// Adds lobes to a material whose other members have been read.
 pub fn read(
     extensions: &Map<String, Value>,
@@ -111,7 +91,6 @@ pub fn read(
     if extensions.get(SPECULAR_GLOSSINESS).is_some_and(Value::is_object) {
         convert_specular_glossiness(extensions, material, reader)?;
     }
-    drop_surplus_textures(material, reader);
     Ok(())
 }
 
@@ -146,73 +125,4 @@ fn convert_specular_glossiness(
     material.set_texture(TextureSlot::Specular, None);
     material.set_texture(TextureSlot::SpecularColor, specular_texture);
     Ok(())
-}
-
-/// Reads textures by their paths into slots of the material.
-pub fn read_textures(
-    extensions: &Map<String, Value>,
-    table: &[(&str, TextureSlot)],
-    material: &mut Material,
-    reader: &mut TextureReader<'_>,
-) -> Result<(), Problem> {
-    for &(path, slot) in table {
-        let name = format!("extensions.{}", path.replace('/', "."));
-        let texture = reader.extension_texture(member(extensions, path), &name)?;
-        material.set_texture(slot, texture);
-    }
-    Ok(())
-}
-
-/// Keeps at most [`MAX_TEXTURES`] textures, with a warning that names the others.
-pub fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
-    let count = TextureSlot::ALL.into_iter().filter(|&slot| material.texture(slot).is_some()).count();
-    let surplus = count.saturating_sub(MAX_TEXTURES);
-    let dispensable = DISPENSABLE.into_iter().filter(|&slot| material.texture(slot).is_some());
-    let dropped: Vec<TextureSlot> = dispensable.take(surplus).collect();
-    for &slot in &dropped {
-        material.set_texture(slot, None);
-    }
-    if surplus > 0 {
-        let names: Vec<&str> = TEXTURES
-            .iter()
-            .chain(&super::mtoon::TEXTURES)
-            .filter(|(_, slot)| dropped.contains(slot))
-            .map(|(path, _)| *path)
-            .collect();
-        let problem =
-            format!("{count} textures, of which only {MAX_TEXTURES} can be shown; shown without {}", names.join(", "));
-        reader.warnings.push(Warning::Other { code: "texture-count", place: reader.material.to_owned(), problem });
-    }
-}
-
-/// Returns the value at a path of member names separated by `/`.
-pub fn member<'a>(extensions: &'a Map<String, Value>, path: &str) -> Option<&'a Value> {
-    let (extension, rest) = path.split_once('/')?;
-    rest.split('/').try_fold(extensions.get(extension)?, |value, key| value.get(key))
-}
-
-/// Reads a number, or an array of numbers as long as `out`. Leaves `out` unchanged if the member is missing, or with a
-/// warning if it is anything else.
-pub fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32], reader: &mut TextureReader<'_>) {
-    let Some(value) = member(extensions, path).filter(|value| !value.is_null()) else { return };
-    let number = |value: &Value| value.as_f64().map(|value| value as f32).filter(|value| value.is_finite());
-    let list = match out.len() {
-        1 => std::slice::from_ref(value),
-        _ => value.as_array().map_or(&[][..], Vec::as_slice),
-    };
-    let numbers: Vec<f32> = list.iter().filter_map(number).collect();
-    match numbers.len() == out.len() && list.len() == out.len() {
-        true => out.copy_from_slice(&numbers),
-        false => {
-            let expected = if out.len() == 1 { "a number".to_owned() } else { format!("{} numbers", out.len()) };
-            ignore(reader, &path.replace('/', "."), &expected, value);
-        }
-    }
-}
-
-/// Warns that a member below the material's `extensions` is ignored.
-pub fn ignore(reader: &mut TextureReader<'_>, path: &str, expected: &str, found: &Value) {
-    let place = format!("{}.extensions.{path}", reader.material);
-    let problem = format!("expected {expected}, found {found}; it is ignored");
-    reader.warnings.push(Warning::Other { code: "material", place, problem });
 }

@@ -7,9 +7,9 @@ use gltf::json::{Animation, Camera, Image, Index, Material, Texture, animation, 
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::document::{message, text};
 use super::strict;
 use crate::formats::limits::MAX_JSON_OBJECTS;
+use crate::json_text;
 
 /// Placeholder for a missing index: the `target.node` of an animation channel that an extension aims elsewhere, or a
 /// reference to an element that was left out. The crate uses the same for the missing `source` of a texture.
@@ -200,7 +200,7 @@ fn remove_unreadable<T: for<'a> Deserialize<'a>>(
 /// Returns why a value is not a `T`.
 fn why_not<T: for<'a> Deserialize<'a>>(value: &Value) -> Option<String> {
     match strict::from_str::<T>(&value.to_string(), MAX_JSON_OBJECTS) {
-        Err(strict::Error::Json(problem)) => Some(message(&problem)),
+        Err(strict::Error::Json(problem)) => Some(json_text::message(&problem)),
         _ => None,
     }
 }
@@ -263,4 +263,9 @@ fn remove_unless(members: &mut Map<String, Value>, key: &str, is_kept: fn(&Value
         // Keeps the order of the others.
         members.shift_remove(key);
     }
+}
+
+/// A string as it is, any other value as JSON.
+pub fn text(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -1,41 +1,38 @@
 //! Materials, textures and samplers (§3.9, §3.8.4), with the extensions that change them.
 
-use std::fmt::Display;
-
-use glam::{Vec2, Vec3, Vec4};
-use gltf::json::extensions::texture::TextureTransform;
+use glam::{Vec3, Vec4};
 use gltf::json::material::AlphaMode as JsonAlphaMode;
 use gltf::json::texture::{MagFilter, MinFilter, Sampler as JsonSampler, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Root};
-use serde::de::DeserializeOwned;
-use serde_json::{Map, Value};
 
 use super::accessor::get;
 use super::document::{Document, present};
-use super::lobes;
-use super::loosen::{cleaned, whole};
-use super::{mtoon, vrm};
+use super::material_reader::{TextureReader, extension};
+use super::{lobes, mtoon, vrm};
+use crate::anim::TextureSlot;
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
+use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, Wrap};
 
-/// Reads an extension that the crate has no type for at this place.
-fn extension<T: DeserializeOwned>(
-    extensions: &Map<String, Value>,
-    name: &str,
-    place: &str,
-) -> Result<Option<T>, Problem> {
-    let Some(value) = extensions.get(name) else { return Ok(None) };
-    let wrong = |found: &dyn Display| {
-        Problem::new(format!("{place}.extensions.{name}"), "what the extension's specification says", found)
-    };
-    // An array would be read by position.
-    if !value.is_object() {
-        return Err(wrong(value));
-    }
-    T::deserialize(cleaned(value)).map(Some).map_err(|problem| wrong(&problem))
-}
+/// Maximum number of textures of a material. WebGL2 has 16 texture units, of which lighting, skinning and transmission
+/// take eight.
+const MAX_TEXTURES: usize = 8;
+/// The textures to drop first if a material has too many, least noticeable first.
+const DISPENSABLE: [TextureSlot; 12] = [
+    TextureSlot::ShadingShift,
+    TextureSlot::IridescenceThickness,
+    TextureSlot::SheenRoughness,
+    TextureSlot::Specular,
+    TextureSlot::Thickness,
+    TextureSlot::ClearcoatRoughness,
+    TextureSlot::ClearcoatNormal,
+    TextureSlot::Iridescence,
+    TextureSlot::DiffuseTransmissionColor,
+    TextureSlot::Anisotropy,
+    TextureSlot::SheenColor,
+    TextureSlot::Clearcoat,
+];
 
 pub fn materials(document: &Document, warnings: &mut Warnings) -> Result<Vec<Material>, Problem> {
     let materials = document.root.materials.iter().enumerate();
@@ -89,6 +86,7 @@ fn read(
     if let Some(others) = others {
         lobes::read(others, &mut read, &mut reader)?;
         mtoon::read(others, &mut read, &mut reader)?;
+        drop_surplus_textures(&mut read, &mut reader);
     }
     let vrm_0 = document.root.extensions.as_ref().and_then(|extensions| extensions.others.get("VRM"));
     if let Some(properties) = vrm_0.and_then(|vrm| vrm["materialProperties"].get(index)) {
@@ -97,6 +95,28 @@ fn read(
         vrm::mtoon::read_0(properties, &mut read, &mut reader)?;
     }
     Ok(read)
+}
+
+/// Keeps at most [`MAX_TEXTURES`] textures, with a warning that names the others.
+fn drop_surplus_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
+    let count = TextureSlot::ALL.into_iter().filter(|&slot| material.texture(slot).is_some()).count();
+    let surplus = count.saturating_sub(MAX_TEXTURES);
+    let dispensable = DISPENSABLE.into_iter().filter(|&slot| material.texture(slot).is_some());
+    let dropped: Vec<TextureSlot> = dispensable.take(surplus).collect();
+    for &slot in &dropped {
+        material.set_texture(slot, None);
+    }
+    if surplus > 0 {
+        let names: Vec<&str> = lobes::TEXTURES
+            .iter()
+            .chain(&mtoon::TEXTURES)
+            .filter(|(_, slot)| dropped.contains(slot))
+            .map(|(path, _)| *path)
+            .collect();
+        let problem =
+            format!("{count} textures, of which only {MAX_TEXTURES} can be shown; shown without {}", names.join(", "));
+        reader.warnings.push(Warning::Other { code: "texture-count", place: reader.material.to_owned(), problem });
+    }
 }
 
 fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnings: &mut Warnings) -> AlphaMode {
@@ -113,80 +133,6 @@ fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnin
             }
             AlphaMode::Opaque
         }
-    }
-}
-
-/// Reads the textures of one material. The crate has a type for KHR_texture_transform of colour textures, but not of
-/// normal and occlusion textures.
-pub struct TextureReader<'a> {
-    root: &'a Root,
-    /// The material's place in the file.
-    pub material: &'a str,
-    pub warnings: &'a mut Warnings,
-}
-
-/// Texture index, UV set, extensions.
-type DataTexture<'a> = (usize, u32, Option<&'a Map<String, Value>>);
-
-impl TextureReader<'_> {
-    fn color(&mut self, info: &Option<json::texture::Info>, name: &str) -> Result<Option<TextureRef>, Problem> {
-        let Some(info) = info else { return Ok(None) };
-        let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
-        self.texture(info.index.value(), info.tex_coord, transform, format!("{}.{name}", self.material))
-    }
-
-    fn data(&mut self, info: Option<DataTexture>, name: &str) -> Result<Option<TextureRef>, Problem> {
-        let Some((index, uv_set, extensions)) = info else { return Ok(None) };
-        let place = format!("{}.{name}", self.material);
-        let transform =
-            extensions.map_or(Ok(None), |extensions| extension(extensions, "KHR_texture_transform", &place));
-        let transform = match transform {
-            Ok(transform) => transform,
-            Err(problem) => {
-                problem.leave_out("texture", "it is ignored", self.warnings)?;
-                None
-            }
-        };
-        self.texture(index, uv_set, transform, place)
-    }
-
-    /// Reads a texture of an extension for which the crate has no type.
-    pub fn extension_texture(&mut self, info: Option<&Value>, name: &str) -> Result<Option<TextureRef>, Problem> {
-        let Some(info) = info.filter(|info| !info.is_null()) else { return Ok(None) };
-        let Some(index) = info.get("index").and_then(whole) else {
-            let problem = Problem::new(format!("{}.{name}", self.material), "a texture's index", info);
-            problem.leave_out("texture", "the texture is left out", self.warnings)?;
-            return Ok(None);
-        };
-        let uv_set = info.get("texCoord").and_then(whole).unwrap_or(0);
-        let extensions = info.get("extensions").and_then(Value::as_object);
-        self.data(Some((index as usize, uv_set.min(u64::from(u32::MAX)) as u32, extensions)), name)
-    }
-
-    fn texture(
-        &mut self,
-        index: usize,
-        uv_set: u32,
-        transform: Option<TextureTransform>,
-        place: String,
-    ) -> Result<Option<TextureRef>, Problem> {
-        if let Err(problem) = get(&self.root.textures, index, &format_args!("{place}.index"), "textures") {
-            problem.leave_out("texture", "the texture is left out", self.warnings)?;
-            return Ok(None);
-        }
-        let transform = transform.unwrap_or_default();
-        let mut uv_set = transform.tex_coord.unwrap_or(uv_set) as usize;
-        if uv_set > 1 {
-            let problem = format!("TEXCOORD_{uv_set} is not supported; only sets 0 and 1 are, so set 0 is used");
-            self.warnings.push(Warning::Other { code: "texcoord-set", place, problem });
-            uv_set = 0;
-        }
-        let uv_transform = UvTransform {
-            offset: Vec2::from(transform.offset.0),
-            rotation_radians: transform.rotation.0,
-            scale: Vec2::from(transform.scale.0),
-        };
-        Ok(Some(TextureRef { texture: index, uv_set, uv_transform }))
     }
 }
 

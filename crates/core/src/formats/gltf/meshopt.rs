@@ -9,7 +9,6 @@ use serde_json::{Map, Value};
 
 use super::accessor::Bytes;
 use super::container::Container;
-use super::decoded::without_extensions;
 use super::document::{Document, size};
 use super::object::Object;
 use super::resolve_buffer;
@@ -152,10 +151,10 @@ impl Decoding {
                 data[range].copy_from_slice(piece);
             }
             if let Some(view) = views.get_mut(view) {
-                without_extensions(view, &NAMES);
+                view.remove_extensions(&NAMES);
             }
         }
-        buffers.iter_mut().for_each(|buffer| without_extensions(buffer, &NAMES));
+        buffers.iter_mut().for_each(|buffer| buffer.remove_extensions(&NAMES));
         for (index, data) in contents.into_iter().enumerate().filter(|(_, data)| !data.is_empty()) {
             let (name, uri) = beside(file, &format!("buffer{index}"));
             if let Some(buffer) = buffers.get_mut(index) {

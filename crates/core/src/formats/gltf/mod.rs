@@ -18,6 +18,7 @@ mod influences;
 mod instancing;
 mod lobes;
 mod loosen;
+mod material_reader;
 mod materials;
 mod meshes;
 mod meshopt;

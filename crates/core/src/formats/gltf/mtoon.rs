@@ -2,8 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::lobes::{drop_surplus_textures, ignore, read_numbers, read_textures};
-use super::materials::TextureReader;
+use super::material_reader::{TextureReader, ignore, read_numbers, read_textures};
 use crate::anim::{TextureSlot, ToonColor};
 use crate::formats::error::Problem;
 use crate::mesh::{Material, OutlineMode, Toon};
@@ -75,6 +74,5 @@ pub fn read(
     };
     material.shade_as_toon(toon);
     read_textures(extensions, &TEXTURES, material, reader)?;
-    drop_surplus_textures(material, reader);
     Ok(())
 }

@@ -88,6 +88,16 @@ impl Object {
         removed
     }
 
+    /// Removes extensions from the member `extensions`, and that member if none are left.
+    pub fn remove_extensions(&mut self, names: &[&str]) {
+        let Some(mut extensions) = self.read::<Self>("extensions") else { return };
+        names.iter().for_each(|name| extensions.remove(name));
+        match extensions.is_empty() {
+            true => self.remove("extensions"),
+            false => self.set("extensions", &extensions),
+        }
+    }
+
     /// The number of elements of the array `key`.
     pub fn count(&self, key: &str) -> usize {
         self.read::<Array>(key).map_or(0, |array| array.len())

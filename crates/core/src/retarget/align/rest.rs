@@ -127,16 +127,10 @@ fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<
         (RestChoice::Auto, _) => rotated(node_locals(skeleton), asset.reference_rotations()),
         (RestChoice::Bind, _) => rotated(node_locals(skeleton), asset.bind_rotations()),
         (RestChoice::FirstFrame, Some(clip)) => {
-            clip_locals(skeleton, clip, first_key_secs(clip), &mut Scratch::default())
+            clip_locals(skeleton, clip, clip.first_key_secs(), &mut Scratch::default())
         }
         (RestChoice::Node | RestChoice::FirstFrame, _) => node_locals(skeleton),
     }
-}
-
-/// Time of the first key of any channel; 0 without channels.
-pub(super) fn first_key_secs(clip: &Clip) -> f32 {
-    let first = clip.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
-    if first.is_finite() { first } else { 0.0 }
 }
 
 /// The same with other rotations where there are any.

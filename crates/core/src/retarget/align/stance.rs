@@ -61,7 +61,7 @@ pub struct Standing {
 /// Returns the pose of the clip, at some time or averaged, that looks most like a rest; None if none beats `rest`. In a
 /// walk no single pose is symmetric, but the mean is.
 pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: Stance) -> Option<Standing> {
-    let (first_secs, last_secs) = (super::rest::first_key_secs(clip), clip.duration_secs());
+    let (first_secs, last_secs) = (clip.first_key_secs(), clip.duration_secs());
     let mut scratch = Scratch::default();
     let mut best: Option<Standing> = None;
     let mut mean: Vec<Local> = Vec::new();

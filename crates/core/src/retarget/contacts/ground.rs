@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::{Bodies, Body, BodyMotion, Frames, GroundPart, POINTS};
+use super::bodies::{Bodies, GroundPart};
+use super::body::{Body, BodyMotion, Frames, POINTS};
 use super::limb::ARMS;
 use crate::retarget::feet::{contacts_of, foot_pairs, standing_height};
 use crate::retarget::transfer::Transfer;

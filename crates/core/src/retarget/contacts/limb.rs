@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::arm::Arm;
-use super::body::Bodies;
+use super::bodies::Bodies;
 use crate::anim::JointIndex;
 use crate::retarget::feet::{Leg, solve_leg};
 use crate::retarget::pose::WorldPose;

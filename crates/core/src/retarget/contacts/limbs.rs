@@ -4,7 +4,8 @@
 
 use glam::{DQuat, DVec3};
 
-use super::body::{Bodies, Frames, place_of};
+use super::bodies::Bodies;
+use super::body::{Frames, place_of};
 use super::ground::{Ground, Sunken};
 use super::limb::{ARMS, LIMBS, Limb};
 use super::scene::{Scene, SourceScene};

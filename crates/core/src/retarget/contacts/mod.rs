@@ -3,6 +3,7 @@
 //! skeleton.
 
 mod arm;
+mod bodies;
 mod body;
 mod ground;
 mod knees;
@@ -17,7 +18,8 @@ mod touch;
 mod trunk;
 mod wish;
 
-pub use body::{Bodies, BodyMotion};
+pub use bodies::Bodies;
+pub use body::BodyMotion;
 pub use knees::grounded_knees;
 pub use limbs::kept_limbs;
 pub use scene::{Scene, SourceScene};

@@ -2,7 +2,8 @@
 
 use glam::DQuat;
 
-use super::body::{Bodies, BodyMotion};
+use super::bodies::Bodies;
+use super::body::BodyMotion;
 use super::ground::Ground;
 use super::touch::Touches;
 use crate::anim::Clip;

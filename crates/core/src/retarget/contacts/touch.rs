@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
-use super::body::{Bodies, Frames, place_of};
+use super::bodies::Bodies;
+use super::body::{Frames, place_of};
 use super::solid::Place;
 use crate::retarget::math::smooth;
 

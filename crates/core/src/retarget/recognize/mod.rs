@@ -2,6 +2,7 @@
 //! words and hierarchy, else by shape. Records how each joint was found.
 
 mod assemble;
+mod by_shape;
 mod creature;
 mod evidence;
 mod facing;
@@ -161,7 +162,7 @@ pub fn recognize(asset: &Asset) -> Recognized {
     let mut parts = match from_file {
         Some(parts) => with_fingers(&tree, parts),
         None => by_names(&tree).unwrap_or_else(|| {
-            let found = shape::find(&tree, &Evidence::new(asset));
+            let found = by_shape::find(&tree, &Evidence::new(asset));
             left_out = found.left_out;
             found.parts
         }),

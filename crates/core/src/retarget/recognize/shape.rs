@@ -1,20 +1,11 @@
-//! Finds a body by its shape alone, for skeletons whose names say nothing: two legs that hang on one joint, a trunk that
-//! goes the other way from there, two arms and a head at its end. Pairs of limbs are found by equal lengths, which no pose
-//! changes. Which joint of a limb is which part is decided in `limbs`; every part has a confidence of its own.
-
-use std::collections::BTreeMap;
+//! The shape of a body: two legs that hang on one joint, a trunk that goes the other way from there, two arms and a head at
+//! its end. Pairs of limbs are found by equal lengths, which no pose changes.
 
 use glam::Vec3;
 
-use super::assemble::spread;
 use super::evidence::Evidence;
 use super::tree::Tree;
-use super::{Reason, RecognizedJoint, fingers, limbs};
 use crate::anim::JointIndex;
-use crate::asset::Slot::{self, *};
-
-/// Parts that are less certain than this are left out.
-pub(super) const MIN_CONFIDENCE: f32 = 0.45;
 
 /// Maximum number of limbs on a joint and of joints in a limb. Keeps the search short in large scenes.
 const MAX_COUNT: usize = 16;
@@ -60,32 +51,6 @@ pub(super) struct Halves {
     pub up: Vec3,
     /// From the second leg to the first, perpendicular to `up`.
     pub across: Vec3,
-}
-
-/// What was found, and what was not certain enough to keep.
-#[derive(Debug, Default)]
-pub(super) struct Found {
-    pub parts: BTreeMap<Slot, RecognizedJoint>,
-    pub left_out: BTreeMap<Slot, RecognizedJoint>,
-}
-
-/// Returns the joints of a body; empty if nothing looks like one. Tries the rest, then the first frame of the first clip:
-/// motion capture often rests with all bones along one axis.
-pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
-    let shapes = evidence.poses.iter().take(2).map(|positions| Shape::new(tree, evidence, positions));
-    let mut found = Found::default();
-    let Some(parts) = shapes.into_iter().find_map(|shape| slots(&shape, &halves(&shape)?)) else { return found };
-    for (slot, joint, confidence) in parts {
-        let part = RecognizedJoint { joint, reason: Reason::Geometry, confidence };
-        // The surest part of a joint comes first.
-        if found.parts.contains_key(&slot) || found.parts.values().any(|other| other.joint == joint) {
-            continue;
-        }
-        let parts = if confidence >= MIN_CONFIDENCE { &mut found.parts } else { &mut found.left_out };
-        parts.insert(slot, part);
-    }
-    // Legs and a trunk alone may be a bird's.
-    if [Head, LeftLowerArm].iter().any(|slot| found.parts.contains_key(slot)) { found } else { Found::default() }
 }
 
 impl<'a> Shape<'a> {
@@ -199,7 +164,7 @@ impl<'a> Shape<'a> {
 }
 
 /// The longest legs and arms that make an upright body.
-fn halves(shape: &Shape) -> Option<Halves> {
+pub(super) fn halves(shape: &Shape) -> Option<Halves> {
     let pairs = shape.limbs();
     let mut best: Option<Halves> = None;
     for legs in pairs.iter().filter(|legs| legs.chains[0].len() >= 3) {
@@ -280,50 +245,4 @@ fn head(shape: &Shape, legs: &Twins, arms: &Twins, up: Vec3) -> Option<Vec<Joint
         (top(first) >= shape.position(arms.base).dot(up) + 0.02 * arms.length).then_some(first)
     };
     Some(shape.unforked(highest(&top).or_else(|| highest(&skin_top))?))
-}
-
-/// Slots with joint and confidence; the surest first where several are for one joint.
-fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
-    let legs = limbs::leg(shape, body)?;
-    let arms = limbs::arm(shape, body, &legs).unwrap_or_default();
-    let mut found = vec![(Hips, body.hips, if body.hips == body.legs.base { 0.9 } else { 0.7 })];
-    found.extend(limbs::head(shape, body));
-    let has_neck = found.iter().any(|(slot, ..)| *slot == Neck);
-    found.extend(trunk(shape, body, has_neck));
-    let (is_first_left, certainty) = limbs::is_first_left(shape, body, &legs);
-    // Arms may be listed in another order than legs.
-    let is_same_order = shape.apart(&body.arms)?.dot(body.across) > 0.0;
-    for (limb, twins, is_left) in
-        [(&legs, &body.legs, is_first_left), (&arms, &body.arms, is_first_left == is_same_order)]
-    {
-        for (chain, is_left) in twins.chains.iter().zip([is_left, !is_left]) {
-            let side = |slot: Slot| if is_left { slot } else { slot.mirrored() };
-            // The end of an arm without a hand is not a joint.
-            let joints = limb.iter().filter_map(|part| Some((side(part.slot), *chain.get(part.at)?, part)));
-            found.extend(joints.map(|(slot, joint, part)| (slot, joint, part.confidence.min(certainty))));
-            let hand = limb.iter().find(|part| part.slot == LeftHand && part.confidence >= MIN_CONFIDENCE);
-            if let Some(hand) = hand {
-                let fingers = chain.get(hand.at).map(|&hand| fingers::find(shape, hand)).unwrap_or_default();
-                found.extend(
-                    fingers.into_iter().map(|(slot, joint, confidence)| (side(slot), joint, confidence.min(certainty))),
-                );
-            }
-        }
-    }
-    found.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
-    Some(found)
-}
-
-/// The joints between hips and neck. A lowest one that no skin references and that never rotates only connects the
-/// spine. Without a joint for the neck, the highest ones may be it.
-fn trunk(shape: &Shape, body: &Halves, has_neck: bool) -> Vec<(Slot, JointIndex, f32)> {
-    let is_still = |joint: JointIndex| {
-        shape.evidence.turns(joint) == Some(false) && shape.evidence.is_skinned(joint) != Some(true)
-    };
-    let links = usize::from(matches!(body.trunk[..], [first, second, ..] if is_still(first) && !is_still(second)));
-    let torso = &body.trunk[links..];
-    let confidence = if torso.len() <= 3 { 0.75 } else { 0.6 };
-    let is_sure = |slot| has_neck || slot == Spine || torso.len() <= 2;
-    let parts = spread(torso).into_iter();
-    parts.map(|(slot, joint)| (slot, joint, if is_sure(slot) { confidence } else { limbs::UNSURE })).collect()
 }

@@ -1,10 +1,13 @@
-//! Where the hips face over time, and the turning that the root options remove.
+//! Where the hips face over time, and the rotation laws without the turning that the root options remove.
 
 use std::f64::consts::TAU;
 
 use glam::DQuat;
 
-use super::{Hips, RootPolicy, RotationLaw, Transfer};
+use super::root_motion::RootPolicy;
+use super::rotation::RotationLaw;
+use super::yaw::Yaw;
+use super::{Hips, Transfer};
 use crate::retarget::keys::limits::MAX_TURN;
 use crate::retarget::keys::resample::{Curve, Resampled, resample, union};
 use crate::retarget::map::RootPart;
@@ -14,28 +17,19 @@ use crate::retarget::pose::ancestry;
 /// Less turning than this from first to last key is sway and stays with the hips when travel moves to the root joint.
 const MIN_EXTRACTED_DEGREES: f64 = 5.0;
 
-/// An angle about +Y over time, linear between its keys. Angles are not wrapped.
-#[derive(Debug, Clone)]
-pub struct Yaw {
-    pub times: Vec<f32>,
-    pub radians: Vec<f64>,
-}
-
-impl Yaw {
-    pub fn at(&self, time_secs: f32) -> f64 {
-        let from = self.times.partition_point(|&start| start <= time_secs).saturating_sub(1);
-        match self.times.get(from + 1) {
-            Some(&end) if time_secs > self.times[from] => {
-                let factor = f64::from(time_secs - self.times[from]) / f64::from(end - self.times[from]);
-                self.radians[from] + factor * (self.radians[from + 1] - self.radians[from])
-            }
-            _ => self.radians.get(from).copied().unwrap_or(0.0),
-        }
-    }
+/// Returns the law of each pair, with the turning removed that the root options ask for, and the turning that goes to the
+/// root joint instead.
+pub fn rotation_laws<'a>(transfer: &Transfer<'a>) -> (Vec<RotationLaw<'a>>, Option<Yaw>) {
+    let mut laws: Vec<RotationLaw> =
+        (0..transfer.map.pairs.len()).map(|index| RotationLaw::new(transfer, index)).collect();
+    let Some(hips) = transfer.hips else { return (laws, None) };
+    let policy = RootPolicy::new(transfer, hips);
+    let root_turn = remove_turning(transfer, hips, &policy, &mut laws);
+    (laws, root_turn)
 }
 
 /// Sets the yaw that the law of the topmost mapped joint takes out. Returns the yaw that goes to the root joint, if any.
-pub fn remove_turning(transfer: &Transfer, hips: &Hips, policy: &RootPolicy, laws: &mut [RotationLaw]) -> Option<Yaw> {
+fn remove_turning(transfer: &Transfer, hips: &Hips, policy: &RootPolicy, laws: &mut [RotationLaw]) -> Option<Yaw> {
     let root_options = &transfer.map.root;
     if root_options.yaw == RootPart::Keep && policy.extraction_joint.is_none() {
         return None;

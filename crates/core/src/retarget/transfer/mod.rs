@@ -6,16 +6,20 @@ mod heading;
 mod hips;
 mod layers;
 mod path;
+mod path_channels;
+mod removed_travel;
 mod root_motion;
 mod rotation;
+mod yaw;
 
 pub use copy::{CopyPolicy, copied_channels};
 pub use detached::{detached_channels, detached_ends};
+pub use heading::rotation_laws;
 pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
-pub use path::hips_channels;
-pub use root_motion::{RemovedTravel, RootPolicy, extraction_joint, keeps_everything, removed_travel};
-pub use rotation::{RotationLaw, rotation_laws};
+pub use path_channels::hips_channels;
+pub use removed_travel::{RemovedTravel, removed_travel};
+pub use root_motion::{extraction_joint, keeps_everything};
 
 use glam::DVec3;
 

@@ -10,8 +10,8 @@
 
 use glam::{DQuat, DVec4, Quat};
 
-use super::heading::Yaw;
-use super::{RootPolicy, Transfer, heading};
+use super::Transfer;
+use super::yaw::Yaw;
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::keys::limits::MAX_TURN;
@@ -43,20 +43,9 @@ pub struct RotationLaw<'a> {
     pub yaw: Option<Yaw>,
 }
 
-/// Returns the law of each pair, with the turning removed that the root options ask for, and the turning that goes to the
-/// root joint instead.
-pub fn rotation_laws<'a>(transfer: &Transfer<'a>) -> (Vec<RotationLaw<'a>>, Option<Yaw>) {
-    let mut laws: Vec<RotationLaw> =
-        (0..transfer.map.pairs.len()).map(|index| RotationLaw::new(transfer, index)).collect();
-    let Some(hips) = transfer.hips else { return (laws, None) };
-    let policy = RootPolicy::new(transfer, hips);
-    let root_turn = heading::remove_turning(transfer, hips, &policy, &mut laws);
-    (laws, root_turn)
-}
-
 impl<'a> RotationLaw<'a> {
     /// For pair `index` of the map.
-    fn new(transfer: &Transfer<'a>, index: usize) -> Self {
+    pub fn new(transfer: &Transfer<'a>, index: usize) -> Self {
         let (map, alignment, skeleton) = (transfer.map, transfer.alignment, transfer.target_skeleton);
         let pair = &map.pairs[index];
         let above = ancestry(skeleton, pair.target).skip(1).find_map(|joint| map.source_of(joint));

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
-use super::super::materials::TextureReader;
+use super::super::material_reader::TextureReader;
 use super::number;
 use crate::anim::TextureSlot;
 use crate::formats::error::Problem;
