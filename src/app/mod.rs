@@ -8,6 +8,7 @@ pub mod mirror;
 mod native;
 mod notices;
 mod record;
+mod recording;
 mod run;
 mod save;
 mod scene_texture;

@@ -1,24 +1,13 @@
 //! Recording one loop of the clip as a video, a GIF or images. The host asks for one frame after the other and encodes it, so the
 //! result is the same however long a frame takes. What is on screen stays as it is.
 
-use super::save::saved;
+use super::recording::Recording;
 use super::viewport::fitted;
 use super::{App, Video};
 use crate::editor::AWAITS_IMAGES;
-use crate::library::ModelId;
 use crate::render::read_pixels;
 use crate::state::{Background, LoopFrames};
-use crate::ui::{RecordingFormat, RecordingProgress, VideoSettings};
-
-pub(super) struct Recording {
-    frames: LoopFrames,
-    model: ModelId,
-    size: [u32; 2],
-    transparent: bool,
-    format: RecordingFormat,
-    /// Says if the size differs from the requested one.
-    remark: Option<String>,
-}
+use crate::ui::{RecordingFormat, RecordingProgress, VideoSettings, text};
 
 /// Of a GIF's longer edge, in pixels. GIFs hardly compress: four seconds at this size take about 6 MB.
 const MAX_GIF_SIZE: u32 = 640;
@@ -89,7 +78,7 @@ impl App {
         self.panels.host.recording = None;
         let Some(recording) = self.recording.take() else { return };
         match saved_name {
-            Ok(Some(name)) => self.toast(saved(&name, recording.remark.as_deref())),
+            Ok(Some(name)) => self.toast(text::saved(&name, recording.remark.as_deref())),
             Ok(None) => self.toast("Recording cancelled.".to_owned()),
             Err(error) => self.fail_to_record(recording.format, &error),
         }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::record::Recording;
-use super::save::saved;
+use super::recording::Recording;
 use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Reply, ScriptCall, device};
@@ -200,7 +199,7 @@ impl App {
             Message::Failed(error) => self.replace_error(error),
             Message::Notice(notice) => self.toast(notice),
             Message::Save(file) => self.host.save_file(file, &self.inbox),
-            Message::Saved(Ok((name, remark))) => self.toast(saved(&name, remark.as_deref())),
+            Message::Saved(Ok((name, remark))) => self.toast(ui::text::saved(&name, remark.as_deref())),
             Message::Saved(Err(error)) => self.add_error(&error),
             Message::Recorded(saved_name) => self.end_recording(saved_name),
             Message::Validated(model, report) => self.end_validation(model, report),

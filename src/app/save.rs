@@ -74,11 +74,6 @@ impl App {
     }
 }
 
-pub(super) fn saved(name: &str, remark: Option<&str>) -> String {
-    let remark = remark.map_or_else(String::new, |remark| format!(" {remark}"));
-    format!("Saved {name}.{remark}")
-}
-
 async fn read_png(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Result<Vec<u8>, String> {
     let pixels = read_pixels(device, queue, texture).await;
     let png = encode_png(texture.width(), texture.height(), &pixels);

@@ -1,7 +1,7 @@
 //! Copies a finished picture to the screen inside the caller's render pass.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
-use super::pipelines::pipeline_layout;
+use super::layouts::pipeline_layout;
 use super::shaders;
 
 /// Draws a picture over the whole viewport of a pass with one colour target, one sample per pixel and no depth.

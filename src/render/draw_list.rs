@@ -1,8 +1,9 @@
 //! Chooses what to draw of a frame's meshes, in which order and with which pipeline.
 
+use super::layouts::Layouts;
 use super::model::{GpuModel, GpuPrimitive};
 use super::palette::PaletteTexture;
-use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shading};
+use super::pipelines::{Features, MeshKey, MeshPipeline, Pipelines, Shading};
 use super::shaders::SurfacePermutation;
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};

@@ -5,9 +5,9 @@ use std::collections::HashSet;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use super::UploadError;
 use super::pool::{Pool, Pooled};
 use super::texture::texture_bytes;
+use super::upload_error::UploadError;
 use crate::mesh::{Geometry, Influences, Topology};
 
 /// Width of a vertex texture in texels; must match skinning.wgsl.

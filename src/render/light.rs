@@ -1,7 +1,7 @@
 //! What lights meshes and ground, bound together: environment, reflectance table, shadow map and transmission buffer.
 
 use super::environment::{self, Environment, Source};
-use super::pipelines::Layouts;
+use super::layouts::Layouts;
 use super::shadow::ShadowMap;
 use super::texture::single_texel;
 

@@ -11,6 +11,7 @@ mod frame_uniform;
 mod full_screen;
 pub mod geometry;
 mod headless;
+mod layouts;
 mod light;
 mod lobes;
 mod model;
@@ -28,6 +29,7 @@ mod thumbnail;
 mod transmission;
 mod uniform_buffer;
 pub mod uniforms;
+mod upload_error;
 
 pub use blit::Blit;
 #[cfg(target_arch = "wasm32")]
@@ -37,10 +39,11 @@ pub use headless::headless_device;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use headless::next_turn;
 pub use headless::{HeadlessError, device_descriptor, read_pixels};
-pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
+pub use renderer::{RenderStats, Renderer, RendererOptions};
 #[cfg(target_arch = "wasm32")]
 pub use texture::ImageUploader;
 pub use texture::texture_formats;
+pub use upload_error::UploadError;
 
 /// Submits the work recorded so far. A browser's graphics process serves other clients only between submissions, so each
 /// expensive step gets a submission of its own.

@@ -5,14 +5,15 @@ use std::sync::Arc;
 
 use wgpu::util::DeviceExt;
 
-use super::UploadError;
 use super::geometry::{GpuGeometry, InfluenceSource, Pools, edges};
+use super::layouts::primitive_layout;
 use super::lobes::{self, write_lobes, write_toon};
-use super::pipelines::{Features, Shading, primitive_layout};
+use super::pipelines::{Features, Shading};
 use super::shaders::SurfacePermutation;
 use super::texture::{ImageUploader, sampler, single_texel, texture_bytes};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
+use super::upload_error::UploadError;
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};

@@ -6,7 +6,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-use super::pipelines::{Layouts, ScenePipeline, pipeline_layout};
+use super::layouts::{Layouts, pipeline_layout};
+use super::pipelines::ScenePipeline;
 use super::shaders;
 use crate::frame::{Bone, Line};
 

@@ -2,7 +2,7 @@
 //! fraction of a pixel, and accumulates the average.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
-use super::pipelines::pipeline_layout;
+use super::layouts::pipeline_layout;
 use super::shaders;
 use super::targets::SCENE_FORMAT;
 

@@ -5,11 +5,12 @@ use std::ops::AddAssign;
 use super::draw_list::{DrawList, Item};
 use super::environment::Source;
 use super::frame_uniform::{GroundPlane, frame_uniform};
+use super::layouts::Layouts;
 use super::light::LightSources;
 use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
-use super::pipelines::{Layouts, Pipelines};
+use super::pipelines::Pipelines;
 use super::refine::{Accumulator, SAMPLE_OFFSETS};
 use super::targets::Targets;
 #[cfg(target_arch = "wasm32")]
@@ -18,6 +19,7 @@ use super::thumbnail::thumbnails;
 use super::transmission::TransmissionPass;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
+use super::upload_error::UploadError;
 use crate::frame::Frame;
 use crate::library::{Model, ModelId};
 use crate::state::Background;
@@ -41,35 +43,6 @@ fn is_software(info: &wgpu::AdapterInfo) -> bool {
     let names = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
     info.device_type == wgpu::DeviceType::Cpu
         || ["swiftshader", "llvmpipe", "lavapipe", "software"].iter().any(|name| names.contains(name))
-}
-
-/// Why a model cannot be drawn.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum UploadError {
-    /// A vertex or index buffer, or the texture of the influences, exceeds the device's limits.
-    #[error("mesh {mesh}, primitive {primitive}: {vertices} vertices are more than this device can hold")]
-    TooManyVertices {
-        /// Index of the mesh in the asset.
-        mesh: usize,
-        /// Index of the primitive in the mesh.
-        primitive: usize,
-        /// Number of vertices in the primitive.
-        vertices: usize,
-    },
-    /// The texture of the morph deltas exceeds the device's limits.
-    #[error(
-        "mesh {mesh}, primitive {primitive}: {targets} morph targets of {vertices} vertices are more than this device can hold"
-    )]
-    TooManyMorphTargets {
-        /// Index of the mesh in the asset.
-        mesh: usize,
-        /// Index of the primitive in the mesh.
-        primitive: usize,
-        /// Number of vertices in the primitive.
-        vertices: usize,
-        /// Number of morph targets.
-        targets: usize,
-    },
 }
 
 /// Counts for one picture.

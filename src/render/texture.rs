@@ -6,7 +6,7 @@ use gaitway_ktx2::{Format, Formats, Texture as Ktx2};
 
 use super::flush;
 use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
-use super::pipelines::pipeline_layout;
+use super::layouts::pipeline_layout;
 use super::shaders;
 use crate::library::ImageData;
 use crate::mesh::{Filter, MipFilter, Sampler, Wrap};

@@ -1,7 +1,7 @@
 //! Small opaque copies of a model's images for the panels, gamma-encoded.
 
 use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
-use super::pipelines::pipeline_layout;
+use super::layouts::pipeline_layout;
 use super::shaders;
 
 /// Width and height in pixels.

@@ -2,7 +2,7 @@
 //! levels.
 
 use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
-use super::pipelines::pipeline_layout;
+use super::layouts::pipeline_layout;
 use super::shaders::{self, Shader};
 
 /// sRGB, so that mip levels average linear light.

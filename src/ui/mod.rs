@@ -40,8 +40,8 @@ pub use viewport::overlays::overlays;
 pub use viewport::{ViewportSlot, ViewportState, viewport};
 pub use widgets::style::FONT;
 
-use viewport::{overlays, sheet};
-use widgets::{controls, icons, scrub, style};
+use viewport::sheet;
+use widgets::{controls, icons, modal, scrub, style};
 
 /// Prepares a context: fonts, styles, and what goes to a field instead of to shortcuts.
 pub fn install(context: &Context) {

@@ -1,5 +1,7 @@
 //! Enforces the layers: parses the sources for the modules that each module uses.
 
+mod circles;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,6 @@ use egui::{Align2, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, v
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
 use super::{Contents, MotionTab, Pairing, detail};
-use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
 use crate::ui::search::finds;
@@ -282,20 +281,6 @@ impl Table<'_, '_> {
             }
         }
     }
-}
-
-/// The namespace of all joints that have one, such as `mixamorig:`; omitted from rows to save room. Empty if names would be the
-/// same without it.
-pub(in crate::ui) fn namespace(asset: &Asset) -> &str {
-    let names = || asset.skeleton.joints().map(|joint| asset.skeleton.name(joint));
-    let Some(first) = names().find(|name| name.contains(':')) else { return "" };
-    let all: HashSet<&str> = names().collect();
-    let namespace = &first[..=first.rfind(':').unwrap_or(0)];
-    let is_clear = |name: &str| match name.strip_prefix(namespace) {
-        Some(rest) => !rest.contains(':') && !all.contains(rest),
-        None => !name.contains(':'),
-    };
-    if names().all(is_clear) { namespace } else { "" }
 }
 
 /// Returns whether the heading was pressed.

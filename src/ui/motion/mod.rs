@@ -4,6 +4,7 @@ mod clicking;
 mod detail;
 mod figures;
 mod joints;
+mod namespace;
 mod options;
 mod picker;
 mod rows;
@@ -26,7 +27,7 @@ use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, t
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
-pub(super) use joints::namespace;
+pub(super) use namespace::namespace;
 pub(super) use picker::show as picker;
 
 /// The state of the tab.
@@ -64,7 +65,7 @@ struct Contents {
     rows: Vec<Row>,
     /// Rows that each filter of [`rows::Filter::ALL`] lets through, in words.
     filters: [String; rows::Filter::ALL.len()],
-    /// See [`joints::namespace`].
+    /// See [`namespace()`].
     namespace: String,
     /// Names of all motions; empty if there is only one.
     motions: Vec<String>,

@@ -6,7 +6,7 @@ use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::state::{Command, title};
 use crate::ui::search::finds;
-use crate::ui::{Output, Shown, UiState, controls, overlays, text};
+use crate::ui::{Output, Shown, UiState, controls, modal, text};
 
 /// The joint whose source is being chosen.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,14 +36,14 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
     };
     let mut chosen: Option<Option<usize>> = None;
     let mut closed = false;
-    let modal = overlays::modal("source", context).show(context, |ui| {
+    let modal = modal::window("source", context).show(context, |ui| {
         let screen = ui.ctx().content_rect();
         ui.set_width((screen.width() - 64.0).min(380.0));
         let asset = &pairing.model.asset;
         let target = asset.skeleton.joint_of_source(picking.target);
         let name = target.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
         let title = text::what_follows(&name);
-        overlays::name_modal(ui, &title);
+        modal::set_name(ui, &title);
         ui.heading(title);
         ui.add_space(4.0);
         let steps = ui.input_mut(|input| {

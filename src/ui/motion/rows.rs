@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::joints::namespace;
+use super::namespace::namespace;
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::asset::{Asset, Slot};

@@ -3,7 +3,7 @@
 
 use egui::Ui;
 
-use super::report::{aligned, fact};
+use super::facts::{aligned, fact};
 use crate::anim::{PropertyChannel, PropertyTarget};
 use crate::library::Model;
 use crate::state::title;

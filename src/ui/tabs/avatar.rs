@@ -3,7 +3,7 @@
 use egui::Ui;
 use glam::Vec3;
 
-use super::report::fact;
+use super::facts::fact;
 use crate::avatar::Avatar;
 use crate::library::Model;
 use crate::state::{Command, LookTarget, title};

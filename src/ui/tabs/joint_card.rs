@@ -3,9 +3,9 @@
 use egui::{RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
+use super::facts::aligned;
 use super::formula;
 use super::pin;
-use super::report::aligned;
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;

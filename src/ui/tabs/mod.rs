@@ -3,6 +3,7 @@
 mod animated;
 mod avatar;
 pub mod display;
+mod facts;
 pub mod formula;
 mod hiding;
 mod joint_card;
@@ -12,6 +13,7 @@ mod performance;
 mod pin;
 pub mod report;
 mod scene_tree;
+mod tab;
 mod validation;
 mod view_options;
 
@@ -25,35 +27,8 @@ pub use joint_card::JointCard;
 pub use lists::Lists;
 pub(super) use pin::rounded;
 pub use scene_tree::SceneTree;
+pub use tab::Tab;
 pub use view_options::PictureSettings;
-
-/// A tab of the inspector.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Tab {
-    /// The node tree, and the selected joint and vertex.
-    Scene,
-    /// Skinning method, overlays, expressions and morph targets.
-    Display,
-    /// Contents, licence, parts, extensions and warnings of the file.
-    Info,
-    /// Camera, light, background, up axis, images and videos.
-    Camera,
-    /// Edits of the clip and layers; with a motion, its joint map and retargeting options. Hidden if the model has no clips.
-    Motion,
-}
-
-impl Tab {
-    /// Returns the text on the tab.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Scene => "Scene",
-            Self::Display => "Display",
-            Self::Info => "Info",
-            Self::Camera => "Camera",
-            Self::Motion => "Motion",
-        }
-    }
-}
 
 /// Whether there is a clip to edit or a motion to map.
 pub(super) fn has_motion_tab(library: &Library) -> bool {

@@ -2,8 +2,8 @@
 
 use egui::{Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
+use super::facts::fact;
 use super::lists::Lists;
-use super::report::fact;
 use crate::ui::text::grouped;
 use crate::ui::{Drawn, FrameTimes, HostState, controls, style, text};
 

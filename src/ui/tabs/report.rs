@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
-use super::formula::fixed;
+use super::facts::{about_node, fact};
 use super::{animated, avatar, materials, performance, validation};
-use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::editor::Export;
 use crate::library::{Finding, Model};
 use crate::mesh::{Geometry, Mesh};
-use crate::state::{Command, title};
 use crate::ui::text::grouped;
-use crate::ui::{Layout, Output, Saved, Shown, Tab, UiAction, UiState, controls, style, text};
+use crate::ui::{Layout, Output, Saved, Shown, UiAction, UiState, controls, style, text};
 
 /// Further parts are not listed.
 const MAX_PARTS: usize = 100;
@@ -105,25 +103,6 @@ fn warnings(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layout: &mut Layout, 
     }
 }
 
-/// Shows the text of a finding, and a button that leads to the node it is about.
-pub(super) fn about_node(
-    ui: &mut Ui,
-    shown: &Shown<'_>,
-    model: &Model,
-    finding: &str,
-    joint: Option<JointIndex>,
-    layout: &mut Layout,
-    out: &mut Output,
-) {
-    controls::hint(ui, finding);
-    let Some(joint) = joint else { return };
-    let name = title(Some(shown.state), &model.asset, joint);
-    if ui.add(egui::Button::new(text::go_to(&name)).truncate()).clicked() {
-        out.commands.push(Command::SelectJoint(Some(model.asset.skeleton.source_index(joint))));
-        layout.show_tab(Tab::Scene);
-    }
-}
-
 /// The named parts of the meshes.
 fn parts(ui: &mut Ui, asset: &Asset) {
     let mut parts =
@@ -158,28 +137,6 @@ fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
     controls::hint(ui, "Includes all weights of each vertex, in sets of four, and your joint names.");
 }
 
-/// A name on the left and its value on the right, or below where both don't fit.
-pub(super) fn fact(ui: &mut Ui, name: &str, value: &str) {
-    let palette = style::palette(ui);
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let width = ui.available_width();
-    let name_galley = ui.painter().layout(name.to_owned(), font.clone(), palette.weak_text, width);
-    let value_galley = ui.painter().layout(value.to_owned(), font, palette.text, width);
-    let (name_size, value_size) = (name_galley.size(), value_galley.size());
-    let beside = name_size.x + value_size.x + 12.0 <= width;
-    let height = if beside || value.is_empty() { name_size.y } else { name_size.y + value_size.y + 2.0 };
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
-    let whole = text::labelled(name, value);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
-    let value_at = if beside {
-        egui::pos2(rect.right() - value_size.x, rect.top())
-    } else {
-        egui::pos2(rect.left(), rect.top() + name_size.y + 2.0)
-    };
-    ui.painter().galley(rect.min, name_galley, palette.weak_text);
-    ui.painter().galley(value_at, value_galley, palette.text);
-}
-
 /// A format as it is written in prose.
 fn format_name(format: &str) -> String {
     if format == "gltf" { "glTF".to_owned() } else { format.to_uppercase() }
@@ -196,28 +153,9 @@ fn size_text(size: [f32; 3]) -> String {
     format!("{x} × {y} × {z} m")
 }
 
-/// Formats numbers with the same decimals, as many as suit the largest, so that they stand below each other in columns.
-pub fn aligned(numbers: &[f32]) -> Vec<String> {
-    let decimals = match numbers.iter().map(|number| number.abs()).fold(0.0, f32::max) {
-        100.0.. => 1,
-        0.00005..0.01 => 4,
-        _ => 3,
-    };
-    numbers.iter().map(|&number| fixed(number, decimals)).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{aligned, size_text};
-
-    #[test]
-    fn numbers_have_the_same_decimals_and_no_exponents() {
-        assert_eq!(aligned(&[1.0, -2.2e-6, 0.25]), ["1.000", "0.000", "0.250"]);
-        assert_eq!(aligned(&[-2.2e-6, 0.0, 1e-7]), ["0.000", "0.000", "0.000"]);
-        assert_eq!(aligned(&[0.0012, -0.0001, 0.0]), ["0.0012", "-0.0001", "0.0000"]);
-        assert_eq!(aligned(&[154.72, -0.04, 3.0]), ["154.7", "0.0", "3.0"]);
-        assert_eq!(aligned(&[f32::NAN, 1.0]), ["NaN", "1.000"]);
-    }
+    use super::size_text;
 
     #[test]
     fn the_lengths_of_a_size_have_the_same_decimals() {

@@ -3,7 +3,7 @@
 use egui::text::{LayoutJob, TextFormat};
 use egui::{RichText, Ui};
 
-use super::report::about_node;
+use super::facts::about_node;
 use crate::editor::ValidatorGroup;
 use crate::library::Model;
 use crate::ui::controls::capitals;

@@ -28,6 +28,12 @@ pub fn counted(what: &str, count: usize) -> String {
     format!("{what} ({})", grouped(count))
 }
 
+/// Returns what is said of a saved file.
+pub fn saved(name: &str, remark: Option<&str>) -> String {
+    let remark = remark.map_or_else(String::new, |remark| format!(" {remark}"));
+    format!("Saved {name}.{remark}")
+}
+
 /// Returns a text without the keys in parentheses that it ends with.
 pub fn without_key(label: &str) -> &str {
     label.rsplit_once(" (").map_or(label, |(label, _)| label)

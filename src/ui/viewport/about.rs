@@ -2,15 +2,14 @@
 
 use egui::{Context, RichText, Ui};
 
-use super::overlays;
-use crate::ui::{Output, UiAction, style, text};
+use crate::ui::{Output, UiAction, modal, style, text};
 
 const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
 
 /// Shows the box while it is open.
 pub fn show(context: &Context, is_open: &mut bool, out: &mut Output) {
     if *is_open {
-        let modal = overlays::modal("about", context).show(context, |ui| contents(ui, out));
+        let modal = modal::window("about", context).show(context, |ui| contents(ui, out));
         *is_open = !(modal.inner || modal.should_close());
     }
 }
@@ -19,7 +18,7 @@ pub fn show(context: &Context, is_open: &mut bool, out: &mut Output) {
 fn contents(ui: &mut Ui, out: &mut Output) -> bool {
     ui.set_width((ui.ctx().content_rect().width() - 64.0).min(360.0));
     let weak = style::palette(ui).weak_text;
-    overlays::name_modal(ui, text::ABOUT);
+    modal::set_name(ui, text::ABOUT);
     ui.heading(text::NAME);
     ui.add(egui::Label::new(text::TAGLINE).wrap());
     ui.label(RichText::new(text::VERSION).color(weak));

@@ -3,7 +3,7 @@
 use egui::{Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
 use glam::{Quat, Vec3};
 
-use super::Canvas;
+use super::canvas::Canvas;
 use super::panes::{pane_at, to_screen};
 use crate::anim::Transform;
 use crate::state::{Command, manual_degrees};

@@ -2,9 +2,8 @@
 
 use egui::{Align, Context, Key, Layout, RichText, Sense, Ui, vec2};
 
-use super::overlays;
 use crate::ui::icons::{Icon, icon_button};
-use crate::ui::{KEY_TABLE, style, text};
+use crate::ui::{KEY_TABLE, modal, style, text};
 
 /// Whether the help is open.
 #[derive(Debug, Default)]
@@ -51,7 +50,7 @@ impl Help {
     }
 
     fn modal(&mut self, context: &Context) {
-        let modal = overlays::modal("help", context).show(context, |ui| {
+        let modal = modal::window("help", context).show(context, |ui| {
             let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
             ui.set_width(width);
             let has_keys = self.by_key || !style::is_for_fingers(ui);
@@ -68,7 +67,7 @@ fn title_bar(ui: &mut Ui, has_keys: bool, takes_focus: bool) -> bool {
     let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP).clicked();
     ui.horizontal(|ui| {
         let title = if has_keys { text::HELP_TITLE } else { text::GESTURES };
-        overlays::name_modal(ui, title);
+        modal::set_name(ui, title);
         // Not a label, which would be underlined while it has the focus.
         let galley = ui.painter().layout_no_wrap(title.to_owned(), style::HEADING, style::palette(ui).text);
         let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::FOCUSABLE);

@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect};
 
-use super::Canvas;
+use super::canvas::Canvas;
 use super::panes::{pane_at, to_ndc};
 use crate::frame::{PickedJoint, pick_joint};
 use crate::state::{Command, source_on_stage};

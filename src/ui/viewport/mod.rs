@@ -5,6 +5,7 @@ mod about;
 pub mod awaited;
 mod buttons;
 mod camera;
+mod canvas;
 mod gizmo;
 pub mod help;
 mod hover;
@@ -18,12 +19,14 @@ mod recording;
 pub mod sheet;
 
 use egui::layers::ShapeIdx;
-use egui::{PaintCallback, Painter, Rect, Response, Sense, Shape, Ui, vec2};
+use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
 
 use super::tabs::formula;
 use super::{Output, Shown, UiState, keys, style, text};
 use crate::frame::PickedJoint;
 use crate::state::{Background, DEFAULT_ASPECT};
+
+pub(super) use canvas::Canvas;
 
 /// What the viewport remembers.
 #[derive(Debug)]
@@ -79,15 +82,6 @@ pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, 
     }
     keys::listen(ui.ctx(), &shown, local, out);
     ViewportSlot { painter, index, rect }
-}
-
-/// The viewport as one control: what its handles are drawn with and react to.
-#[derive(Clone, Copy)]
-pub(super) struct Canvas<'a> {
-    pub ui: &'a Ui,
-    pub painter: &'a Painter,
-    pub response: &'a Response,
-    pub shown: &'a Shown<'a>,
 }
 
 fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {

@@ -37,18 +37,6 @@ fn keep_focus(context: &Context, local: &mut UiState) {
     }
 }
 
-pub fn modal(name: &str, context: &Context) -> egui::Modal {
-    let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(style::WINDOW_MARGIN));
-    egui::Modal::new(Id::unique(name)).frame(frame)
-}
-
-/// Gives the modal around its accessible name.
-pub fn name_modal(ui: &Ui, title: &str) {
-    if let Some(modal) = ui.stack().iter().find(|ui| ui.kind() == Some(egui::UiKind::Modal)) {
-        ui.ctx().accesskit_node_builder(modal.unique_id, |node| node.set_label(title));
-    }
-}
-
 fn drop_target(ui: &Ui) {
     let palette = style::palette(ui);
     let painter = ui.ctx().layer_painter(egui::LayerId::new(Order::Tooltip, Id::unique("drop target")));

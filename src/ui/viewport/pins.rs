@@ -3,7 +3,7 @@
 use egui::Stroke;
 use glam::Vec3;
 
-use super::Canvas;
+use super::canvas::Canvas;
 use super::panes::{pane_at, to_screen};
 use crate::retarget::{Pin, PinGoal};
 use crate::state::Command;

@@ -2,14 +2,13 @@
 
 use egui::{Align, Context, Key, Layout, Modifiers};
 
-use super::overlays;
-use crate::ui::{Output, UiAction, UiState, controls, style, text};
+use crate::ui::{Output, UiAction, UiState, controls, modal, style, text};
 
 pub fn show(context: &Context, local: &mut UiState, out: &mut Output) {
     let Some(progress) = local.host.recording else { return };
-    overlays::modal("recording", context).show(context, |ui| {
+    modal::window("recording", context).show(context, |ui| {
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(320.0));
-        overlays::name_modal(ui, text::RECORDING);
+        modal::set_name(ui, text::RECORDING);
         ui.heading(text::RECORDING);
         ui.add_space(4.0);
         ui.label(text::frames_done(progress.frames_done, progress.frame_count));

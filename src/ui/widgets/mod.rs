@@ -3,5 +3,6 @@
 pub mod accessible;
 pub mod controls;
 pub mod icons;
+pub mod modal;
 pub mod scrub;
 pub mod style;
