@@ -2,7 +2,7 @@
 
 use super::Inbox;
 use crate::editor::ExportedFile;
-use crate::files::Role;
+use crate::files::{ImageLimits, Role};
 use crate::library::ModelId;
 use crate::state::ViewerState;
 use crate::ui::RecordingFormat;
@@ -26,6 +26,11 @@ pub struct Video {
 
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.
 pub trait Host {
+    /// What the host opens files with; the app sets it once there is a device.
+    fn image_limits(&self) -> ImageLimits {
+        ImageLimits::default()
+    }
+
     /// Lets the user choose files, which are then opened.
     fn choose_files(&self, role: Role, inbox: &Inbox);
 

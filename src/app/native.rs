@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Loads, Message, native_options};
 use crate::editor::{Contents, ExportedFile};
-use crate::files::{Disk, OpenError, Role, save_file};
+use crate::files::{Disk, ImageLimits, OpenError, Role, save_file};
 use crate::samples;
 use crate::state::ViewerState;
 use crate::ui::Progress;
@@ -65,14 +65,15 @@ struct Window {
     answer_sender: Sender<Answer>,
     /// Every file read so far, none of which is overwritten.
     files_read: RefCell<Vec<PathBuf>>,
+    images: ImageLimits,
 }
 
 impl Window {
     fn new(context: egui::Context, files_read: Vec<PathBuf>) -> Self {
         let (sender, loaded) = channel();
         let (answer_sender, answered) = channel();
-        let (loads, files_read) = (Loads::default(), RefCell::new(files_read));
-        Self { context, loads, loaded, sender, answered, answer_sender, files_read }
+        let (loads, images, files_read) = (Loads::default(), ImageLimits::default(), RefCell::new(files_read));
+        Self { context, loads, loaded, sender, answered, answer_sender, files_read, images }
     }
 
     /// Reads files in the background; the result arrives in a later frame, unless something else is opened in the meantime.
@@ -81,8 +82,8 @@ impl Window {
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         inbox.send(Message::OpenProgress(Progress { name: name.unwrap_or_default(), ..Progress::default() }));
         let (sender, context) = (self.sender.clone(), self.context.clone());
+        let disk = Disk::for_device(self.images.clone());
         std::thread::spawn(move || {
-            let disk = Disk::default();
             let contents = disk.read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
             // Fails only if the window was closed in the meantime.
             let _ = sender.send(Loaded { number, contents, files_read: disk.files_read() });
@@ -105,6 +106,10 @@ impl Window {
 }
 
 impl Host for Window {
+    fn image_limits(&self) -> ImageLimits {
+        self.images.clone()
+    }
+
     fn choose_files(&self, role: Role, _inbox: &Inbox) {
         let title = if role == Role::Motion { "Borrow motion" } else { "Open" };
         let files = rfd::AsyncFileDialog::new().set_title(title).pick_files();

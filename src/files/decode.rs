@@ -4,7 +4,8 @@ use std::io::Cursor;
 
 use image::{ImageReader, Limits};
 
-use super::images::{byte_count, fitted, is_ktx2, largest_edge, push_decoded, texture_formats, transcoded};
+use super::ImageLimits;
+use super::images::{byte_count, fitted, is_ktx2, largest_edge, push_decoded, transcoded};
 use crate::asset::{Asset, Image};
 use crate::formats::Part;
 use crate::formats::limits::MAX_IMAGE_SIDE;
@@ -14,20 +15,20 @@ use crate::library::ImageData;
 const DECODER_BYTES: u64 = 64 << 20;
 
 /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added.
-pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
-    let largest_edge = largest_edge(&asset.images);
+pub fn decode_images(asset: &mut Asset, limits: &ImageLimits) -> Vec<Option<ImageData>> {
+    let largest_edge = largest_edge(&asset.images, limits);
     let mut decoded = Vec::with_capacity(asset.images.len());
     for index in 0..asset.images.len() {
-        let outcome = decode(&asset.images[index], largest_edge);
+        let outcome = decode(&asset.images[index], largest_edge, limits);
         push_decoded(asset, &mut decoded, outcome);
     }
     decoded
 }
 
 /// Returns the image, scaled down to `largest_edge`, and its size before that.
-fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), String> {
+fn decode(image: &Image, largest_edge: u32, limits: &ImageLimits) -> Result<(ImageData, [u32; 2]), String> {
     if is_ktx2(image) {
-        let request = gaitway_ktx2::request(texture_formats(), largest_edge, &image.bytes);
+        let request = gaitway_ktx2::request(limits.formats(), largest_edge, &image.bytes);
         return transcoded(image, Part::Ktx2.run(&request));
     }
     if image.mime == "image/avif" {

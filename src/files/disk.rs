@@ -13,7 +13,7 @@ use gaitway_part::Answer;
 use super::open::open_read;
 use super::read::{FilesRead, Item, read_items};
 use super::source::{Content, Located, Progress, Reading, Source};
-use super::{Held, OpenError, Role, SortError, decode_images, view};
+use super::{Held, ImageLimits, OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
 use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
@@ -56,6 +56,7 @@ pub fn open_view(view: ViewerState, with_model: bool, held: Held<'_>) -> Result<
 /// The file system. It remembers which files it has read, so that none of them is overwritten.
 #[derive(Debug, Default)]
 pub struct Disk {
+    images: ImageLimits,
     read: RefCell<Vec<PathBuf>>,
     standard_input: Cell<StandardInput>,
 }
@@ -76,6 +77,11 @@ pub const STANDARD_STREAM: &str = "-";
 const STANDARD_INPUT_NAME: &str = "stdin";
 
 impl Disk {
+    /// Returns the file system for what a device with these limits draws.
+    pub fn for_device(images: ImageLimits) -> Self {
+        Self { images, ..Self::default() }
+    }
+
     /// Returns a file system where the path `-` stands for standard input.
     pub fn with_standard_input() -> Self {
         Self { standard_input: Cell::new(StandardInput::Unread), ..Self::default() }
@@ -256,7 +262,7 @@ impl Source for Disk {
     fn start_decoding(&self, _images: &[Image]) {}
 
     async fn finish_decoding(&self, _decoding: (), asset: &mut Asset, _is_only: bool) -> Vec<Option<ImageData>> {
-        decode_images(asset)
+        decode_images(asset, &self.images)
     }
 
     fn describe_omission(&self, part: &str, error: &OpenError) -> String {

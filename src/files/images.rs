@@ -1,60 +1,13 @@
 //! Decoded images: how large they may be on the device that draws them, and what is reported about them. Decoding itself is
 //! up to the platform.
 
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::task::Waker;
-
-use gaitway_ktx2::{Formats, Texture};
+use gaitway_ktx2::Texture;
 use gaitway_part::Answer;
 
+use super::ImageLimits;
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
 use crate::library::ImageData;
-
-/// Longest edge in pixels that the device can hold. The page decodes its first model before the device is known, with a size
-/// that every common device supports. The command line keeps images as they are.
-static DEVICE_EDGE: AtomicU32 = AtomicU32::new(if cfg!(target_arch = "wasm32") { 8192 } else { u32::MAX });
-
-/// Limits the edges of images decoded from now on to what the device can hold.
-pub fn set_largest_image(pixels: u32) {
-    DEVICE_EDGE.store(pixels.max(1), Ordering::Relaxed);
-}
-
-/// Formats that the device can sample, and the tasks that wait to know them.
-static DEVICE_FORMATS: Mutex<(Option<Formats>, Vec<Waker>)> = Mutex::new((None, Vec::new()));
-
-/// Sets the compressed formats that the device can sample, for images decoded from now on.
-pub fn set_texture_formats(formats: Formats) {
-    let waiting = {
-        let mut known = DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner);
-        known.0 = Some(formats);
-        std::mem::take(&mut known.1)
-    };
-    waiting.into_iter().for_each(Waker::wake);
-}
-
-/// Returns the compressed formats that the device can sample: none if there is no device.
-#[cfg(not(target_arch = "wasm32"))]
-pub(super) fn texture_formats() -> Formats {
-    DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner).0.unwrap_or_default()
-}
-
-/// Returns the compressed formats that the device can sample. The page creates the device while the first files arrive.
-#[cfg(target_arch = "wasm32")]
-pub(super) async fn texture_formats() -> Formats {
-    use std::task::Poll;
-
-    std::future::poll_fn(|context| {
-        let mut known = DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(formats) = known.0 else {
-            known.1.push(context.waker().clone());
-            return Poll::Pending;
-        };
-        Poll::Ready(formats)
-    })
-    .await
-}
 
 pub(super) fn is_ktx2(image: &Image) -> bool {
     image.bytes.starts_with(&gaitway_ktx2::MAGIC)
@@ -68,8 +21,8 @@ pub(super) fn transcoded(image: &Image, answer: Answer) -> Result<(ImageData, [u
 
 /// Returns the longest edge in pixels to which a model's images are scaled down: what the device can hold, halved until all of
 /// them fit into memory.
-pub(super) fn largest_edge(images: &[Image]) -> u32 {
-    let mut edge = DEVICE_EDGE.load(Ordering::Relaxed).min(MAX_IMAGE_SIDE);
+pub(super) fn largest_edge(images: &[Image], limits: &ImageLimits) -> u32 {
+    let mut edge = limits.longest_edge().min(MAX_IMAGE_SIDE);
     let size = |image: &Image, edge| fitted(image.width, image.height, edge).unwrap_or([image.width, image.height]);
     while edge > 1 && images.iter().map(|image| byte_count(size(image, edge))).sum::<u64>() > MAX_IMAGE_BYTES {
         edge /= 2;
@@ -142,9 +95,18 @@ mod tests {
     #[test]
     fn images_are_halved_until_all_fit() {
         let image = |side| Image { width: side, height: side, ..Image::default() };
-        assert_eq!(largest_edge(&[image(8192), image(8192)]), MAX_IMAGE_SIDE);
-        assert_eq!(largest_edge(&[8192; 4].map(image)), 4096);
-        assert_eq!(largest_edge(&[image(8192), image(8192), image(64)]), 4096);
-        assert_eq!(largest_edge(&[]), MAX_IMAGE_SIDE);
+        let limits = ImageLimits::default();
+        assert_eq!(largest_edge(&[image(8192), image(8192)], &limits), MAX_IMAGE_SIDE);
+        assert_eq!(largest_edge(&[8192; 4].map(image), &limits), 4096);
+        assert_eq!(largest_edge(&[image(8192), image(8192), image(64)], &limits), 4096);
+        assert_eq!(largest_edge(&[], &limits), MAX_IMAGE_SIDE);
+    }
+
+    #[test]
+    fn images_are_no_larger_than_the_device_holds() {
+        let limits = ImageLimits::default();
+        limits.set(2048, gaitway_ktx2::Formats::default());
+        let image = Image { width: 4096, height: 64, ..Image::default() };
+        assert_eq!(largest_edge(&[image], &limits), 2048);
     }
 }

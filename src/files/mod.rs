@@ -8,6 +8,7 @@ mod decode;
 mod disk;
 mod early;
 mod error;
+mod image_limits;
 mod images;
 mod open;
 mod origins;
@@ -32,7 +33,7 @@ pub use early::EarlyWatch;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
 pub use error::{ErrorCode, OpenError};
-pub use images::{set_largest_image, set_texture_formats};
+pub use image_limits::ImageLimits;
 pub use png::encode_png;
 pub use read::Item;
 #[cfg(not(target_arch = "wasm32"))]

@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::anim::{ClipQuery, SampleCursor, find_clip, model_from_joint};
 use crate::asset::Asset;
-use crate::files::{Item, Role, open_items};
+use crate::files::{ImageLimits, Item, Role, open_items};
 use crate::formats::{FileSet, load};
 use crate::mesh::{PaletteEntry, SkinningMode, write_palette};
 use crate::retarget::{Body, Retargeting, propose, recognize};
@@ -28,8 +28,9 @@ extern "C" {
 #[wasm_bindgen]
 pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
     let items = vec![Item::File("model.glb".to_owned(), bytes)];
-    let model =
-        open_items(items, Role::Model, &|_, _, _| (), None).await.map_err(|error| JsError::new(&error.to_string()))?;
+    let model = open_items(&ImageLimits::default(), items, Role::Model, &|_, _, _| (), None)
+        .await
+        .map_err(|error| JsError::new(&error.to_string()))?;
     std::hint::black_box(model);
     Ok(())
 }

@@ -209,7 +209,7 @@ pub async fn complete_again() -> String {
     let rest = async move {
         let progress = |name: &str, received: u64, total: u64| rest_progress(&reading, name, received, total);
         let items = vec![Item::Address(origin.into())];
-        let contents = open_items(items, Role::Model, &progress, Some(&upload_image)).await;
+        let contents = open_items(&reading.image_limits, items, Role::Model, &progress, Some(&upload_image)).await;
         contents.map(|contents| (contents, state, Vec::new())).map_err(|problem| problem.to_string())
     };
     page.rest.replace(Some((model, Box::pin(rest))));
@@ -366,13 +366,14 @@ async fn load_and_show(page: &Rc<Page>, request: Request) -> Result<Opened, Refu
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
-                let contents = open_items(items, role, &progress, Some(&upload_image)).await;
+                let contents = open_items(&page.image_limits, items, role, &progress, Some(&upload_image)).await;
                 let contents = contents.map(|contents| Contents { is_by_hand, ..contents });
                 contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
             }
             Request::View { state, with_model, current_motions, environments, about_link } => {
                 let held = Held { motions: &current_motions, environments: &environments };
-                let opened = open_view(*state, with_model, held, &progress, None, Some(&upload_image)).await;
+                let opened =
+                    open_view(&page.image_limits, *state, with_model, held, &progress, None, Some(&upload_image)).await;
                 let about_link = about_link.unwrap_or_default();
                 opened.map(|(contents, state)| (Contents { about_link, ..contents }, Some(Box::new(state))))
             }

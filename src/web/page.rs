@@ -17,7 +17,7 @@ use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::{AboutLink, Contents, ExportedFile, short_name};
-use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
+use crate::files::{Held, ImageLimits, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Model, ModelId};
 use crate::samples;
 use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missing, to_link};
@@ -29,6 +29,7 @@ pub(super) struct Page {
     pub inbox: Inbox,
     pub context: egui::Context,
     pub shell: Shell,
+    pub image_limits: ImageLimits,
     pub loads: Loads,
     /// Cancels the latest load, while there is one.
     pub cancel_load: Cancel,
@@ -98,14 +99,15 @@ pub async fn run(
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
     let first: Rc<RefCell<Option<First>>> = Rc::default();
+    let image_limits = ImageLimits::default();
     let (wanted, about_link) = state_of_link(&link);
     let all = {
-        let (shell, early) = (shell.clone(), first.clone());
-        Box::pin(async move { first_contents(wanted, items, motion_items, is_private, &shell, &early).await })
+        let (shell, limits, early) = (shell.clone(), image_limits.clone(), first.clone());
+        Box::pin(async move { first_contents(wanted, items, motion_items, is_private, &shell, &limits, &early).await })
     };
     // Request the files first: the network takes longest. Meanwhile, create the device and rehearse.
     let shown = pin!(async {
-        start_app(canvas, &shell).await?;
+        start_app(canvas, &shell, image_limits).await?;
         if first.borrow().is_none() {
             rehearse(&*page()?).await?;
         }
@@ -143,11 +145,11 @@ pub async fn run(
     Ok(serde_json::json!(problems).to_string())
 }
 
-async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<(), String> {
+async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell, image_limits: ImageLimits) -> Result<(), String> {
     let runner = eframe::WebRunner::new();
     let started = Rc::new(RefCell::new(None));
     let start = started.clone();
-    let host = Box::new(PageHost { shell: shell.clone() });
+    let host = Box::new(PageHost { shell: shell.clone(), image_limits: image_limits.clone() });
     let create: eframe::AppCreator<'static> = Box::new(move |cc| {
         let context = cc.egui_ctx.clone();
         context.add_plugin(Mirror::new(shell::mirror));
@@ -163,7 +165,18 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
     let frames = Frames::new(&runner).map_err(|error| text_of(&error))?;
     let (loads, rest) = (Loads::default(), RefCell::default());
     let [cancel_load, cancel_rest] = [Cancel::default(), Cancel::default()];
-    let page = Page { runner, frames, inbox, context, shell: shell.clone(), loads, cancel_load, rest, cancel_rest };
+    let page = Page {
+        runner,
+        frames,
+        inbox,
+        context,
+        shell: shell.clone(),
+        image_limits,
+        loads,
+        cancel_load,
+        rest,
+        cancel_rest,
+    };
     PAGE.with_borrow_mut(|slot| *slot = Some(Rc::new(page)));
     Ok(())
 }
@@ -176,6 +189,7 @@ async fn first_contents(
     motion_items: Array,
     is_private: bool,
     shell: &Shell,
+    limits: &ImageLimits,
     early: &RefCell<Option<First>>,
 ) -> Result<First, String> {
     let items = super::calls::items_of(items)?;
@@ -189,13 +203,13 @@ async fn first_contents(
         let contents = Contents { models: vec![model.into()], motions: Some(Vec::new()), ..Contents::default() };
         early.replace(Some((contents, wanted.clone(), Vec::new())));
     };
-    match open_wanted(&wanted, items, motion_items, &progress, &show_early).await {
+    match open_wanted(limits, &wanted, items, motion_items, &progress, &show_early).await {
         Ok((mut contents, view)) => {
             let problems = std::mem::take(&mut contents.problems);
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }
         Err(error) => {
-            let (contents, view, problems) = open_fallback(wanted, vec![error.to_string()], &progress).await?;
+            let (contents, view, problems) = open_fallback(limits, wanted, vec![error.to_string()], &progress).await?;
             // The view names the user's files although they could not be read.
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }
@@ -203,6 +217,7 @@ async fn first_contents(
 }
 
 async fn open_wanted(
+    limits: &ImageLimits,
     wanted: &ViewerState,
     items: Vec<Item>,
     motion_items: Vec<Item>,
@@ -211,13 +226,13 @@ async fn open_wanted(
 ) -> Result<(Contents, ViewerState), OpenError> {
     let (mut models, mut motions, mut environments, mut problem) = (Vec::new(), Vec::new(), Vec::new(), None);
     if !items.is_empty() {
-        let found = open_items(items, Role::Model, progress, Some(&upload_image)).await?;
+        let found = open_items(limits, items, Role::Model, progress, Some(&upload_image)).await?;
         models = found.models;
         environments.extend(found.environment);
         motions.extend(found.motions.into_iter().flatten());
     }
     if !motion_items.is_empty() {
-        match open_items(motion_items, Role::Motion, progress, None).await {
+        match open_items(limits, motion_items, Role::Motion, progress, None).await {
             Ok(found) => {
                 motions.extend(found.motions.into_iter().flatten());
                 environments.extend(found.environment);
@@ -228,7 +243,7 @@ async fn open_wanted(
     let held = Held { motions: &motions, environments: &environments };
     let early = motions.is_empty().then_some(show_early);
     let (mut contents, view) =
-        open_view(wanted.clone(), models.is_empty(), held, progress, early, Some(&upload_image)).await?;
+        open_view(limits, wanted.clone(), models.is_empty(), held, progress, early, Some(&upload_image)).await?;
     contents.models.extend(models);
     let is_wanted = |held: &Environment| wanted.lighting.environment == EnvironmentChoice::File(held.origin.clone());
     let light = environments.iter().position(is_wanted).map(|at| environments.swap_remove(at));
@@ -238,13 +253,14 @@ async fn open_wanted(
 }
 
 async fn open_fallback(
+    limits: &ImageLimits,
     wanted: ViewerState,
     mut problems: Vec<String>,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<First, String> {
     let mut models = Vec::new();
     for motion in &wanted.sources.motion {
-        match open_items(vec![Item::Address(motion.into())], Role::Model, progress, None).await {
+        match open_items(limits, vec![Item::Address(motion.into())], Role::Model, progress, None).await {
             Ok(found) => models.extend(found.models),
             Err(error) => problems.push(error.to_string()),
         }
@@ -290,9 +306,14 @@ pub(super) fn text_of(value: &JsValue) -> String {
 
 struct PageHost {
     shell: Shell,
+    image_limits: ImageLimits,
 }
 
 impl Host for PageHost {
+    fn image_limits(&self) -> ImageLimits {
+        self.image_limits.clone()
+    }
+
     fn choose_files(&self, role: Role, _inbox: &Inbox) {
         self.shell.choose(if role == Role::Motion { "motion" } else { "any" });
     }

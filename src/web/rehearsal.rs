@@ -6,7 +6,7 @@ use wasm_bindgen::prelude::*;
 use super::calls::with_app;
 use super::page::Page;
 use crate::app::RehearsalPart;
-use crate::files::{Item, Role, open_items};
+use crate::files::{ImageLimits, Item, Role, open_items};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::next_turn;
@@ -55,7 +55,7 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
 async fn open_character() -> Library {
     let items = rehearsal_files().into_iter().map(|(name, bytes)| Item::File(name.to_owned(), bytes)).collect();
     let mut library = Library::default();
-    let opened = open_items(items, Role::Model, &|_, _, _| (), None).await;
+    let opened = open_items(&ImageLimits::default(), items, Role::Model, &|_, _, _| (), None).await;
     opened.into_iter().flat_map(|contents| contents.models).for_each(|character| _ = library.add(character.model));
     library
 }

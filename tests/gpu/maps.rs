@@ -1,6 +1,6 @@
 //! Material maps and their sampling: laws rather than colours.
 
-use gaitway::files::decode_images;
+use gaitway::files::{ImageLimits, decode_images};
 use gaitway::library::ImageData;
 use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
 use gaitway::render::{Renderer, RendererOptions, texture_formats};
@@ -203,7 +203,7 @@ fn a_ktx2_image_is_linear_as_a_normal_map_and_srgb_as_a_colour_map() {
     build.json["extensionsUsed"] = json!(["KHR_texture_basisu"]);
     let mut asset = build.loaded();
     let file = asset.images[0].bytes.clone();
-    let plain = decode_images(&mut asset).remove(0).expect("a sound image");
+    let plain = decode_images(&mut asset, &ImageLimits::default()).remove(0).expect("a sound image");
     assert!(asset.warnings.is_empty(), "{:?}", asset.warnings);
     for gpu in [gpu(), gl()].into_iter().flatten() {
         let supported = texture_formats(gpu.device.features());

@@ -1,7 +1,7 @@
 //! Decoding a model's images: one that cannot be decoded gives a warning, never an error.
 
 use gaitway::asset::{Asset, AssetParts, Image};
-use gaitway::files::{decode_images, encode_png};
+use gaitway::files::{ImageLimits, decode_images, encode_png};
 use gaitway::library::ImageData;
 use gaitway_ktx2::Format;
 
@@ -17,7 +17,7 @@ fn decode_as(mime: &'static str, bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
     let image = Image { name: "skin".to_owned(), mime, bytes: bytes.into(), width: 2, height: 1 };
     let parts = AssetParts { images: vec![image], ..AssetParts::default() };
     let mut asset = Asset::new(parts).expect("indices in range");
-    let mut images = decode_images(&mut asset);
+    let mut images = decode_images(&mut asset, &ImageLimits::default());
     assert_eq!(images.len(), 1);
     (images.remove(0), asset)
 }

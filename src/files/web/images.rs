@@ -8,7 +8,8 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::{OnImage, parts};
 use crate::asset::{Asset, Image};
-use crate::files::images::{fitted, is_ktx2, largest_edge, push_decoded, texture_formats, transcoded};
+use crate::files::ImageLimits;
+use crate::files::images::{fitted, is_ktx2, largest_edge, push_decoded, transcoded};
 use crate::files::plain_image::is_opaque_and_untagged;
 use crate::files::source::Reading;
 use crate::formats::Part;
@@ -33,8 +34,8 @@ pub enum Started {
     Ktx2,
 }
 
-pub fn start(images: &[Image]) -> Vec<Decoding> {
-    let largest_edge = largest_edge(images);
+pub fn start(images: &[Image], limits: &ImageLimits) -> Vec<Decoding> {
+    let largest_edge = largest_edge(images, limits);
     images.iter().map(|image| start_one(image, largest_edge)).collect()
 }
 
@@ -42,9 +43,10 @@ pub fn start(images: &[Image]) -> Vec<Decoding> {
 pub async fn finish(
     decoding: Vec<Decoding>,
     asset: &mut Asset,
+    limits: &ImageLimits,
     on_image: Option<OnImage<'_>>,
 ) -> Vec<Option<ImageData>> {
-    let mut transcoded = transcode(&asset.images).await;
+    let mut transcoded = transcode(&asset.images, limits).await;
     let mut decoded = Vec::with_capacity(decoding.len());
     for started in decoding {
         let outcome = match started {
@@ -97,7 +99,7 @@ async fn finish_bitmap(bitmap: JsFuture, full_size: Option<[u32; 2]>) -> Decoded
 }
 
 /// Transcodes the KTX2 images, in their order.
-async fn transcode(all: &[Image]) -> VecDeque<Decoded> {
+async fn transcode(all: &[Image], limits: &ImageLimits) -> VecDeque<Decoded> {
     let images: Vec<&Image> = all.iter().filter(|image| is_ktx2(image)).collect();
     if images.is_empty() {
         return VecDeque::new();
@@ -109,9 +111,9 @@ async fn transcode(all: &[Image]) -> VecDeque<Decoded> {
             return images.iter().map(|_| Err(problem.clone())).collect();
         }
     };
-    let formats = texture_formats().await;
+    let formats = limits.formats().await;
     // Not before: until the device is known, this is a guess.
-    let largest_edge = largest_edge(all);
+    let largest_edge = largest_edge(all, limits);
     let start = |image: &&Image| {
         let request = gaitway_ktx2::request(formats, largest_edge, &image.bytes);
         parts::start(Part::Ktx2, &module, &request)

@@ -16,7 +16,7 @@ use web_sys::ImageBitmap;
 pub use timer::within;
 
 use super::source::{Content, Located, Progress, Reading, Source};
-use super::{EarlyWatch, Held, Item, OpenError, Role, open, raw_address, view};
+use super::{EarlyWatch, Held, ImageLimits, Item, OpenError, Role, open, raw_address, view};
 use crate::asset::{Asset, Image};
 use crate::editor::Contents;
 use crate::formats::Preparation;
@@ -28,19 +28,21 @@ use crate::state::ViewerState;
 /// from sRGB, as the flag says, and once if they don't.
 pub type OnImage<'a> = &'a dyn Fn(&ImageBitmap, bool);
 
-/// Opens one set of items.
+/// Opens one set of items, to be drawn by a device with these limits.
 pub async fn open_items(
+    limits: &ImageLimits,
     items: Vec<Item>,
     role: Role,
     progress: Progress<'_>,
     on_image: Option<OnImage<'_>>,
 ) -> Result<Contents, OpenError> {
-    open::open_items(&Web { on_image, ..Web::default() }, items, role, progress).await
+    open::open_items(&Web { limits, on_image, early: RefCell::default() }, items, role, progress).await
 }
 
 /// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. See
 /// `view` for the details. `show_early` is called once nothing but the model's images is missing, if they take longer.
 pub async fn open_view(
+    limits: &ImageLimits,
     view: ViewerState,
     with_model: bool,
     held: Held<'_>,
@@ -49,11 +51,11 @@ pub async fn open_view(
     on_image: Option<OnImage<'_>>,
 ) -> Result<(Contents, ViewerState), OpenError> {
     let early = show_early.and_then(|show| EarlyWatch::of(&view, show));
-    view::open_view(&Web { early: early.into(), on_image }, view, with_model, held, progress).await
+    view::open_view(&Web { limits, early: early.into(), on_image }, view, with_model, held, progress).await
 }
 
-#[derive(Default)]
 struct Web<'a> {
+    limits: &'a ImageLimits,
     /// Shows the only file that is opened before its images have arrived.
     early: RefCell<Option<EarlyWatch<'a>>>,
     on_image: Option<OnImage<'a>>,
@@ -126,7 +128,7 @@ impl Source for Web<'_> {
     }
 
     fn start_decoding(&self, images: &[Image]) -> Vec<images::Decoding> {
-        images::start(images)
+        images::start(images, self.limits)
     }
 
     async fn finish_decoding(
@@ -135,7 +137,7 @@ impl Source for Web<'_> {
         asset: &mut Asset,
         is_only: bool,
     ) -> Vec<Option<ImageData>> {
-        images::finish(decoding, asset, self.on_image.filter(|_| is_only)).await
+        images::finish(decoding, asset, self.limits, self.on_image.filter(|_| is_only)).await
     }
 
     fn describe_omission(&self, _part: &str, error: &OpenError) -> String {

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use gaitway::editor::{Contents, Editor, Export, ModelFiles, OpenedModel};
-use gaitway::files::{EarlyWatch, decode_images};
+use gaitway::files::{EarlyWatch, ImageLimits, decode_images};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::{ImageData, Model, ModelId};
 use gaitway::state::{Command, ViewerState, from_link};
@@ -48,7 +48,7 @@ fn complete(file: &[u8]) -> OpenedModel {
     let mut set = FileSet::default();
     set.insert("model.glb", file);
     let mut asset = load(&set).expect("a good file");
-    let images = decode_images(&mut asset);
+    let images = decode_images(&mut asset, &ImageLimits::default());
     let files = Some(ModelFiles { set, name: "model.glb".to_owned() });
     OpenedModel { model: Model::new(URL.to_owned(), asset, images), files }
 }
