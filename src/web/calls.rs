@@ -31,6 +31,13 @@ pub fn font() -> Uint8Array {
     Uint8Array::from(crate::ui::FONT)
 }
 
+/// Panics. Nothing calls it but the test of what the page says then.
+#[wasm_bindgen]
+#[expect(clippy::panic, reason = "that is what it is for")]
+pub fn panic_for_test() {
+    panic!("as the test asked");
+}
+
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
 /// `{shown, document}`: which of `model`, `motion`, `light` and `map` it was, and the inspect document. Changes nothing on failure.

@@ -78,8 +78,14 @@ thread_local! {
     static PAGE: RefCell<Option<Rc<Page>>> = const { RefCell::new(None) };
 }
 
-/// Installs the device hook. Nothing is drawn before the shell calls [`run`].
+/// Installs the hooks for panics and lost devices. Nothing is drawn before the shell calls [`run`].
 pub fn start() {
+    // Replaces the default hook, which prints where the browser shows nothing. eframe adds one that prints to the console.
+    std::panic::set_hook(Box::new(|info| {
+        let message = info.payload_as_str().unwrap_or("unknown error");
+        let place = info.location().map(|place| format!(" ({place})")).unwrap_or_default();
+        shell::stopped(&format!("An error inside Gaitway: {message}{place}"));
+    }));
     set_fatal_hook(shell::stopped);
 }
 

@@ -50,6 +50,16 @@ function trapOnce() {
   };
 }
 
+/** Runs in the page: the first instance of the program panics when it is asked for a pose. */
+function panicOnce() {
+  const { instantiate } = WebAssembly;
+  /** @type {any} */ (WebAssembly).instantiate = async (/** @type {WebAssembly.Module} */ module, /** @type {WebAssembly.Imports} */ imports) => {
+    WebAssembly.instantiate = instantiate;
+    const { exports } = await instantiate(module, imports);
+    return { instance: { exports: { ...exports, pose: exports.panic_for_test } }, module };
+  };
+}
+
 /**
  * Programs that the page has requested.
  * @param {import("./browser.mjs").TestPage} page
@@ -487,6 +497,23 @@ for (const renderer of BACK_ENDS) {
       await whenReady(page);
       assert.equal((await pose(page)).time_secs, 0.5);
       assert.ok(colorsOf(await picture(page)) > 16, "something should be drawn");
+      await page.finish();
+    });
+
+    test("tells message and place of a panic, for a report that can be copied", async () => {
+      const page = await site.page({ renderer, before: panicOnce });
+      await assert.rejects(pose(page), /unreachable/);
+      await page.locator("#stopped-again").waitFor({ state: "visible" });
+      const why = (await page.locator("#stopped-why").textContent()) ?? "";
+      assert.match(why, /^An error inside Gaitway: as the test asked \(src\/web\/calls\.rs:\d+:\d+\)$/);
+      await page.locator("#stopped-details summary").click();
+      await page.locator("#stopped-copy").click();
+      await page.getByText("Report copied.").waitFor({ state: "visible" });
+      const [message, program, browser, ...stack] = (await page.locator("#stopped-report").inputValue()).split("\n");
+      assert.equal(message, why);
+      assert.match(program, new RegExp(`${renderer}-[0-9a-f]{16}\\.wasm$`));
+      assert.match(browser, /Chrome/);
+      assert.match(stack.join("\n"), /wasm-function/);
       await page.finish();
     });
 

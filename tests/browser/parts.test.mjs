@@ -86,14 +86,16 @@ const requested = (page) => page.requests.filter((url) => url.includes("/parts/"
 /**
  * A module with the exports of a part.
  * @param {string} body What it does when it runs.
+ * @param {string} output What is found at its output.
  */
-function module(body) {
+function module(body, output = "") {
   const text = `(module
     (memory (export "memory") 1000)
+    (data (i32.const 0) "${output}")
     (func (export "input") (param i32) (result i32) (i32.const 0))
     (func (export "run") ${body})
     (func (export "output") (result i32) (i32.const 0))
-    (func (export "output_length") (result i32) (i32.const 0)))`;
+    (func (export "output_length") (result i32) (i32.const ${output.length})))`;
   return Buffer.from(binaryen.parseText(text).emitBinary());
 }
 
@@ -431,6 +433,7 @@ for (const renderer of BACK_ENDS)
       ["that can't be downloaded", null, /needs Gaitway's meshopt decoder, which cannot be loaded: .*cannot be reached/],
       ["that isn't what the page was built with", module("(nop)"), otherVersion],
       ["that traps", module("(unreachable)"), /meshopt decoder stopped \(.*unreachable.*\)/, withoutHashes],
+      ["that panics", module("(unreachable)", "no vertices, src/lib.rs:7:9"), /meshopt decoder stopped \(no vertices, src\/lib\.rs:7:9\)/, withoutHashes],
       ["that never ends", module("(loop (br 0))"), /meshopt decoder stopped \(it took longer than 60 seconds\)/, withoutHashes, true],
       ["that answers nothing", module("(nop)"), /returned an invalid answer/, withoutHashes],
     ];

@@ -26,6 +26,23 @@ export const isDialogOpen = () => document.querySelector("dialog[open]") !== nul
 export const field = (id) => byId(id, HTMLInputElement);
 
 /**
+ * Selects a field's text and copies it. Returns whether it could.
+ * @param {HTMLInputElement | HTMLTextAreaElement} shown
+ * @param {boolean} isAsked Whether the user has asked for it, so that the older way may be tried, too.
+ */
+export async function copyText(shown, isAsked) {
+  shown.select();
+  shown.scrollLeft = 0;
+  try {
+    await navigator.clipboard.writeText(shown.value);
+    return true;
+  } catch {
+    // Not allowed, or the page was not served over HTTPS.
+    return isAsked && document.execCommand("copy");
+  }
+}
+
+/**
  * Fills a list with one item per text.
  * @param {string} id
  * @param {string[]} texts

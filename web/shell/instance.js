@@ -4,7 +4,7 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
-import { button, byId, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
+import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { followAsked, showMissing, showMissingImages, takeAsked } from "./following.js";
@@ -20,6 +20,7 @@ import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./pan
 import { arePrivate } from "./privacy.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { cancelRecording, download, record } from "./recording.js";
+import { programs } from "./request.js";
 import { session } from "./session.js";
 import { addressOf, share } from "./share.js";
 import { validate } from "./validation.js";
@@ -46,6 +47,8 @@ let current = null;
  * @type {Mirror | null}
  */
 let mirror = null;
+
+const report = byId("stopped-report", HTMLTextAreaElement);
 
 /**
  * Aborts a start that is under way.
@@ -248,12 +251,18 @@ function callsFor(bindings) {
   };
 }
 
-/** @param {string} message */
-function stopped(message) {
+/**
+ * @param {string} message
+ * @param {string} [stack] Where it happened, if that isn't here.
+ */
+function stopped(message, stack = new Error().stack) {
   if (panel() === "stopped" || panel() === "cannot-run") return;
   abortStart?.(coded("lost-device", message));
   session.stopReason = message;
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
+  // The program's name tells its version.
+  report.value = [message, programs[backend].wasm, navigator.userAgent, stack].join("\n");
+  byId("stopped-said").textContent = "";
   const other = otherBackend(backend);
   button("stopped-other").textContent = `Use ${BACKEND_NAMES[other]} instead`;
   button("stopped-other").onclick = () => launch(other);
@@ -291,8 +300,8 @@ session.restart = () => {
 
 /** @param {unknown} error */
 function stopOnTrap(error) {
-  // An instance can't report errors inside itself: they trap.
-  if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`);
+  // A panic has been reported by now. An instance that runs out of memory or stack can't report it.
+  if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`, error.stack);
 }
 
 /**
@@ -315,4 +324,8 @@ byId("stage").addEventListener("keydown", (event) => mirror?.leaveCanvas(event),
 addEventListener("error", ({ error }) => stopOnTrap(error));
 addEventListener("unhandledrejection", ({ reason }) => stopOnTrap(reason));
 button("stopped-again").addEventListener("click", () => launch(backend));
+button("stopped-copy").addEventListener("click", async () => {
+  const isCopied = await copyText(report, true);
+  byId("stopped-said").textContent = isCopied ? "Report copied." : "Couldn't copy the report. It is selected: copy it with the keyboard.";
+});
 for (const id of ["stopped-reload", "cannot-run-reload"]) button(id).addEventListener("click", () => location.reload());

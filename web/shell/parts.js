@@ -28,8 +28,14 @@ async function work({ data: { module, input } }) {
   // Allocate first: growing the memory replaces its buffer.
   const start = place(input.length);
   new Uint8Array(memory.buffer, start, input.length).set(input);
-  run();
-  postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
+  const answer = () => new Uint8Array(memory.buffer, output(), length()).slice();
+  try {
+    run();
+  } catch (trap) {
+    const reason = new TextDecoder().decode(answer());
+    throw reason === "" ? trap : new Error(reason);
+  }
+  postMessage(answer());
 }
 
 /** The error's name if a part isn't the one that the page was built with; then nothing is wrong with the file. */

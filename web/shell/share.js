@@ -1,5 +1,5 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
-import { byId, button, dialog, field, listOf, messageOf, showList } from "./dom.js";
+import { byId, button, copyText, dialog, field, listOf, messageOf, showList } from "./dom.js";
 import { companionsOf, localFiles, shareableLink } from "./held.js";
 import { withMissing } from "./history.js";
 import { embeddedLink, linkedFiles } from "./links.js";
@@ -105,15 +105,7 @@ function codeImage(code) {
  * @param {string} failed Empty: don't insist.
  */
 async function copy(id, done, failed) {
-  field(id).select();
-  field(id).scrollLeft = 0;
-  try {
-    await navigator.clipboard.writeText(field(id).value);
-    byId("share-said").textContent = done;
-  } catch {
-    // Not allowed, or the page was not served over HTTPS.
-    byId("share-said").textContent = failed !== "" && document.execCommand("copy") ? done : failed;
-  }
+  byId("share-said").textContent = (await copyText(field(id), failed !== "")) ? done : failed;
 }
 
 button("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "Couldn't copy the link. It is selected: copy it with the keyboard."));

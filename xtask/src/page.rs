@@ -19,22 +19,16 @@ const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-/// Compiles the standard library with the program, for minimum size. A panic traps at once, without a message: thousands of places can
-/// panic. ARCHITECTURE.md says what that saves.
-const FOR_THE_PAGE: [&str; 9] = [
-    "--locked",
-    "--target",
-    "wasm32-unknown-unknown",
-    "--profile",
-    "web",
-    "-Zbuild-std=std,panic_abort",
-    "-Zbuild-std-features=optimize_for_size",
-    "--config",
-    "target.wasm32-unknown-unknown.rustflags=['-Zunstable-options','-Cpanic=immediate-abort']",
-];
+const FOR_THE_PAGE: [&str; 5] = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", "web"];
 
-/// Makes a released Rust accept unstable options. They can change with every version; `rust-toolchain.toml` pins ours.
-const UNSTABLE: (&str, &str) = ("RUSTC_BOOTSTRAP", "1");
+/// Leaves the folders of whoever builds the page out of the places that panics tell: a crate's begin with its registry.
+fn without_folders() -> anyhow::Result<[String; 2]> {
+    let cargo_home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let cargo_home = cargo_home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
+    let sources = cargo_home.context("there is no home folder: set CARGO_HOME")?.join("registry/src");
+    let flag = format!("--remap-path-prefix={}=crates", text(&sources)?);
+    Ok(["--config".to_owned(), format!("target.wasm32-unknown-unknown.rustflags=['{flag}']")])
+}
 
 /// WebAssembly features that rustc uses today. Every browser with SIMD supports them.
 const WASM_FEATURES: [&str; 8] = [
@@ -92,8 +86,10 @@ fn programs() -> PathBuf {
 
 fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
     let features = [&["viewer", back_end], features].concat().join(",");
-    let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..]].concat();
-    run_with("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat(), &[UNSTABLE])
+    let without_folders = without_folders()?;
+    let without_folders = without_folders.each_ref().map(String::as_str);
+    let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..], &without_folders].concat();
+    run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())
 }
 
 /// Writes the program's JavaScript, and the wasm that goes with it.
@@ -183,8 +179,10 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
         return Ok(());
     }
     let package = format!("gaitway-{part}");
-    let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..]].concat();
-    run_with("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat(), &[UNSTABLE])?;
+    let without_folders = without_folders()?;
+    let without_folders = without_folders.each_ref().map(String::as_str);
+    let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..], &without_folders].concat();
+    run("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat())?;
     let compiled = compiled(&package);
     let made = Made::new(&compiled, wasm)?;
     if made.is_up_to_date() {

@@ -16,10 +16,6 @@ pub fn page() -> anyhow::Result<()> {
         run("rustup", &["target", "add", WASM])
             .context("Rust's wasm32-unknown-unknown target is missing and rustup couldn't add it")?;
     }
-    if !has_rust_source() {
-        run("rustup", &["component", "add", "rust-src"])
-            .context("the standard library's source (rust-src) is missing and rustup couldn't add it")?;
-    }
     npm_packages()
 }
 
@@ -93,11 +89,6 @@ pub fn chromium() -> Option<PathBuf> {
 
 fn has_wasm_target() -> bool {
     output("rustc", &["--print", "target-libdir", "--target", WASM]).is_some_and(|folder| Path::new(&folder).exists())
-}
-
-fn has_rust_source() -> bool {
-    let source = "lib/rustlib/src/rust/library/std/Cargo.toml";
-    output("rustc", &["--print", "sysroot"]).is_some_and(|folder| Path::new(&folder).join(source).exists())
 }
 
 fn npm_packages() -> anyhow::Result<()> {

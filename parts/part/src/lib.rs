@@ -3,7 +3,8 @@
 //! (`web/shell/parts.js`), so that it can be stopped, and so that a trap ends nothing but the conversion.
 //!
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
-//! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it.
+//! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it. If `run()` traps, it finds what the
+//! panic said there instead, or nothing.
 
 use std::io::{self, Read, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -85,8 +86,14 @@ impl Exchange {
         input.as_mut_ptr()
     }
 
-    /// Converts the input.
-    pub fn run(&self, convert: fn(&[u8]) -> Answer) {
+    /// Converts the input. A panic leaves its message and place as the output.
+    pub fn run(&'static self, convert: fn(&[u8]) -> Answer) {
+        #[cfg(target_arch = "wasm32")]
+        std::panic::set_hook(Box::new(|info| {
+            let message = info.payload_as_str().unwrap_or("unknown error");
+            let place = info.location().map(|place| format!(", {place}")).unwrap_or_default();
+            *locked(&self.output) = format!("{message}{place}").into_bytes();
+        }));
         *locked(&self.output) = encode(convert(&locked(&self.input)));
     }
 
@@ -181,9 +188,9 @@ mod tests {
 
     #[test]
     fn a_module_is_called_through_its_memory() {
-        let exchange = Exchange::new();
-        exchange.input(3);
-        exchange.run(|input| Ok(Output { bytes: input.to_vec(), warnings: Vec::new() }));
-        assert_eq!(exchange.output().1, 1 + 4 + 3);
+        static EXCHANGE: Exchange = Exchange::new();
+        EXCHANGE.input(3);
+        EXCHANGE.run(|input| Ok(Output { bytes: input.to_vec(), warnings: Vec::new() }));
+        assert_eq!(EXCHANGE.output().1, 1 + 4 + 3);
     }
 }
