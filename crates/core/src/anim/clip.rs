@@ -228,7 +228,7 @@ impl Clip {
 
     /// Time of the first key of any joint's channel; 0 without channels.
     pub fn first_key_secs(&self) -> f32 {
-        let first = self.timelines.iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
+        let first = self.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
         if first.is_finite() { first } else { 0.0 }
     }
 
