@@ -9,6 +9,7 @@ use gaitway::asset::Asset;
 use gaitway::formats::{
     Early, FileSet, LoadOptions, convert, early, load, load_with, missing_files, prepare, read_hdr,
 };
+use gaitway::library::Library;
 use gaitway::retarget::JointMapFile;
 use gaitway::state::{from_link, to_link};
 
@@ -97,8 +98,9 @@ pub fn map(bytes: &[u8]) {
 /// The part of a link after its `#`.
 pub fn link(bytes: &[u8]) {
     let (state, _) = from_link(&String::from_utf8_lossy(bytes));
-    let written = to_link(&state);
-    assert_eq!(to_link(&from_link(&written).0), written, "a link that was written is read as it is");
+    let library = Library::default();
+    let written = to_link(&state, &library);
+    assert_eq!(to_link(&from_link(&written).0, &library), written, "a link that was written is read as it is");
 }
 
 /// An .hdr image.

@@ -3,7 +3,7 @@
 use super::Inbox;
 use crate::editor::ExportedFile;
 use crate::files::{ImageLimits, Role};
-use crate::library::ModelId;
+use crate::library::{Library, ModelId};
 use crate::state::ViewerState;
 use crate::ui::RecordingFormat;
 
@@ -116,8 +116,8 @@ pub trait Host {
     fn link(&self, fragment: &str) -> String;
 
     /// Called when the state has changed other than by time passing, or when there is a new message for the user, with
-    /// [`Editor::shared_state`](crate::editor::Editor).
-    fn state_changed(&self, state: &ViewerState);
+    /// [`Editor::shared_state`](crate::editor::Editor). The library has the clips that the state refers to.
+    fn state_changed(&self, state: &ViewerState, library: &Library);
 
     /// Whether the user prefers reduced motion: views start paused and don't turn.
     fn prefers_reduced_motion(&self) -> bool {

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use super::{App, Host, Inbox, Loads, Message, native_options};
 use crate::editor::{Contents, ExportedFile};
 use crate::files::{Disk, ImageLimits, OpenError, Role, save_file};
+use crate::library::Library;
 use crate::samples;
 use crate::state::ViewerState;
 use crate::ui::Progress;
@@ -153,7 +154,7 @@ impl Host for Window {
         format!("#{fragment}")
     }
 
-    fn state_changed(&self, state: &ViewerState) {
+    fn state_changed(&self, state: &ViewerState, _: &Library) {
         let title = match state.sources.model.first() {
             Some(model) => format!("{model} – Gaitway"),
             None => "Gaitway".to_owned(),

@@ -286,14 +286,14 @@ impl App {
             UiAction::ShowModel(id) => self.editor.activate(id, admit),
             UiAction::CloseModel(id) => self.editor.close(id, admit),
             UiAction::BorrowFrom(id) => self.editor.borrow_from(id, admit),
-            UiAction::ShowMotionAlone(index) => self.editor.open_motion_alone(index, admit),
+            UiAction::ShowMotionAlone(motion) => self.editor.open_motion_alone(&motion, admit),
             UiAction::ShowRefusedAlone => self.editor.open_refused_alone(admit),
             UiAction::MapRefusedManually => {
                 self.editor.map_refused_manually();
                 Ok(())
             }
-            UiAction::RemoveMotion(index) => {
-                self.editor.remove_motion(index);
+            UiAction::RemoveMotion(motion) => {
+                self.editor.remove_motion(&motion);
                 Ok(())
             }
             UiAction::Undo => {
@@ -331,7 +331,7 @@ impl App {
     }
 
     fn share(&mut self) {
-        let link = to_link(&self.editor.shared_state());
+        let link = to_link(&self.editor.shared_state(), self.editor.library());
         if !self.host.share(&link) {
             self.context.copy_text(self.host.link(&link));
             self.toast("Link copied.".to_owned());
@@ -340,7 +340,7 @@ impl App {
 
     /// Resets the panels' state about motions when the loaded motions change.
     fn update_motions(&mut self) {
-        let motions = || self.editor.library().motions().iter().map(Motion::id);
+        let motions = || self.editor.library().motions().iter().map(Motion::stage_id);
         if !motions().eq(self.last_motions.iter().copied()) {
             self.last_motions = motions().collect();
             self.panels.on_motions_changed();
@@ -366,7 +366,7 @@ impl App {
     fn open_page(&self) {
         let state = self.editor.shared_state();
         let page = PageOptions { embed: false, ..state.page.clone() };
-        self.host.open_page(&to_link(&ViewerState { page, ..state }));
+        self.host.open_page(&to_link(&ViewerState { page, ..state }, self.editor.library()));
     }
 
     fn shown(&self) -> Shown<'_> {
@@ -490,7 +490,7 @@ impl eframe::App for App {
         }
         // The page announces new messages to screen readers.
         if self.editor.take_changed() | std::mem::take(&mut self.has_new_message) {
-            self.host.state_changed(&self.editor.shared_state());
+            self.host.state_changed(&self.editor.shared_state(), self.editor.library());
         }
     }
 

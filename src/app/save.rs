@@ -32,7 +32,7 @@ impl App {
 
     fn file(&mut self, what: Saved) -> Result<ExportedFile, String> {
         match what {
-            Saved::File(export) => self.editor.export(export),
+            Saved::File(export) => self.editor.export(&export),
             #[cfg(target_arch = "wasm32")]
             Saved::Picture { .. } => Err("images are saved once they have been read back".to_owned()),
             #[cfg(not(target_arch = "wasm32"))]

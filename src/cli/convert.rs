@@ -55,7 +55,8 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
             return Err(failure.at("--unit"));
         }
         print_warnings(&name, &asset.warnings);
-        let clip = changed_clip(&name, &asset, arguments)?.renamed();
+        let changed = changed_clip(&name, &asset, arguments)?;
+        let clip = if arguments.edits.name.is_some() { changed.clip } else { changed.renamed() };
         if !clip.properties().is_empty() {
             warn(&format!(
                 "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
@@ -102,7 +103,7 @@ fn posed(arguments: &ConvertArguments, link: &str, disk: &Disk) -> Outcome<Vec<u
     let others = [
         ("--clip", arguments.clip.is_some()),
         ("--unit", arguments.unit.is_some()),
-        ("its changes, layers and pins", !arguments.edits.is_none()),
+        ("its name, changes, layers and pins", !arguments.edits.is_none()),
     ];
     if let Some((other, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Failure::expected("a pose alone", other).at("--view"));
@@ -117,5 +118,5 @@ fn posed(arguments: &ConvertArguments, link: &str, disk: &Disk) -> Outcome<Vec<u
     }
     let mut editor = open_editor(opened, &MotionArguments::default(), disk)?;
     apply_link(&mut editor, link, &MotionArguments::default(), Overrides::default(), disk)?;
-    Ok(editor.export(Export::FullModel { posed: true })?.bytes)
+    Ok(editor.export(&Export::FullModel { posed: true })?.bytes)
 }

@@ -69,7 +69,7 @@ fn text(opened: &Opened, document: &Value) -> String {
             format!("{:.3} × {:.3} × {:.3} m, from {:.3} to {:.3}", size.x, size.y, size.z, bounds.min, bounds.max),
         );
     }
-    for (index, title) in opened.model.clip_titles().iter().enumerate() {
+    for (index, title) in opened.model.clips().titles().enumerate() {
         let clip = &asset.clips[index];
         line(
             &format!("clip {index}"),

@@ -10,7 +10,7 @@ use crate::library::Model;
 use crate::retarget::{
     Baking, Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking,
 };
-use crate::state::{read_layer, unknown_layers};
+use crate::state::{LayeredClip, read_layer, unknown_layers};
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]
@@ -18,12 +18,12 @@ pub(super) struct LayerOptions {
     /// A clip over this one: its name or index and settings, as in a link's key `layers`. Repeatable, the lowest first
     /// [settings: weight:W, speed:S, start:SECS, additive, additive:rest, mask:PART:JOINT].
     #[arg(long = "layer", value_name = "CLIP[:SETTING,…]", value_parser = read)]
-    pub layers: Vec<ClipLayer>,
+    pub layers: Vec<LayeredClip>,
 }
 
-fn read(text: &str) -> Result<ClipLayer, String> {
+fn read(text: &str) -> Result<LayeredClip, String> {
     let layer = read_layer(text).map_err(|expected| format!("expected {expected}"))?;
-    if layer.clone().clamped() == layer {
+    if layer.layer.clone().clamped() == layer.layer {
         return Ok(layer);
     }
     let (speed, start) = (ClipLayer::MAX_SPEED, ClipLayer::MAX_START_SECS);
@@ -31,16 +31,16 @@ fn read(text: &str) -> Result<ClipLayer, String> {
 }
 
 /// Fails if the model lacks a clip or a joint that a layer names.
-pub(super) fn check(layers: &[ClipLayer], model: &Model) -> Outcome {
+pub(super) fn check(layers: &[LayeredClip], model: &Model) -> Outcome {
     if let Some(unknown) = unknown_layers(model, layers).next() {
         return Err(Failure::from(unknown).at("--layer").in_file(&model.source));
     }
     check_joints(layers, &model.asset).map_err(|failure| failure.in_file(&model.source))
 }
 
-fn check_joints(layers: &[ClipLayer], asset: &Asset) -> Outcome {
+fn check_joints(layers: &[LayeredClip], asset: &Asset) -> Outcome {
     let count = asset.skeleton.len();
-    let mut joints = layers.iter().flat_map(|layer| &layer.mask.joints);
+    let mut joints = layers.iter().flat_map(|over| &over.layer.mask.joints);
     match joints.find(|&&joint| joint >= count) {
         Some(joint) => {
             let expected = format!("a mask of joints from 0 to {}", count.saturating_sub(1));
@@ -67,12 +67,12 @@ impl LayerOptions {
         check_joints(&self.layers, asset)?;
         let slots = recognized().humanoid();
         let mut stack = Vec::new();
-        for layer in &self.layers {
-            let index = clip_named(asset, &layer.clip).map_err(|unknown| Failure::from(unknown).at("--layer"))?;
+        for LayeredClip { clip, layer } in &self.layers {
+            let name = clip.to_string();
+            let index = clip_named(asset, &name).map_err(|unknown| Failure::from(unknown).at("--layer"))?;
             let included = layer.mask.included(&Body { asset, slots: &slots });
             if !included.contains(&true) {
-                let message =
-                    format!("--layer: the file has none of the body parts that “{}” is masked by", layer.clip);
+                let message = format!("--layer: the file has none of the body parts that “{name}” is masked by");
                 warnings.push(("empty-mask", message));
             }
             let source = ClipOverLayers { clip: &asset.clips[index], below: &[] };

@@ -38,7 +38,7 @@ use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart};
-use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
+use crate::state::{ClipChoice, Command, unknown_clip};
 use edit::EditOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;
@@ -448,7 +448,7 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
     if let Some(model) = editor.library().active() {
         let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
         let choice = match &moment.clip {
-            Some(name) => Some(retargeted(name).unwrap_or(ClipChoice::Named(name.clone()))),
+            Some(name) => Some(retargeted(name).unwrap_or_else(|| ClipChoice::called(name))),
             None => retargeted("0"),
         };
         if let Some(choice) = choice {
@@ -489,9 +489,9 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
 
 /// Finds a retargeted clip by name, or by index among the retargeted ones.
 fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
-    let clips = model.borrowed_clips().map(|(_, borrowed)| &borrowed.clip);
-    let (clip, _) = model.borrowed_clips().nth(find_clip(clips, ClipQuery::NameOrIndex(name))?)?;
-    Some(choice_of_clip(model, clip))
+    let clips = model.clips().borrowed().map(|(_, borrowed)| &borrowed.clip);
+    let (clip, _) = model.clips().borrowed().nth(find_clip(clips, ClipQuery::NameOrIndex(name))?)?;
+    Some(ClipChoice::Clip(clip.id().clone()))
 }
 
 #[cfg(feature = "render")]

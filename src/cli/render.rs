@@ -114,7 +114,7 @@ fn show_variant(editor: &mut Editor, name: &str) -> Outcome {
 
 /// Lights the scene with what the link's key `light` would name, or with a file.
 fn light_with(editor: &mut Editor, name: &str, disk: &Disk) -> Outcome {
-    let (state, errors) = from_object(editor.state(), &json!({ "light": name }));
+    let (state, errors) = from_object(editor.state(), editor.library(), &json!({ "light": name }));
     if let Some(error) = errors.first() {
         return Err(Failure::new(error.to_string()).at("--environment"));
     }

@@ -13,7 +13,7 @@ use crate::asset::Asset;
 use crate::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use crate::files::{Disk, Opened};
 use crate::formats::write_model;
-use crate::library::{Model, Motion, map_for, warning_documents, with_expressions};
+use crate::library::{Model, Motion, clip_file_name, map_for, warning_documents, with_expressions};
 use crate::retarget::{
     ChangedClip, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers,
     baking, layer_clips,
@@ -85,6 +85,8 @@ pub(super) fn make(
     }
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip);
+    let name = clip_file_name(&motion.source, source_clip, &motion.asset);
+    let clip = clip.with_name(name.unwrap_or_default());
     let clip = with_layers(&model.asset, &resolved, clip, choices.loops.map(usize::from), &mut warnings);
     let recognized = || model.recognition().clone();
     let is_looped = choices.loops.is_some();

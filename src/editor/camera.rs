@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::Editor;
 use crate::frame::{current_orbit, travelled};
+use crate::library::ClipId;
 use crate::state::{
     CameraChoice, Command, OrbitCamera, ViewerState, active_clip, comparison, comparison_ratio, frame_all,
     resolve_camera,
@@ -96,13 +97,13 @@ impl Editor {
 
     /// Returns the active clip and where a camera that the user has moved and that follows the character finds it there. The automatic
     /// camera finds it anyway.
-    pub(super) fn followed_place(&self) -> Option<(Option<usize>, Vec3)> {
+    pub(super) fn followed_place(&self) -> Option<(Option<ClipId>, Vec3)> {
         let follows = self.state.camera_options.follow && matches!(self.state.camera, CameraChoice::Orbit(_));
         follows.then(|| (self.active_clip(), self.automatic_target()))
     }
 
     /// Moves such a camera along if another clip is somewhere else: otherwise, it follows the character within a clip only.
-    pub(super) fn follow_to_place(&mut self, before: Option<(Option<usize>, Vec3)>) {
+    pub(super) fn follow_to_place(&mut self, before: Option<(Option<ClipId>, Vec3)>) {
         /// Of the camera's distance: what moves by less stays in view.
         const MIN_SHIFT: f32 = 0.25;
         let (Some((clip, before)), CameraChoice::Orbit(orbit)) = (before, self.state.camera) else { return };
@@ -116,8 +117,8 @@ impl Editor {
         }
     }
 
-    fn active_clip(&self) -> Option<usize> {
-        self.library.active().and_then(|model| active_clip(model, &self.state))
+    fn active_clip(&self) -> Option<ClipId> {
+        Some(active_clip(self.library.active()?, &self.state)?.id().clone())
     }
 
     fn automatic_target(&self) -> Vec3 {

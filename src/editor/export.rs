@@ -8,7 +8,7 @@ use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
-use crate::library::Model;
+use crate::library::{ClipId, Model, ModelClip, MotionId};
 use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
 use crate::state::{
     ViewerState, active_clip, active_map, clip_with_manual_values, has_layers, has_manual_values, looks_at_camera,
@@ -20,22 +20,22 @@ pub(crate) const AWAITS_IMAGES: &str =
     "the model's images have not arrived; wait until they have, or reload the page if you cancelled them";
 
 /// What to write.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Export {
     /// The joint map of a motion.
     Map {
-        /// Index into [`Library::motions`](crate::library::Library::motions).
-        motion: usize,
+        /// One of the library's.
+        motion: MotionId,
     },
     /// The model with one of its clips that isn't in its file as it plays: [`derived_clip`].
     Model {
-        /// Index among all clips of the active model; an unchanged one of its own is an error.
-        clip: usize,
+        /// One of the active model's; an unedited one of its own is an error.
+        clip: ClipId,
     },
     /// One of the clips with its skeleton, without meshes.
     Clip {
-        /// Index among all clips of the active model.
-        clip: usize,
+        /// One of the active model's.
+        clip: ClipId,
         /// The kind of file.
         format: ClipFormat,
     },
@@ -74,22 +74,21 @@ fn about_properties(clip: &Clip) -> Option<&'static str> {
 }
 
 /// Returns the active clip unless the model's file already contains it as it plays.
-pub fn derived_clip(model: &Model, state: &ViewerState) -> Option<usize> {
-    active_clip(model, state).filter(|&clip| is_derived(model, state, clip))
+pub fn derived_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a ModelClip> {
+    active_clip(model, state).filter(|clip| is_derived(model, state, clip))
 }
 
 /// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or what is set manually, or
 /// pinned.
-fn is_derived(model: &Model, state: &ViewerState, clip: usize) -> bool {
-    model.is_derived(clip)
-        || has_layers(model, state)
-        || has_manual_values(model, state)
-        || !state.edits.pins.is_empty()
+fn is_derived(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
+    clip.is_derived() || has_layers(model, state) || has_manual_values(model, state) || !state.edits.pins.is_empty()
 }
 
-/// A clip with its layers, what is set manually, and its pins baked in, if it has any.
+const NO_SUCH_CLIP: &str = "there is no such clip";
+
+/// A clip with its layers, what is set manually, and its pins baked in.
 struct BakedClip {
-    clip: Option<Clip>,
+    clip: Clip,
     remarks: Vec<&'static str>,
 }
 
@@ -98,12 +97,12 @@ impl Editor {
     ///
     /// # Errors
     /// The message for the user if there is nothing to write or writing fails.
-    pub fn export(&self, what: Export) -> Result<ExportedFile, String> {
+    pub fn export(&self, what: &Export) -> Result<ExportedFile, String> {
         match what {
             Export::Map { motion } => self.export_map(motion),
             Export::Model { clip } => self.export_model(clip),
-            Export::Clip { clip, format } => self.export_clip(clip, format),
-            Export::FullModel { posed } => self.export_whole(posed),
+            Export::Clip { clip, format } => self.export_clip(clip, *format),
+            Export::FullModel { posed } => self.export_whole(*posed),
         }
     }
 
@@ -112,10 +111,9 @@ impl Editor {
         self.stem_with_clip(self.library.active().and_then(|model| active_clip(model, &self.state)))
     }
 
-    fn stem_with_clip(&self, clip: Option<usize>) -> String {
-        let model = self.library.active();
-        let clip = model.and_then(|model| model.clip_titles().get(clip?));
-        let parts = [model.map(|model| stem(&model.source)), clip.cloned()];
+    fn stem_with_clip(&self, clip: Option<&ModelClip>) -> String {
+        let model = self.library.active().map(|model| stem(&model.source));
+        let parts = [model, clip.map(|clip| clip.title().to_owned())];
         let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
         let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ()".contains(letter);
         name.chars().map(|letter| if is_plain(letter) { letter } else { '-' }).collect()
@@ -134,9 +132,9 @@ impl Editor {
     }
 
     /// Writes joint names instead of numbers, for people to read.
-    fn export_map(&self, motion: usize) -> Result<ExportedFile, String> {
+    fn export_map(&self, motion: &MotionId) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        let about = self.library.motions().get(motion).ok_or("this motion was removed")?;
+        let about = self.library.motion(motion).ok_or("this motion was removed")?;
         let map = active_map(&self.library, &self.state, motion).unwrap_or_default();
         let json = map.to_file(&model.asset, &about.asset).to_json().map_err(|error| error.to_string())?;
         Ok(ExportedFile::new(format!("{}-{}.json", stem(&model.source), stem(&about.source)), json.into_bytes()))
@@ -158,15 +156,16 @@ impl Editor {
     }
 
     /// Writes one clip with its skeleton.
-    fn export_clip(&self, clip: usize, format: ClipFormat) -> Result<ExportedFile, String> {
+    fn export_clip(&self, clip: &ClipId, format: ClipFormat) -> Result<ExportedFile, String> {
         let model = self.model()?;
+        let clip = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
         let stem = self.stem_with_clip(Some(clip));
         // Of these, only a GLB could be mistaken for the model.
         let suffix = if format == ClipFormat::Glb { "-clip" } else { "" };
         let name = format!("{stem}{suffix}.{}", format.extension());
-        let mut baked = self.baked_clip(clip)?;
-        let frames_per_sec = model.frames_per_sec(clip);
-        let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
+        let mut baked = self.baked_clip(model, clip);
+        let frames_per_sec = clip.frames_per_sec();
+        let clip = &baked.clip;
         if format == ClipFormat::Glb {
             baked.remarks.extend(about_properties(clip));
         }
@@ -176,19 +175,17 @@ impl Editor {
     }
 
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
-    fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
+    fn export_model(&self, clip: &ClipId) -> Result<ExportedFile, String> {
         let model = self.complete_model()?;
+        let clip = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
         if !is_derived(model, &self.state, clip) {
             return Err("the model's file already contains this clip".to_owned());
         }
-        let borrowed = model.borrowed(clip);
-        let mut baked = self.baked_clip(clip)?;
-        if borrowed.is_none() && !model.is_copy(clip) {
-            let derived = baked.clip.take().or_else(|| model.clip(clip).cloned());
-            baked.clip = derived.map(|clip| ChangedClip { clip, seam: None }.renamed());
+        let mut baked = self.baked_clip(model, clip);
+        if clip.is_from_file() && !clip.is_renamed() {
+            baked.clip = ChangedClip { clip: baked.clip, seam: None }.renamed();
         }
-        let derived = baked.clip.as_ref().or_else(|| model.clip(clip));
-        let clips = [derived.ok_or("there is no such clip")?];
+        let clips = [&baked.clip];
         baked.remarks.extend(about_properties(clips[0]));
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
@@ -203,35 +200,32 @@ impl Editor {
         Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
     }
 
-    fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
-        let model = self.model()?;
-        let (below, over) = (model.layers(clip), stacked_layers(model, &self.state));
-        let name = model.clip_name(clip);
-        let mut baked = BakedClip { clip: None, remarks: Vec::new() };
-        let has_range = self.state.playhead.range.is_some() && active_clip(model, &self.state) == Some(clip);
+    fn baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
+        let (clip, below, over) = (source.clip(), source.layers(), stacked_layers(model, &self.state));
+        let mut baked = BakedClip { clip: clip.clone(), remarks: Vec::new() };
+        let is_active = active_clip(model, &self.state).is_some_and(|active| active.id() == source.id());
+        let has_range = self.state.playhead.range.is_some() && is_active;
         baked.remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it."));
-        let Some(clip) = model.clip(clip) else { return Ok(baked) };
         if !below.is_empty() || !over.is_empty() {
             let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
             let baking = baking(clip, below, &periods, None);
             let layered = bake_layers(&model.asset, clip, below, &baking);
-            baked.clip = Some(bake_stack(&model.asset.skeleton, &layered, &over));
+            baked.clip = bake_stack(&model.asset.skeleton, &layered, &over);
             let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
             baked.remarks.extend((!baking.seamless).then_some(seam));
         }
-        if let Some(held) = clip_with_manual_values(model, &self.state, baked.clip.as_ref().unwrap_or(clip)) {
-            baked.clip = Some(held);
+        if let Some(held) = clip_with_manual_values(model, &self.state, &baked.clip) {
+            baked.clip = held;
             let has_poses = !self.state.edits.pose.is_empty();
             baked.remarks.extend(has_poses.then_some("Manually posed joints hold their pose in it."));
         }
         // Pins repeat with the clip, not with its layers.
-        let (period_secs, eye) = (f64::from(clip.duration_secs()), looks_at_camera(&self.state).then(|| self.eye()));
-        let pinned = pinned_clip(model, &self.state, baked.clip.as_ref().unwrap_or(clip), period_secs, eye);
-        baked.clip = pinned.or(baked.clip);
-        if let Some(name) = name.filter(|&name| name != clip.name()) {
-            baked.clip = Some(baked.clip.unwrap_or_else(|| clip.clone()).with_name(name.to_owned()));
+        let (period_secs, eye) = (source.duration_secs(), looks_at_camera(&self.state).then(|| self.eye()));
+        if let Some(pinned) = pinned_clip(model, &self.state, &baked.clip, period_secs, eye) {
+            baked.clip = pinned;
         }
-        Ok(baked)
+        baked.clip = baked.clip.with_name(source.file_name().to_owned());
+        baked
     }
 
     /// The camera's position in the current view.

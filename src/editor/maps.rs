@@ -37,8 +37,8 @@ pub fn reconciled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap
     let mut reconciled: Vec<MotionMap> = Vec::new();
     let mut used = vec![false; held.len()];
     let mut by_name = MapsByName::read(held);
-    for (index, motion) in library.motions().iter().enumerate() {
-        let Some(checksum) = library.names_checksum(index) else { continue };
+    for motion in library.motions() {
+        let Some(checksum) = library.names_checksum(motion.id()) else { continue };
         if numbered_for(&reconciled, checksum).is_some() {
             continue;
         }
@@ -53,7 +53,7 @@ pub fn reconciled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap
                 used[at] = true;
                 Some(map)
             }
-            None => proposed_map(library, index),
+            None => proposed_map(library, motion.id()),
         };
         reconciled.extend(map.map(|map| MotionMap::Numbers(NumberedMap { checksum, map })));
     }
@@ -112,15 +112,16 @@ impl Editor {
             let problem = "this is a joint map, but no motion is loaded; open the motion first, or both together";
             return Err(problem.to_owned());
         }
-        let playing = active_clip(model, &self.state).and_then(|clip| Some(model.borrowed(clip)?.motion));
+        let playing = active_clip(model, &self.state).and_then(|clip| Some(clip.borrowed()?.motion.clone()));
         let (mut fitting, mut misfits) = (Vec::new(), Vec::new());
-        for (index, motion) in self.library.motions().iter().enumerate() {
+        for motion in self.library.motions() {
+            let id = motion.id().clone();
             match map.to_joint_map(&model.asset, &motion.asset) {
-                Ok(map) => fitting.push((index, short_name(&motion.source), map)),
-                Err(problem) => misfits.push((index, MapProblem::NoFit { motion: motion.source.clone(), problem })),
+                Ok(map) => fitting.push((id, short_name(&motion.source), map)),
+                Err(problem) => misfits.push((id, MapProblem::NoFit { motion: motion.source.clone(), problem })),
             }
         }
-        let of_playing = misfits.iter().find(|(index, _)| Some(*index) == playing);
+        let of_playing = misfits.iter().find(|(id, _)| Some(id) == playing.as_ref());
         if let Some((_, problem)) = of_playing.or(misfits.first()).filter(|_| fitting.is_empty()) {
             return Err(self.map_problem(problem));
         }
@@ -143,12 +144,12 @@ impl Editor {
 
     /// Tells about a joint's new source.
     pub(super) fn tell_source(&mut self, command: &Command) {
-        let &Command::SetSource { motion, target, source } = command else { return };
+        let Command::SetSource { motion, target, source } = command else { return };
         let name = |asset: &Asset, number: usize| {
             asset.skeleton.joint_of_source(number).map(|joint| asset.skeleton.name(joint).to_owned())
         };
-        let (Some(model), Some(motion)) = (self.library.active(), self.library.motions().get(motion)) else { return };
-        if let Some(target) = name(&model.asset, target) {
+        let (Some(model), Some(motion)) = (self.library.active(), self.library.motion(motion)) else { return };
+        if let Some(target) = name(&model.asset, *target) {
             let source = source.and_then(|source| name(&motion.asset, source));
             self.events.push(Event::SourceSet { target, source });
         }

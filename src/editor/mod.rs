@@ -33,10 +33,9 @@ use serde_json::Value;
 
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
-    ClipChoice, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
-    looks_past, unknown_clip, view_problems,
+    ClipChoice, ClipEdit, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState,
+    from_object, looks_past, view_problems,
 };
-use motions::ClipIdentity;
 use open::Shelved;
 
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
@@ -52,8 +51,6 @@ pub struct Editor {
     shelf: BTreeMap<ModelId, Shelved>,
     /// Motions that don't fit the model, until the user decides what to do with them.
     refused: Vec<Motion>,
-    /// The retargeted clip to return to once its map has pairs again.
-    waiting_clip: Option<ClipIdentity>,
     /// Name of the joint map's file while it is being opened.
     opened_map: Option<String>,
     /// What is known of a link while its view is being opened.
@@ -89,7 +86,6 @@ impl Editor {
             history: History::default(),
             shelf: BTreeMap::new(),
             refused: Vec::new(),
-            waiting_clip: None,
             opened_map: None,
             about_link: AboutLink::default(),
             has_private_map: false,
@@ -147,11 +143,9 @@ impl Editor {
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
-        let chooses_copy = matches!(command, Command::CopyClip { .. } | Command::RemoveCopy(_));
+        let chooses_copy = matches!(command, Command::EditClip { edit: ClipEdit::Copy(_) | ClipEdit::RemoveCopy, .. });
         // A whole view chooses its clip itself.
         let is_map_edit = affects_retargeting && !chooses_copy && !matches!(command, Command::Replace(_));
-        let playing = if is_map_edit { self.retargeted_clip() } else { None };
-        let edited = if is_map_edit { self.edited_clips() } else { Vec::new() };
         let reframes = matches!(command, Command::SetUp(_));
         let is_other_clip = (chooses_copy || matches!(command, Command::SetClip(_))) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
@@ -177,13 +171,11 @@ impl Editor {
             self.suit_automatic_follow();
         }
         if is_map_edit {
-            self.keep_edits(&edited);
-            self.follow_clip(playing);
             self.hold_view(view_before);
         }
         self.follow_to_place(followed);
         if let Some((motion, before)) = rematched {
-            self.notify_rematch(motion, &before);
+            self.notify_rematch(&motion, &before);
         }
     }
 
@@ -192,7 +184,7 @@ impl Editor {
     /// # Errors
     /// The message for the user if a value or a joint map is invalid.
     pub fn apply_partial(&mut self, partial: &Value) -> Result<(), String> {
-        let (mut state, errors) = from_object(&self.state, partial);
+        let (mut state, errors) = from_object(&self.state, &self.library, partial);
         if !errors.is_empty() {
             return Err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         }
@@ -252,7 +244,7 @@ impl Editor {
     pub(super) fn settle_view(&mut self, view: &ViewerState, problems: Vec<String>) {
         let AboutLink { mut errors, is_partial } = std::mem::take(&mut self.about_link);
         if is_partial {
-            if self.library.active().is_some_and(|model| unknown_clip(model, &self.state).is_some()) {
+            if self.is_clip_unknown() {
                 self.state.playhead.clip = ClipChoice::First;
             }
             return self.tell(&errors, Vec::new());
@@ -310,8 +302,6 @@ fn affects_retargeting(command: &Command) -> bool {
             | Command::SetRoot(_)
             | Command::SetFeet(_)
             | Command::SetContacts(_)
-            | Command::ChangeClip { .. }
-            | Command::CopyClip { .. }
-            | Command::RemoveCopy(_)
+            | Command::EditClip { .. }
     )
 }

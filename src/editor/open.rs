@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use super::motions::{ClipIdentity, without_still};
+use super::motions::{Playing, without_still};
 use super::names::is_obj;
 use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::asset::{Asset, Warning};
-use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
+use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion, MotionId};
 use crate::state::{
     ClipChoice, Command, Edits, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
 };
@@ -28,7 +28,7 @@ pub(super) struct Snapshot {
     saved_motion: SavedMotion,
     pub loaded: Loaded,
     /// The active clip if it was retargeted.
-    pub playing: Option<ClipIdentity>,
+    pub playing: Option<Playing>,
 }
 
 /// What was opened together with models.
@@ -239,7 +239,7 @@ impl Editor {
     /// motions.
     fn carry_motions_over(
         &mut self,
-        playing: Option<ClipIdentity>,
+        playing: Option<Playing>,
         new: Vec<Motion>,
         mut map: Option<MotionMap>,
         plays_added: bool,
@@ -259,7 +259,7 @@ impl Editor {
         } else {
             let problems = self.add_motions(new.clone(), map);
             self.report(problems);
-            self.choose_retargeted(new.first().map(ClipIdentity::first_of));
+            self.choose_retargeted(self.first_of(&new));
             self.added_from(&new)
         };
         let sentences: Vec<String> = [about_clip, dropped].into_iter().flatten().collect();
@@ -313,7 +313,6 @@ impl Editor {
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
     pub(super) fn remember(&mut self, before: Option<Snapshot>) {
         let Some(before) = before else { return };
-        self.waiting_clip = None;
         if before.loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&before.loaded.model)
         {
@@ -493,8 +492,8 @@ impl Editor {
     ///
     /// # Errors
     /// The message for the user if it cannot be shown.
-    pub fn open_motion_alone(&mut self, index: usize, admit: Admit<'_>) -> Result<(), String> {
-        match self.library.motions().get(index).cloned() {
+    pub fn open_motion_alone(&mut self, motion: &MotionId, admit: Admit<'_>) -> Result<(), String> {
+        match self.library.motion(motion).cloned() {
             Some(motion) => self.open_alone(&motion, admit),
             None => Ok(()),
         }

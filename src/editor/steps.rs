@@ -1,7 +1,6 @@
 //! Undo and redo. A notice says when that activates, lists or closes another model, or removes or restores a motion: the user
 //! may have opened it long ago.
 
-use super::motions::ClipIdentity;
 use super::{Editor, Event, short_name};
 use crate::library::ModelId;
 use crate::state::{Edited, OrbitCamera, ViewerState};
@@ -71,13 +70,12 @@ impl Editor {
         BeforeStep {
             state: self.state.clone(),
             names: self.loaded_names(),
-            playing: if is_retargeting { self.retargeted_clip() } else { None },
             view: if is_retargeting { self.automatic_view() } else { None },
         }
     }
 
     fn finish_step(&mut self, before: BeforeStep, is_undo: bool) {
-        let BeforeStep { state, names: before, playing, view } = before;
+        let BeforeStep { state, names: before, view } = before;
         (self.needs_redraw, self.is_changed) = (true, true);
         let after = self.loaded_names();
         let notice = step_notice(&before, &after, if is_undo { "Redo" } else { "Undo" });
@@ -85,12 +83,6 @@ impl Editor {
         self.events.push(Event::Stepped { is_undo, edited });
         let problems = self.retarget();
         self.report(problems);
-        let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
-        if is_same_model {
-            self.follow_clip(playing);
-        } else {
-            self.waiting_clip = None;
-        }
         if let Some(text) = notice {
             self.notify(text);
         }
@@ -110,8 +102,6 @@ impl Editor {
 struct BeforeStep {
     state: ViewerState,
     names: LoadedNames,
-    /// What played before a step of retargeting.
-    playing: Option<ClipIdentity>,
     /// What the camera showed before a step of retargeting, unless the user has chosen the view.
     view: Option<OrbitCamera>,
 }

@@ -2,7 +2,7 @@
 //! sink in are held on the ground. Links and scripts get exactly what they say.
 
 use super::Editor;
-use crate::library::BorrowedClip;
+use crate::library::{ClipId, ModelClip};
 use crate::retarget::{Feet, Verdict, Verdicts};
 use crate::state::{CameraChoice, CameraOptions, Command, ViewerState, frame_all};
 
@@ -45,14 +45,14 @@ impl Editor {
 
     fn needs_feet_held(&self, motions: usize) -> bool {
         let Some(model) = self.library.active() else { return false };
-        let is_off = |clip: usize| {
+        let is_off = |clip: &ModelClip| {
             let contacts = self.state.retarget.contacts.unwrap_or_default();
-            let verdicts = Verdicts::new(self.library.figures(clip)?, model.size_metres(), contacts);
+            let verdicts = Verdicts::new(self.library.figures(clip.id())?, model.size_metres(), contacts);
             let feet = [verdicts.foot_slide, verdicts.foot_hover, verdicts.sole_penetration];
             Some(feet.contains(&Some(Verdict::NeedsReview)))
         };
         let from = self.library.motions().len().saturating_sub(motions);
-        let is_first = |borrowed: &BorrowedClip| borrowed.motion >= from && borrowed.source_clip == 0;
-        model.borrowed_clips().any(|(clip, borrowed)| is_first(borrowed) && is_off(clip) == Some(true))
+        let mut first = self.library.motions()[from..].iter().map(|motion| ClipId::Borrowed(motion.id().clone(), 0));
+        first.any(|clip| model.clip(&clip).and_then(is_off) == Some(true))
     }
 }

@@ -9,7 +9,7 @@ use crate::anim::{
     JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint, model_from_single_joint,
 };
 use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
-use crate::library::{Library, Model, ModelId};
+use crate::library::{Library, Model, ModelClip, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
     COMPARED_SKINNING, Comparison, EnvironmentChoice, LayerSampler, LightSetup, LookTarget, PoseSampler, SourceOnStage,
@@ -85,11 +85,12 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
     };
-    frame.clip = active_clip(model, state);
-    frame.look.time_secs = frame.clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
+    let clip = active_clip(model, state);
+    frame.clip = clip.map(|clip| clip.id().clone());
+    frame.look.time_secs = clip.map_or(0.0, |clip| clip_secs(clip, state) as f32);
     frame.scratch.sampler.sample_motion(model, state);
     let follows = state.camera_options.follow;
-    let travel = if follows { travel(model, frame.clip, state, &mut frame.scratch) } else { Vec3::ZERO };
+    let travel = if follows { travel(model, clip, state, &mut frame.scratch) } else { Vec3::ZERO };
     frame.scratch.travel = travel;
     let needs_eye = state.display.look_at == LookTarget::Camera || looks_at_camera(state);
     let eye = needs_eye.then(|| camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose)).flatten();
@@ -133,7 +134,7 @@ fn write_characters(
             Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
             _ => state.display.skinning,
         };
-        let pose = match (*comparison, *clip) {
+        let pose = match (*comparison, &*clip) {
             (Some(Comparison::Rests(active_rest)), Some(clip)) if pane > 0 => {
                 scratch.rest_pose.copy_from(&scratch.sampler.pose);
                 if let Some(clip) = library.clip_from_rest(clip, compared_rests(active_rest)[pane]) {
@@ -158,7 +159,7 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
     let skeleton = &source.model.asset.skeleton;
     scratch.source_pose.copy_from(skeleton.rest());
     scratch.source_properties.clear();
-    if let Some(clip) = source.model.clip(source.clip) {
+    if let Some(clip) = source.model.clip(&source.clip).map(ModelClip::clip) {
         clip.sample(skeleton, time_secs, &mut scratch.source_cursor, &mut scratch.source_pose);
         clip.sample_properties(time_secs, &mut scratch.source_cursor, &mut scratch.source_properties);
     }
@@ -259,13 +260,11 @@ pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
 }
 
 /// Returns [`travelled`] for the motion in the sampler.
-fn travel(model: &Model, clip: Option<usize>, state: &ViewerState, scratch: &mut Scratch) -> Vec3 {
-    let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
+fn travel(model: &Model, clip: Option<&ModelClip>, state: &ViewerState, scratch: &mut Scratch) -> Vec3 {
+    let Some((clip, root)) = clip.and_then(|clip| Some((clip, clip.root()?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
     scratch.first_pose.copy_from(skeleton.rest());
-    if let Some(clip) = model.clip(clip) {
-        clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
-    }
+    clip.clip().sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     scratch.first_layers.apply(model, state, 0.0, &mut scratch.first_pose);
     let position = |pose| {
         let world_from_root = world_from_model(state.edits.up) * model_from_single_joint(skeleton, pose, root);

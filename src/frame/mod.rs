@@ -16,7 +16,7 @@ use glam::{Affine3A, Mat4, Vec3, Vec4};
 
 use crate::anim::{JointIndex, Pose, PropertyValues};
 use crate::asset::{LightKind, Panorama};
-use crate::library::ModelId;
+use crate::library::{ClipId, ModelId};
 use crate::mesh::{Bounds, Material, PaletteEntry, SkinningMode};
 use crate::state::{Background, Channel, Comparison, KeyLight, LightSetup, ToneMap};
 
@@ -40,8 +40,8 @@ pub struct Frame {
     pub panes: [u32; 2],
     /// The active model first, once per pane; then the source of its borrowed clip, if shown.
     pub characters: Vec<Character>,
-    /// Index of the active model's clip that the pose was sampled from; none for the rest pose.
-    pub clip: Option<usize>,
+    /// The active model's clip that the pose was sampled from; none for the rest pose.
+    pub clip: Option<ClipId>,
     /// The file's own lights in world space; if empty, the key light is used.
     pub lights: Vec<FrameLight>,
     /// The environment, if it is an image; replaces [`Look::light`].

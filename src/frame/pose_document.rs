@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::{Frame, evaluate};
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
-use crate::state::{Display, Inspect, Show, ViewerState, clip_secs};
+use crate::state::{Display, Inspect, Show, ViewerState, active_clip, clip_secs};
 
 /// The document of `gaitway pose --json`. Typed: as a `serde_json::Value`, each number would take 70 bytes.
 #[derive(Debug, Serialize)]
@@ -70,9 +70,10 @@ impl PoseDocument {
         let (inspect, display) = (Inspect { split: false, ..state.inspect }, Display { show, ..state.display });
         let state = &ViewerState { inspect, display, ..state.clone() };
         evaluate(library, state, 1.0, &mut frame);
+        let clip = active_clip(model, state);
         Self {
-            clip: frame.clip.and_then(|clip| model.clip(clip)).map(|clip| clip.name().to_owned()),
-            time_secs: frame.clip.map_or(0.0, |clip| clip_secs(model, clip, state)),
+            clip: clip.map(|clip| clip.name().to_owned()),
+            time_secs: clip.map_or(0.0, |clip| clip_secs(clip, state)),
             nodes: nodes(model, &frame),
             meshes: meshes(model, state, &frame),
             warnings: warning_documents(&model.asset.warnings),

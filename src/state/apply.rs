@@ -4,20 +4,19 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
+use super::clip_names::settled;
 use super::clips;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
 use super::pins;
-use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
+use super::playhead::{active_clip, chosen_clip, clip_secs, crossfade_secs, play_range};
 use super::{
-    CameraChoice, Channel, ClipChoice, Command, Edits, Fade, Hidden, KeyLight, LookTarget, OrbitCamera, Selection,
-    VertexChoice, ViewerState,
+    CameraChoice, Channel, ClipChoice, Command, Fade, Hidden, KeyLight, LayeredClip, LookTarget, OrbitCamera,
+    Selection, VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::{Library, Model};
-use crate::retarget::{ClipLayer, JointMap};
-
-const MAX_NAME_CHARS: usize = 80;
+use crate::library::{ClipEdits, Library, Model, ModelClip, MotionId};
+use crate::retarget::JointMap;
 
 /// Differences of times that rounding explains.
 const ROUNDING_SECS: f64 = 1e-9;
@@ -51,10 +50,8 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ClearPose => state.edits.pose.clear(),
         Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
-        Command::ChangeClip { clip, changes } => clips::set_changes(state, model, clip, *changes),
-        Command::CopyClip { clip, changes } => clips::copy_clip(state, model, clip, *changes),
-        Command::RemoveCopy(clip) => clips::remove_copy(state, model, clip),
-        Command::SetLayers(layers) => set_layers(state, layers),
+        Command::EditClip { clip, edit } => clips::edit_clip(state, model, &clip, edit),
+        Command::SetLayers(layers) => set_layers(state, model, layers),
         Command::SetShow(show) => state.display.show = show,
         Command::SetChannel(channel) => set_channel(state, channel),
         Command::SetInspect(inspect) => state.inspect = inspect,
@@ -78,9 +75,9 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetKeyLight(key) => set_key_light(state, key),
         Command::SetBackground(background) => state.display.background = background,
         Command::SetEmbed(embed) => state.page.embed = embed,
-        Command::SetMap { motion, map } => set_map(state, library, motion, map.map(|map| *map)),
-        Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
-        Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
+        Command::SetMap { motion, map } => set_map(state, library, &motion, map.map(|map| *map)),
+        Command::SetSource { motion, target, source } => set_source(state, library, &motion, target, source),
+        Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, &motion, edit),
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.set_feet(feet),
@@ -107,7 +104,7 @@ pub(super) fn checked_for(view: &ViewerState, model: &Model) -> ViewerState {
     let has_joint = |joint: &usize| model.asset.skeleton.joint_of_source(*joint).is_some();
     state.edits.names.retain(|joint, _| has_joint(joint));
     state.edits.pose.retain(|joint, _| has_joint(joint));
-    state.edits.layers.iter_mut().for_each(|layer| layer.mask.joints.retain(has_joint));
+    state.edits.layers.iter_mut().for_each(|over| over.layer.mask.joints.retain(has_joint));
     state.edits.hidden.retain_known(&model.asset);
     state.edits.morph.clear();
     for (&index, &weight) in &view.edits.morph {
@@ -169,21 +166,16 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (joint, name) in wanted.edits.names {
         rename(state, None, joint, &name);
     }
-    state.edits.clips.clear();
-    state.edits.copies.truncate(Edits::MAX_COPIES);
-    for (name, changes) in wanted.edits.clips {
-        clips::insert_changes(state, name, changes.clamped());
-    }
-    set_layers(state, wanted.edits.layers);
+    clips::check(&mut state.edits.clips);
+    set_layers(state, None, wanted.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
     set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
     set_camera(state, None, wanted.camera);
 }
 
-fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<(&'a Model, usize)> {
-    let model = model?;
-    Some((model, active_clip(model, state)?))
+fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<&'a ModelClip> {
+    active_clip(model?, state)
 }
 
 fn set_scene(state: &mut ViewerState, model: Option<&Model>, scene: Option<usize>) {
@@ -223,22 +215,23 @@ fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
 
 /// Starts a clip from its beginning, with a crossfade if the current one is playing.
 pub(super) fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: ClipChoice) {
-    let before = model.map(|model| (model, active_clip(model, state)));
+    let from = active(state, model);
     let time_secs = state.playhead.time_secs;
-    state.playhead.clip = clip;
-    state.playhead.fade = before.filter(|_| state.playback.playing).and_then(|(model, from)| {
-        let fades = model.crossfade_secs(from, active_clip(model, state)) > 0.0;
-        let clip = from.map_or(ClipChoice::RestPose, |from| choice_of_clip(model, from));
-        fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 })
-    });
+    state.playhead.clip = match (clip, model) {
+        (ClipChoice::Clip(clip), Some(model)) => ClipChoice::Clip(settled(model, clip)),
+        (clip, _) => clip,
+    };
+    let fades = state.playback.playing && crossfade_secs(from, active(state, model)) > 0.0;
+    let clip = from.map_or(ClipChoice::RestPose, |from| ClipChoice::Clip(from.id().clone()));
+    state.playhead.fade = fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 });
     state.playhead.time_secs = 0.0;
     state.playhead.range = None;
 }
 
 /// Keeps the current pose: the new mode would fold a playhead beyond the range differently.
 fn set_loop_mode(state: &mut ViewerState, model: Option<&Model>, mode: LoopMode) {
-    if let Some((model, clip)) = active(state, model) {
-        state.playhead.time_secs = clip_secs(model, clip, state);
+    if let Some(clip) = active(state, model) {
+        state.playhead.time_secs = clip_secs(clip, state);
     }
     state.playback.loop_mode = mode;
 }
@@ -260,15 +253,15 @@ fn select_vertex(state: &mut ViewerState, model: Option<&Model>, vertex: Option<
 }
 
 /// Sets the map of a motion; `None` sets the proposed one, if there is one.
-fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
+fn set_map(state: &mut ViewerState, library: &Library, motion: &MotionId, map: Option<JointMap>) {
     if let Some(map) = map.or_else(|| maps::proposed_map(library, motion)) {
         maps::set_map(state, library, motion, Some(map));
     }
 }
 
 /// Ignores joints that the files don't have.
-fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target: usize, source: Option<usize>) {
-    let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
+fn set_source(state: &mut ViewerState, library: &Library, motion: &MotionId, target: usize, source: Option<usize>) {
+    let (Some(model), Some(about)) = (library.active(), library.motion(motion)) else { return };
     let has_target = model.asset.skeleton.joint_of_source(target).is_some();
     if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
         // The overrides in `retarget` stay out of the map.
@@ -301,9 +294,9 @@ fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
     state.playback.playing = playing;
     if playing
         && state.playback.loop_mode == LoopMode::Once
-        && let Some((model, clip)) = active(state, model)
+        && let Some(clip) = active(state, model)
     {
-        let range = play_range(model, clip, state);
+        let range = play_range(clip, state);
         if state.playhead.time_secs >= range.end_secs {
             state.playhead.time_secs = range.start_secs;
         }
@@ -312,10 +305,8 @@ fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
 
 fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
     if time_secs.is_finite() {
-        let end = model.map_or(f64::INFINITY, |model| {
-            let clip = active_clip(model, state).and_then(|clip| model.clip(clip));
-            clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
-        });
+        let duration_secs = |model| active_clip(model, state).map_or(0.0, ModelClip::duration_secs);
+        let end = model.map_or(f64::INFINITY, duration_secs);
         state.playhead.time_secs = time_secs.clamp(0.0, end);
     }
 }
@@ -326,8 +317,8 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     }
     let secs = clock_secs * state.playback.speed;
     advance_fade(state, model, secs);
-    let Some((model, clip)) = active(state, model) else { return };
-    let range = play_range(model, clip, state);
+    let Some(clip) = active(state, model) else { return };
+    let range = play_range(clip, state);
     let length = range.length_secs();
     state.playhead.time_secs = whole_microseconds(state.playhead.time_secs + secs);
     match state.playback.loop_mode {
@@ -339,7 +330,7 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
         }
         // Whole loops are subtracted to keep the playhead small, however long it runs. Not with layers: they loop with
         // durations of their own and would jump.
-        _ if !model.layers(clip).is_empty() || !state.edits.layers.is_empty() => {}
+        _ if !clip.layers().is_empty() || !state.edits.layers.is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
             state.playhead.time_secs =
                 range.start_secs + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(length));
@@ -359,8 +350,8 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
 fn advance_fade(state: &mut ViewerState, model: Option<&Model>, secs: f64) {
     let (Some(model), Some(mut fade)) = (model, state.playhead.fade.take()) else { return };
     fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
-    let crossfade_secs = model.crossfade_secs(clip_of(model, &fade.clip), active_clip(model, state));
-    state.playhead.fade = (fade.elapsed_secs < crossfade_secs).then_some(fade);
+    let length_secs = crossfade_secs(chosen_clip(model, &fade.clip), active_clip(model, state));
+    state.playhead.fade = (fade.elapsed_secs < length_secs).then_some(fade);
 }
 
 /// Keeps the running playhead short in links. Times that are set are not rounded, so that they hit keys exactly.
@@ -370,10 +361,10 @@ fn whole_microseconds(secs: f64) -> f64 {
 
 fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
     state.playback.playing = false;
-    let Some((model, clip)) = active(state, model) else { return };
-    let range = play_range(model, clip, state);
-    let rate = model.frames_per_sec(clip);
-    let stepped = ((clip_secs(model, clip, state) * rate).round() + f64::from(frames)) / rate;
+    let Some(clip) = active(state, model) else { return };
+    let range = play_range(clip, state);
+    let rate = clip.frames_per_sec();
+    let stepped = ((clip_secs(clip, state) * rate).round() + f64::from(frames)) / rate;
     // Half a frame of tolerance: rounding may put the last frame slightly past the end.
     let tolerance = 0.5 / rate;
     state.playhead.time_secs = if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + tolerance {
@@ -394,8 +385,8 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
         return;
     }
     let (end, frame_secs) = model.map_or((f64::INFINITY, 0.0), |model| {
-        let clip = active_clip(model, state).and_then(|clip| Some((clip, model.clip(clip)?)));
-        clip.map_or((0.0, 0.0), |(index, clip)| (f64::from(clip.duration_secs()), 1.0 / model.frames_per_sec(index)))
+        let clip = active_clip(model, state);
+        clip.map_or((0.0, 0.0), |clip| (clip.duration_secs(), 1.0 / clip.frames_per_sec()))
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
     let (mut start_secs, mut end_secs) = (first.min(second), first.max(second));
@@ -452,21 +443,26 @@ fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degree
     }
 }
 
-/// Keeps one line of at most [`MAX_NAME_CHARS`]. An empty name, or the file's own, removes the custom one.
+/// Returns a name without control characters and spaces around it, cut after [`ClipEdits::MAX_NAME_CHARS`].
+pub fn one_line(name: &str) -> String {
+    let line: String = name.chars().filter(|char| !char.is_control()).take(ClipEdits::MAX_NAME_CHARS).collect();
+    line.trim().to_owned()
+}
+
+/// Keeps [`one_line`]. An empty name, or the file's own, removes the custom one.
 fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &str) {
-    let line: String = name.chars().filter(|char| !char.is_control()).take(MAX_NAME_CHARS).collect();
-    let name = line.trim();
+    let name = &one_line(name);
     let in_file = model.map(|model| {
         let skeleton = &model.asset.skeleton;
         skeleton.joint_of_source(joint).map(|joint| skeleton.name(joint))
     });
     match in_file {
         Some(None) => {}
-        _ if name.is_empty() || in_file == Some(Some(name)) => {
+        _ if name.is_empty() || in_file == Some(Some(name.as_str())) => {
             state.edits.names.remove(&joint);
         }
         _ => {
-            state.edits.names.insert(joint, name.to_owned());
+            state.edits.names.insert(joint, name.clone());
         }
     }
 }
@@ -477,8 +473,15 @@ fn set_channel(state: &mut ViewerState, channel: Channel) {
     state.inspect.weights &= channel == Channel::Shaded;
 }
 
-fn set_layers(state: &mut ViewerState, layers: Vec<ClipLayer>) {
-    state.edits.layers = layers.into_iter().map(ClipLayer::clamped).collect();
+fn set_layers(state: &mut ViewerState, model: Option<&Model>, layers: Vec<LayeredClip>) {
+    let checked = |LayeredClip { clip, layer }| {
+        let clip = match model {
+            Some(model) => settled(model, clip),
+            None => clip,
+        };
+        LayeredClip { clip, layer: layer.clamped() }
+    };
+    state.edits.layers = layers.into_iter().map(checked).collect();
 }
 
 /// Wraps an angle to −180°…180°.

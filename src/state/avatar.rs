@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::clip_names::look_up_clip;
 use super::manual::pose_joints;
 use super::pins::apply_pins;
 use super::playhead::{active_clip, clip_secs, play_range, sample_pose, world_from_model};
-use super::{LayerSampler, UpAxis, ViewerState};
+use super::{Edits, LayerSampler, UpAxis, ViewerState};
 use crate::anim::{
-    LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, Skeleton, TimeRange, model_from_joint,
+    Clip, LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, Skeleton, TimeRange, model_from_joint,
 };
 use crate::avatar::{Avatar, LookAt, SpringCache, SpringMotion, apply_expressions, resolve_weights};
-use crate::library::{Model, ModelId};
+use crate::library::{Model, ModelClip, ModelId};
 use crate::retarget::{ClipLayer, Pin};
 
 /// The target of an avatar's gaze.
@@ -43,16 +44,15 @@ pub(super) struct AvatarPose {
 }
 
 /// Everything that a simulation of the springs depends on.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 struct SpringsKey {
     model: ModelId,
-    revision: u32,
-    clip: Option<usize>,
+    clip: Option<Clip>,
     range: TimeRange,
     repeats: bool,
     up: UpAxis,
     joints: BTreeMap<usize, [f32; 3]>,
-    layers: Vec<ClipLayer>,
+    layers: Vec<(ClipLayer, Option<Clip>)>,
     pins: BTreeMap<usize, Pin>,
 }
 
@@ -105,13 +105,13 @@ impl AvatarPose {
     fn apply_springs(&mut self, model: &Model, state: &ViewerState, pose: &mut Pose) {
         let (skeleton, springs) = (&model.asset.skeleton, &model.asset.avatar.springs);
         let clip = active_clip(model, state);
-        let range = clip.map_or(TimeRange::default(), |clip| play_range(model, clip, state));
+        let range = clip.map_or(TimeRange::default(), |clip| play_range(clip, state));
         let repeats = state.playback.loop_mode == LoopMode::Loop;
         if !self.springs_key.as_ref().is_some_and(|key| key.matches(model, state, clip, range, repeats)) {
             self.springs.restart(springs, range, repeats);
             self.springs_key = Some(SpringsKey::new(model, state, clip, range, repeats));
         }
-        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
+        let time_secs = clip.map_or(0.0, |clip| clip_secs(clip, state));
         let (cursor, layers) = (&mut self.cursor, &mut self.layers);
         let mut motion = ClipMotion { model, state, clip, cursor, layers };
         self.springs.apply(skeleton, springs, time_secs, &mut motion, pose);
@@ -137,10 +137,20 @@ fn gaze_direction(
 }
 
 impl SpringsKey {
-    fn new(model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> Self {
-        let (revision, up) = (model.clips_revision(), state.edits.up);
-        let (joints, layers, pins) = (state.edits.pose.clone(), state.edits.layers.clone(), state.edits.pins.clone());
-        Self { model: model.id, revision, clip, range, repeats, up, joints, layers, pins }
+    fn new(model: &Model, state: &ViewerState, clip: Option<&ModelClip>, range: TimeRange, repeats: bool) -> Self {
+        let Edits { pose, pins, up, layers, .. } = &state.edits;
+        let keys = |clip: &ModelClip| clip.clip().clone();
+        let layers = layers.iter().map(|over| (over.layer.clone(), look_up_clip(model, &over.clip).map(keys)));
+        Self {
+            model: model.id,
+            clip: clip.map(keys),
+            range,
+            repeats,
+            up: *up,
+            joints: pose.clone(),
+            layers: layers.collect(),
+            pins: pins.clone(),
+        }
     }
 
     /// Whether [`Self::new`] would return the same, without allocating.
@@ -148,15 +158,25 @@ impl SpringsKey {
         &self,
         model: &Model,
         state: &ViewerState,
-        clip: Option<usize>,
+        clip: Option<&ModelClip>,
         range: TimeRange,
         repeats: bool,
     ) -> bool {
-        (self.model, self.revision, self.clip) == (model.id, model.clips_revision(), clip)
-            && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
-            && self.joints == state.edits.pose
-            && self.layers == state.edits.layers
-            && self.pins == state.edits.pins
+        let is_same = |known: &Option<Clip>, clip: Option<&ModelClip>| match (known, clip) {
+            (Some(known), Some(clip)) => known.is_same(clip.clip()),
+            (known, clip) => known.is_none() && clip.is_none(),
+        };
+        let Edits { pose, pins, up, layers, .. } = &state.edits;
+        (self.model, self.range, self.repeats, self.up) == (model.id, range, repeats, *up)
+            && is_same(&self.clip, clip)
+            && self.joints == *pose
+            && self.layers.len() == layers.len()
+            && self
+                .layers
+                .iter()
+                .zip(layers)
+                .all(|((layer, clip), over)| *layer == over.layer && is_same(clip, look_up_clip(model, &over.clip)))
+            && self.pins == *pins
     }
 }
 
@@ -164,7 +184,7 @@ impl SpringsKey {
 struct ClipMotion<'a> {
     model: &'a Model,
     state: &'a ViewerState,
-    clip: Option<usize>,
+    clip: Option<&'a ModelClip>,
     cursor: &'a mut SampleCursor,
     layers: &'a mut LayerSampler,
 }

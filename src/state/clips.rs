@@ -1,109 +1,127 @@
-//! Edits of clips: their changes, and copies with changes of their own.
+//! Edits of clips: their changes and names, and copies with changes of their own.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use super::apply::set_clip;
-use super::layers::clip_of_layer;
-use super::playhead::{active_clip, choice_of_clip, clip_called, name_of_clip};
-use super::{ClipChoice, ClipCopy, Edits, Playhead, ViewerState};
-use crate::anim::{Clip, TimeRange, clip_time};
-use crate::library::Model;
+use super::apply::{one_line, set_clip};
+use super::clip_names::look_up_clip;
+use super::playhead::active_clip;
+use super::{ClipChoice, Playhead, ViewerState};
+use crate::anim::{TimeRange, clip_time};
+use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip};
 use crate::retarget::ClipChanges;
 
-/// Returns the copies of the model's clips, each with its name and the index of its original; those of clips that the model lacks
-/// are skipped.
-pub fn clip_copies(model: &Model, state: &ViewerState) -> Vec<(String, usize)> {
-    let original = |name: &str| clip_called(model, name).filter(|&clip| !model.is_copy(clip));
-    state.edits.copies.iter().filter_map(|copy| Some((copy.name.clone(), original(&copy.of)?))).collect()
+/// Drops edits and layers of clips that can't come back: those of motions that are gone.
+pub fn drop_edits_of_gone_clips(state: &mut ViewerState, library: &Library) {
+    let is_there = |clip: &ClipId| clip.motion().is_none_or(|motion| library.motion(motion).is_some());
+    state.edits.clips.retain(is_there);
+    let copies = &state.edits.clips.copies;
+    state.edits.layers.retain(|over| match &over.clip {
+        ClipId::Copy(id) => copies.iter().any(|copy| copy.id == *id),
+        clip => is_there(clip),
+    });
 }
 
-/// Returns the changes of the model's clips by index; names that the model lacks are skipped.
-pub fn clip_changes(model: &Model, state: &ViewerState) -> BTreeMap<usize, ClipChanges> {
-    let clips = state.edits.clips.iter();
-    clips.filter_map(|(name, changes)| Some((clip_called(model, name)?, changes.clone()))).collect()
+/// An edit of a clip. Numbers out of range are clamped.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ClipEdit {
+    /// Replaces its changes.
+    Change(Box<ClipChanges>),
+    /// Adds a copy that has these changes, whatever those of the clip, and plays it; ignored if there are
+    /// [`ClipEdits::MAX_COPIES`]. A copy of a copy is one of the original.
+    Copy(Box<ClipChanges>),
+    /// Removes it, if it is a copy. If it is active, the original plays.
+    RemoveCopy,
+    /// Renames it, unless another clip has the name; an empty name restores the file's. Control characters are removed, and
+    /// everything after [`ClipEdits::MAX_NAME_CHARS`].
+    Rename(String),
 }
 
-/// Returns the changes of one clip.
-pub fn changes_of(model: &Model, state: &ViewerState, clip: usize) -> ClipChanges {
-    let mut clips = state.edits.clips.iter().rev();
-    clips
-        .find(|(name, _)| clip_called(model, name) == Some(clip))
-        .map(|(_, changes)| changes.clone())
-        .unwrap_or_default()
-}
-
-/// Replaces the changes of a clip.
-pub(super) fn set_changes(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
-    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
-    let name = name_of_clip(model, clip);
-    let changes = changes.clamped();
-    let before = changes_of(model, state, clip);
-    // A link may name the clip by its index.
-    state.edits.clips.retain(|name, _| clip_called(model, name) != Some(clip));
-    if active_clip(model, state) == Some(clip) {
-        follow_changes(state, model.unchanged_clip(clip), &before, &changes);
+/// Applies an edit. Clips that the model lacks are ignored.
+pub(super) fn edit_clip(state: &mut ViewerState, model: Option<&Model>, clip: &ClipId, edit: ClipEdit) {
+    let Some((model, clip)) = model.and_then(|model| Some((model, look_up_clip(model, clip)?))) else { return };
+    match edit {
+        ClipEdit::Change(changes) => set_changes(state, model, clip, changes.clamped()),
+        ClipEdit::Copy(changes) => copy_clip(state, model, clip, changes.clamped()),
+        ClipEdit::RemoveCopy => remove_copy(state, model, clip),
+        ClipEdit::Rename(name) => rename(state, model, clip, &one_line(&name)),
     }
-    insert_changes(state, name, changes);
 }
 
-/// Adds a copy of a clip, unless there are [`Edits::MAX_COPIES`], and plays it.
-pub(super) fn copy_clip(state: &mut ViewerState, model: Option<&Model>, clip: usize, changes: ClipChanges) {
-    let Some(model) = model.filter(|model| clip < model.clip_count()) else { return };
-    let original = model.original(clip);
-    if state.edits.copies.len() == Edits::MAX_COPIES {
+fn set_changes(state: &mut ViewerState, model: &Model, clip: &ModelClip, changes: ClipChanges) {
+    if is_active(model, state, clip) {
+        let before = state.edits.clips.changes_of(clip.id());
+        follow_changes(state, clip, &before, &changes);
+    }
+    state.edits.clips.set_changes(clip.id().clone(), changes);
+}
+
+fn copy_clip(state: &mut ViewerState, model: &Model, clip: &ModelClip, changes: ClipChanges) {
+    let Some(original) = model.clip(clip.original_id()) else { return };
+    let edits = &mut state.edits.clips;
+    if edits.copies.len() == ClipEdits::MAX_COPIES {
         return;
     }
-    let titles = model.clip_titles();
-    let is_free = |name: &String| !titles.contains(name) && !state.edits.has_copy(name);
-    let Some(name) = (1..).map(|part: u32| format!("{} part {part}", titles[original])).find(is_free) else { return };
-    state.edits.copies.push(ClipCopy { name: name.clone(), of: name_of_clip(model, original) });
-    insert_changes(state, name.clone(), changes.clamped());
-    set_clip(state, Some(model), ClipChoice::Named(name));
+    let is_free = |name: &String| {
+        model.clips().titles().all(|title| title != name) && edits.names.values().all(|taken| taken != name)
+    };
+    let Some(name) = (1..).map(|part: u32| format!("{} part {part}", original.title())).find(is_free) else { return };
+    let copy = edits.new_copy_id();
+    edits.copies.push(ClipCopy { id: copy, of: original.id().clone() });
+    edits.names.insert(ClipId::Copy(copy), name);
+    edits.set_changes(ClipId::Copy(copy), changes);
+    set_clip(state, Some(model), ClipChoice::Clip(ClipId::Copy(copy)));
 }
 
-/// Removes a copy and the layers that play it; the original plays in its place.
-pub(super) fn remove_copy(state: &mut ViewerState, model: Option<&Model>, clip: usize) {
-    let Some(model) = model.filter(|model| model.is_copy(clip)) else { return };
-    let Some(name) = model.unchanged_clip(clip).map(Clip::name) else { return };
-    if active_clip(model, state) == Some(clip) {
-        set_clip(state, Some(model), choice_of_clip(model, model.original(clip)));
+/// Removes a copy and the layers that play it.
+fn remove_copy(state: &mut ViewerState, model: &Model, copy: &ModelClip) {
+    if !copy.is_copy() {
+        return;
     }
-    state.edits.layers.retain(|layer| clip_of_layer(model, layer) != Some(clip));
-    state.edits.copies.retain(|copy| copy.name != name);
-    state.edits.clips.retain(|changed, _| clip_called(model, changed) != Some(clip));
-}
-
-/// Returns the names by which edits refer to clips.
-pub fn edited_clips(edits: &Edits) -> BTreeSet<&str> {
-    let originals = edits.copies.iter().map(|copy| &copy.of);
-    let layers = edits.layers.iter().map(|layer| &layer.clip);
-    edits.clips.keys().chain(originals).chain(layers).map(String::as_str).collect()
-}
-
-/// Makes edits refer to clips by new names, as far as `renamed` has them; `None` drops the edits of a clip, with its copies.
-pub fn rename_clips(edits: &mut Edits, mut renamed: BTreeMap<String, Option<String>>) {
-    for copy in &edits.copies {
-        if renamed.get(&copy.of) == Some(&None) {
-            renamed.insert(copy.name.clone(), None);
-        }
+    if is_active(model, state, copy) {
+        set_clip(state, Some(model), ClipChoice::Clip(copy.original_id().clone()));
     }
-    let new_name = |name: &str| renamed.get(name).map_or_else(|| Some(name.to_owned()), Clone::clone);
-    let rename = |name: &mut String| new_name(name).map(|new| *name = new).is_some();
-    edits.copies.retain_mut(|copy| rename(&mut copy.of));
-    edits.layers.retain_mut(|layer| rename(&mut layer.clip));
-    let clips = std::mem::take(&mut edits.clips).into_iter();
-    edits.clips = clips.filter_map(|(name, changes)| Some((new_name(&name)?, changes))).collect();
+    state.edits.layers.retain(|over| over.clip != *copy.id());
+    state.edits.clips.remove_copy(copy.id());
+}
+
+fn rename(state: &mut ViewerState, model: &Model, clip: &ModelClip, name: &str) {
+    let names = &mut state.edits.clips.names;
+    let is_taken = model.clips().iter().any(|other| other.id() != clip.id() && other.title() == name);
+    let restores = name.is_empty() || (clip.is_renamed() && name == clip.unchanged().name());
+    match (restores, clip.is_copy()) {
+        // Copies have no other name.
+        (true, true) => {}
+        (true, false) => drop(names.remove(clip.id())),
+        (false, _) if is_taken || name == clip.title() => {}
+        (false, _) => drop(names.insert(clip.id().clone(), name.to_owned())),
+    }
+}
+
+/// Brings the edits of a view that replaces another one into their ranges.
+pub(super) fn check(edits: &mut ClipEdits) {
+    edits.copies.truncate(ClipEdits::MAX_COPIES);
+    let copies: Vec<_> = edits.copies.iter().map(|copy| copy.id).collect();
+    let is_there = |clip: &ClipId| !matches!(clip, ClipId::Copy(copy) if !copies.contains(copy));
+    for name in edits.names.values_mut() {
+        *name = one_line(name);
+    }
+    edits.names.retain(|clip, name| !name.is_empty() && is_there(clip));
+    let changes = std::mem::take(&mut edits.changes).into_iter();
+    let changes = changes.map(|(clip, changes)| (clip, changes.clamped()));
+    edits.changes = changes.filter(|(clip, changes)| !changes.is_none() && is_there(clip)).collect();
+}
+
+fn is_active(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
+    active_clip(model, state).is_some_and(|active| active.id() == clip.id())
 }
 
 /// Keeps the pose and the range of the active clip, whose times stretch and turn round. A trimmed clip starts over.
-fn follow_changes(state: &mut ViewerState, unchanged: Option<&Clip>, before: &ClipChanges, changes: &ClipChanges) {
+fn follow_changes(state: &mut ViewerState, clip: &ModelClip, before: &ClipChanges, changes: &ClipChanges) {
     let mode = state.playback.loop_mode;
     let Playhead { range, time_secs, .. } = &mut state.playhead;
     if changes.trim != before.trim {
         (*range, *time_secs) = (None, 0.0);
         return;
     }
-    let duration_secs = unchanged.map_or(0.0, |clip| f64::from(clip.duration_secs()));
+    let duration_secs = f64::from(clip.unchanged().duration_secs());
     let whole = TimeRange { start_secs: 0.0, end_secs: duration_secs };
     let kept = before.trim.map_or(whole, |trim| TimeRange { end_secs: trim.end_secs.min(duration_secs), ..trim });
     let end_secs = kept.length_secs() / before.speed;
@@ -125,37 +143,30 @@ fn follow_changes(state: &mut ViewerState, unchanged: Option<&Clip>, before: &Cl
 /// dropped returns.
 pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
     let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
-    let changed = |state: &ViewerState| active.map(|(model, clip)| changes_of(model, state, clip));
+    let changed = |state: &ViewerState| active.map(|(_, clip)| state.edits.clips.changes_of(clip.id()));
     let before = changed(state);
     let was_copy = is_copy_active(state);
     // A copy that was removed while it played.
-    let returns = is_copy_active(from) && !has_copy_of(state, &from.playhead.clip);
+    let returns = is_copy_active(from) && !is_copy_of(state, &from.playhead.clip);
     state.restore_undoable(from);
     if returns || (was_copy && !is_copy_active(state)) {
         state.playhead.clone_from(&from.playhead);
         return;
     }
     if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
-        follow_changes(state, model.unchanged_clip(clip), &before, &changes);
-        if changes.trim != before.trim && active_clip(model, from) == Some(clip) {
+        follow_changes(state, clip, &before, &changes);
+        if changes.trim != before.trim && is_active(model, from, clip) {
             state.playhead.range = from.playhead.range;
         }
     }
 }
 
 fn is_copy_active(state: &ViewerState) -> bool {
-    has_copy_of(state, &state.playhead.clip)
+    is_copy_of(state, &state.playhead.clip)
 }
 
-fn has_copy_of(state: &ViewerState, clip: &ClipChoice) -> bool {
-    matches!(clip, ClipChoice::Named(name) if state.edits.has_copy(name))
-}
-
-/// Sets the changes of a name, whether the model has such a clip or not.
-pub(super) fn insert_changes(state: &mut ViewerState, name: String, changes: ClipChanges) {
-    if changes.is_none() {
-        state.edits.clips.remove(&name);
-    } else {
-        state.edits.clips.insert(name, changes);
-    }
+/// Whether the view has this copy of a clip.
+fn is_copy_of(state: &ViewerState, choice: &ClipChoice) -> bool {
+    let ClipChoice::Clip(ClipId::Copy(copy)) = choice else { return false };
+    state.edits.clips.copies.iter().any(|known| known.id == *copy)
 }

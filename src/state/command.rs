@@ -1,12 +1,13 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
 use super::{
-    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Hidden, KeyLight, LookTarget, MapEdit, MotionMap,
-    ToneMap, UpAxis, ViewerState,
+    Background, CameraChoice, Channel, ClipChoice, ClipEdit, EnvironmentChoice, Hidden, KeyLight, LayeredClip,
+    LookTarget, MapEdit, MotionMap, ToneMap, UpAxis, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
+use crate::library::{ClipId, MotionId};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Contacts, Feet, JointMap, Pin, RootOptions, Unmapped};
+use crate::retarget::{Contacts, Feet, JointMap, Pin, RootOptions, Unmapped};
 
 /// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
@@ -80,25 +81,15 @@ pub enum Command {
         /// Control characters are removed, and everything after 80 characters.
         name: String,
     },
-    /// Changes a clip, by index among all clips of the model. Numbers out of range are clamped.
-    ChangeClip {
-        /// Index among all clips.
-        clip: usize,
-        /// Replaces the changes it had.
-        changes: Box<ClipChanges>,
+    /// Edits a clip.
+    EditClip {
+        /// One of the model's.
+        clip: ClipId,
+        /// The edit.
+        edit: ClipEdit,
     },
-    /// Adds a copy of a clip that has these changes, and plays it; ignored if there are [`Edits::MAX_COPIES`](super::Edits).
-    /// A copy of a copy is one of the original. Numbers out of range are clamped.
-    CopyClip {
-        /// Index among all clips.
-        clip: usize,
-        /// The copy's, whatever those of the clip.
-        changes: Box<ClipChanges>,
-    },
-    /// Removes a copy of a clip, by its index among all clips. If it is active, the original plays.
-    RemoveCopy(usize),
     /// Sets the layers over the active clip, the lowest first. Numbers out of range are clamped.
-    SetLayers(Vec<ClipLayer>),
+    SetLayers(Vec<LayeredClip>),
     /// Sets what is drawn.
     SetShow(super::Show),
     /// Sets what surfaces show.
@@ -165,15 +156,15 @@ pub enum Command {
     SetEmbed(bool),
     /// Replaces the joint map of a motion in the library, and of all that share its skeleton; `None` restores the proposed map.
     SetMap {
-        /// Index into [`crate::library::Library::motions`].
-        motion: usize,
+        /// One of the library's.
+        motion: MotionId,
         /// In joint numbers of the two files.
         map: Option<Box<JointMap>>,
     },
     /// Maps a joint of the model to a joint of a motion, or to none; both by index in their files.
     SetSource {
-        /// Index into [`crate::library::Library::motions`].
-        motion: usize,
+        /// One of the library's.
+        motion: MotionId,
         /// Joint of the model.
         target: usize,
         /// Joint of the motion; `None` leaves the target without a source.
@@ -181,8 +172,8 @@ pub enum Command {
     },
     /// Edits the map of a motion in another way.
     EditMap {
-        /// Index into [`crate::library::Library::motions`].
-        motion: usize,
+        /// One of the library's.
+        motion: MotionId,
         /// The edit.
         edit: MapEdit,
     },

@@ -33,7 +33,7 @@ pub fn comparison(library: &Library, state: &ViewerState) -> Option<Comparison> 
         return Some(Comparison::Skinning);
     }
     let model = library.active().filter(|_| state.inspect.rests)?;
-    let borrowed = model.borrowed(active_clip(model, state)?)?;
+    let borrowed = active_clip(model, state)?.borrowed()?;
     Some(Comparison::Rests(borrowed.rest_choice()))
 }
 

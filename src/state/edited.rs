@@ -46,7 +46,7 @@ impl Edited {
             (a.edits.pose != b.edits.pose, Self::Pose),
             (a.edits.pins != b.edits.pins, Self::Pins),
             (a.edits.names != b.edits.names, Self::JointNames),
-            (a.edits.clips != b.edits.clips || a.edits.copies != b.edits.copies, Self::Clips),
+            (a.edits.clips != b.edits.clips, Self::Clips),
             (a.edits.layers != b.edits.layers, Self::Layers),
             (a.edits.variant != b.edits.variant, Self::Variant),
             (a.edits.hidden != b.edits.hidden, Self::Hidden),

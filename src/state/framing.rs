@@ -9,7 +9,7 @@ use super::playhead::{active_clip, world_from_model};
 use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
 use crate::anim::{Pose, model_from_single_joint};
-use crate::library::{Library, Model};
+use crate::library::{Library, Model, ModelClip};
 use crate::mesh::Bounds;
 
 const AUTO_YAW_RADIANS: f32 = 0.44;
@@ -21,11 +21,15 @@ const MARGIN: f32 = 1.08;
 /// root travel while the camera follows, and with the source if that is visible too. A unit box if there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let bounds = library.active().map_or(Bounds::EMPTY, |model| {
-        let bounds = model.clip_bounds(state.sources.scene, active_clip(model, state), state.camera_options.follow);
+        let bounds = model.clip_bounds(
+            state.sources.scene,
+            active_clip(model, state).map(ModelClip::id),
+            state.camera_options.follow,
+        );
         bounds.transformed(&world_from_model(state.edits.up))
     });
     let source = source_on_stage(library, state).map_or(Bounds::EMPTY, |source| {
-        let bounds = source.model.clip_bounds(None, Some(source.clip), state.camera_options.follow);
+        let bounds = source.model.clip_bounds(None, Some(&source.clip), state.camera_options.follow);
         bounds.transformed(&source.world_from_source)
     });
     let bounds = bounds.union(source);
@@ -79,7 +83,7 @@ fn shown_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let is_whole = nodes.is_empty() || source_on_stage(library, state).is_some();
     let Some(model) = library.active().filter(|_| !is_whole) else { return all };
     let hidden = nodes.iter().filter_map(|&node| model.asset.skeleton.joint_of_source(node));
-    let (clip, in_place) = (active_clip(model, state), state.camera_options.follow);
+    let (clip, in_place) = (active_clip(model, state).map(ModelClip::id), state.camera_options.follow);
     let shown = model.clip_bounds_without(state.sources.scene, clip, in_place, &hidden.collect::<Vec<_>>());
     if shown.is_empty() || !shown.size().is_finite() {
         return all;

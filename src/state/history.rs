@@ -172,7 +172,6 @@ impl Step {
         matches!(self, Self::Edits(before)
             if before.retarget != state.retarget
                 || before.edits.clips != state.edits.clips
-                || before.edits.copies != state.edits.copies
                 || before.edits.layers != state.edits.layers)
     }
 

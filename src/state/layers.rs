@@ -1,10 +1,10 @@
 //! The layers over the active clip: finding their clips and joints, and applying them to a pose.
 
-use super::playhead::clip_called;
-use super::{NameKind, UnknownName, ViewerState};
+use super::clip_names::{look_up_clip, unknown_name};
+use super::{LayeredClip, UnknownName, ViewerState};
 use crate::anim::{JointMask, Pose};
-use crate::library::{Model, ModelId};
-use crate::retarget::{ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, StackedLayer};
+use crate::library::{Model, ModelClip, ModelId};
+use crate::retarget::{LayerBuffers, LayerMask, StackedLayer};
 
 /// Applies the layers of a view. Keeps what they need between frames.
 #[derive(Debug, Default)]
@@ -29,8 +29,8 @@ impl LayerSampler {
         if self.held.len() < layers.len() {
             self.held.resize_with(layers.len(), Held::default);
         }
-        for (layer, held) in layers.iter().zip(&mut self.held) {
-            let Some(source) = source_of(model, layer) else { continue };
+        for (LayeredClip { clip, layer }, held) in layers.iter().zip(&mut self.held) {
+            let Some(source) = look_up_clip(model, clip).map(ModelClip::over_layers) else { continue };
             held.refresh(model, &layer.mask);
             let skeleton = &model.asset.skeleton;
             layer.apply(skeleton, source, &held.mask, elapsed_secs, &mut held.buffers, pose);
@@ -51,35 +51,23 @@ impl Held {
     }
 }
 
-/// Returns the index of a layer's clip.
-pub fn clip_of_layer(model: &Model, layer: &ClipLayer) -> Option<usize> {
-    clip_called(model, &layer.clip)
-}
-
-fn source_of<'a>(model: &'a Model, layer: &ClipLayer) -> Option<ClipOverLayers<'a>> {
-    let index = clip_of_layer(model, layer)?;
-    Some(ClipOverLayers { clip: model.clip(index)?, below: model.layers(index) })
-}
-
 /// Whether any layer changes the pose.
 pub fn has_layers(model: &Model, state: &ViewerState) -> bool {
-    state.edits.layers.iter().any(|layer| layer.weight > 0.0 && clip_of_layer(model, layer).is_some())
+    state.edits.layers.iter().any(|over| over.layer.weight > 0.0 && look_up_clip(model, &over.clip).is_some())
 }
 
 /// Returns the layers that change the pose, for baking. Those whose clip the model lacks are skipped.
 pub fn stacked_layers<'a>(model: &'a Model, state: &'a ViewerState) -> Vec<StackedLayer<'a>> {
-    let stacked = state.edits.layers.iter().filter(|layer| layer.weight > 0.0).filter_map(|layer| {
-        let (source, included) = (source_of(model, layer)?, layer.mask.included(&model.body()));
+    let layers = state.edits.layers.iter().filter(|over| over.layer.weight > 0.0);
+    let stacked = layers.filter_map(|LayeredClip { clip, layer }| {
+        let (source, included) = (look_up_clip(model, clip)?.over_layers(), layer.mask.included(&model.body()));
         included.contains(&true).then_some(StackedLayer { layer, source, included })
     });
     stacked.collect()
 }
 
 /// Returns the clips of layers that the model lacks.
-pub fn unknown_layers(model: &Model, layers: &[ClipLayer]) -> impl Iterator<Item = UnknownName> {
-    let unknown = layers.iter().filter(|layer| clip_of_layer(model, layer).is_none());
-    unknown.map(|layer| {
-        let (name, names) = (layer.clip.clone(), model.clip_titles().to_vec());
-        UnknownName { kind: NameKind::Clip, name, names }
-    })
+pub fn unknown_layers(model: &Model, layers: &[LayeredClip]) -> impl Iterator<Item = UnknownName> {
+    let unknown = layers.iter().filter(|over| look_up_clip(model, &over.clip).is_none());
+    unknown.map(|over| unknown_name(model, &over.clip))
 }

@@ -17,8 +17,9 @@ pub use self::files::{
 pub use self::pins::read_pin;
 pub use self::values::with_current_member;
 use self::values::*;
-use super::{UnknownName, ViewerState};
-use crate::retarget::ClipLayer;
+use super::clip_names::with_link_names;
+use super::{LayeredClip, UnknownName, ViewerState};
+use crate::library::Library;
 
 /// A part of a link, or of an object from a script, that is not understood or that can't be shown. All other parts still apply.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -222,7 +223,15 @@ const KEYS: &[Key] = &[
         expected: changes::COPY,
         read: changes::read_copy,
         write: changes::write_copy,
-        reset: |state| state.edits.copies.clear(),
+        reset: changes::reset_copy,
+    },
+    Key {
+        name: "rename",
+        repeatable: true,
+        expected: changes::RENAME,
+        read: changes::read_rename,
+        write: changes::write_rename,
+        reset: changes::reset_rename,
     },
     Key {
         name: "change",
@@ -327,9 +336,9 @@ fn key(name: &str) -> Option<&'static Key> {
 const ESCAPED: &AsciiSet =
     &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'=').add(b'>').add(b'`');
 
-/// Returns the part after `#`, with only what differs from the default.
-pub fn to_link(state: &ViewerState) -> String {
-    let default = ViewerState::default();
+/// Returns the part after `#`, with only what differs from the default. The library has the clips that the view refers to.
+pub fn to_link(state: &ViewerState, library: &Library) -> String {
+    let (state, default) = (&with_link_names(state, library), ViewerState::default());
     let mut text = "v=1".to_owned();
     let mut push = |key: &str, value: &str| {
         text.push('&');
@@ -371,7 +380,7 @@ pub(super) fn differences(view: &ViewerState, used: &ViewerState, why: &str, err
 ///
 /// # Errors
 /// What was expected.
-pub fn read_layer(text: &str) -> Result<ClipLayer, &'static str> {
+pub fn read_layer(text: &str) -> Result<LayeredClip, &'static str> {
     layers::read(text).ok_or(layers::EXPECTED)
 }
 
@@ -388,7 +397,8 @@ pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
 }
 
 /// Returns all keys of the link as JSON: flags are booleans, numbers are numbers, unset keys are null.
-pub fn to_object(state: &ViewerState) -> Value {
+pub fn to_object(state: &ViewerState, library: &Library) -> Value {
+    let state = &with_link_names(state, library);
     let mut object = Map::new();
     object.insert("v".to_owned(), json!(1));
     for key in KEYS {
@@ -401,9 +411,10 @@ pub fn to_object(state: &ViewerState) -> Value {
     Value::Object(object)
 }
 
-/// Returns a state with some keys of the link replaced; null resets a key to its default. Bad values are reported and skipped.
-pub fn from_object(base: &ViewerState, partial: &Value) -> (ViewerState, Vec<LinkError>) {
-    let mut state = base.clone();
+/// Returns a state with some keys of the link replaced; null resets a key to its default. Bad values are reported and skipped. The
+/// library has the clips that `base` refers to; the returned state calls them as links do.
+pub fn from_object(base: &ViewerState, library: &Library, partial: &Value) -> (ViewerState, Vec<LinkError>) {
+    let mut state = with_link_names(base, library);
     let mut errors = Vec::new();
     let Value::Object(partial) = partial else {
         let expected = "an object with keys of the link";

@@ -18,7 +18,7 @@ impl LoopFrames {
     /// video's width over height.
     pub fn new(library: &Library, state: &ViewerState, aspect: f32, frames_per_sec: u32) -> Option<Self> {
         let model = library.active()?;
-        let range = play_range(model, active_clip(model, state)?, state);
+        let range = play_range(active_clip(model, state)?, state);
         let length_secs = range.length_secs() / state.playback.speed;
         if length_secs <= 0.0 {
             return None;

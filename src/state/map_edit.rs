@@ -6,7 +6,7 @@ use glam::Quat;
 
 use super::{ViewerState, maps};
 use crate::asset::Asset;
-use crate::library::Library;
+use crate::library::{Library, MotionId};
 use crate::retarget::{
     JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, Unmapped, opposite_joints,
 };
@@ -60,8 +60,8 @@ const MAX_CROSSFADE_SECS: f64 = 10.0;
 const PROPERTIES: [MutedProperty; 3] = [MutedProperty::Translation, MutedProperty::Rotation, MutedProperty::Scale];
 
 /// Applies an edit. Joint numbers and values that are out of range change nothing.
-pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize, edit: MapEdit) {
-    let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
+pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: &MotionId, edit: MapEdit) {
+    let (Some(model), Some(about)) = (library.active(), library.motion(motion)) else { return };
     let mut map = maps::own_map(library, state, motion).cloned().unwrap_or_default();
     let has_target = |target: usize| model.asset.skeleton.joint_of_source(target).is_some();
     match edit {

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ViewerState;
-use crate::library::Library;
+use crate::library::{Library, MotionId};
 use crate::retarget::{JointMap, MapEntry};
 
 /// A joint map of a view.
@@ -31,12 +31,12 @@ pub struct NumberedMap {
 }
 
 /// Returns a motion's map in the view, without the view's overrides.
-pub(super) fn own_map<'a>(library: &Library, state: &'a ViewerState, motion: usize) -> Option<&'a JointMap> {
+pub(super) fn own_map<'a>(library: &Library, state: &'a ViewerState, motion: &MotionId) -> Option<&'a JointMap> {
     Some(&numbered_for(&state.retarget.map, library.names_checksum(motion)?)?.map)
 }
 
 /// Returns the active map of a motion: its map in the view, with the view's overrides. None if the view has no map for it.
-pub fn active_map(library: &Library, state: &ViewerState, motion: usize) -> Option<JointMap> {
+pub fn active_map(library: &Library, state: &ViewerState, motion: &MotionId) -> Option<JointMap> {
     let mut map = own_map(library, state, motion)?.clone();
     if let Some(unmapped) = &state.retarget.unmapped {
         map.unmapped = unmapped.clone();
@@ -49,13 +49,13 @@ pub fn active_map(library: &Library, state: &ViewerState, motion: usize) -> Opti
 
 /// Returns the [`active_map`] of every motion, for [`Library::borrow_each`].
 pub fn active_maps(library: &Library, state: &ViewerState) -> Vec<Option<JointMap>> {
-    (0..library.motions().len()).map(|motion| active_map(library, state, motion)).collect()
+    library.motions().iter().map(|motion| active_map(library, state, motion.id())).collect()
 }
 
 /// Returns the proposed map of a motion; None if there is nothing to propose.
-pub fn proposed_map(library: &Library, motion: usize) -> Option<JointMap> {
+pub fn proposed_map(library: &Library, motion: &MotionId) -> Option<JointMap> {
     let proposal = library.proposal(motion).filter(|proposal| !proposal.pairs.is_empty())?;
-    let (model, motion) = (library.active()?, library.motions().get(motion)?);
+    let (model, motion) = (library.active()?, library.motion(motion)?);
     Some(proposal.to_map(&model.asset, &motion.asset))
 }
 
@@ -68,7 +68,7 @@ pub fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
 }
 
 /// Replaces the map of a motion; None removes it.
-pub(super) fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
+pub(super) fn set_map(state: &mut ViewerState, library: &Library, motion: &MotionId, map: Option<JointMap>) {
     let Some(checksum) = library.names_checksum(motion) else { return };
     let maps = &mut state.retarget.map;
     let at = maps.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));

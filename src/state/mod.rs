@@ -4,6 +4,7 @@ mod apply;
 mod avatar;
 mod camera;
 mod channel;
+mod clip_names;
 mod clips;
 mod command;
 mod comparison;
@@ -28,11 +29,12 @@ mod unknown;
 mod variant;
 mod view;
 
-pub use apply::apply;
+pub use apply::{apply, one_line};
 pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
-pub use clips::{changes_of, clip_changes, clip_copies, edited_clips, rename_clips};
+pub use clip_names::{look_up_clip, settle_clips};
+pub use clips::{ClipEdit, drop_edits_of_gone_clips};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use edited::Edited;
@@ -42,7 +44,7 @@ pub use framing::{
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
-pub use layers::{LayerSampler, clip_of_layer, has_layers, stacked_layers, unknown_layers};
+pub use layers::{LayerSampler, has_layers, stacked_layers, unknown_layers};
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
 pub use link::{
@@ -55,15 +57,12 @@ pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
 pub use pins::{looks_at_camera, pinned_clip, pinning};
-pub use playhead::{
-    PoseSampler, active_clip, choice_of_clip, clip_called, clip_secs, name_of_clip, play_range, unknown_clip,
-    world_from_model,
-};
+pub use playhead::{PoseSampler, active_clip, clip_secs, play_range, unknown_clip, world_from_model};
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::active_variant;
 pub use view::{
-    Background, CameraOptions, ClipChoice, ClipCopy, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
+    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, LayeredClip, PageOptions, Playback, Playhead,
     RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

@@ -28,7 +28,7 @@ pub(super) fn apply_pins(
     pose: &mut Pose,
 ) {
     if !state.edits.pins.is_empty() {
-        let playhead_secs = || active_clip(model, state).map_or(0.0, |clip| clip_secs(model, clip, state));
+        let playhead_secs = || active_clip(model, state).map_or(0.0, |clip| clip_secs(clip, state));
         pinning(model, state, eye).apply(time_secs.unwrap_or_else(playhead_secs), pose);
     }
 }

@@ -3,65 +3,41 @@
 use glam::{Affine3A, Quat, Vec3};
 
 use super::avatar::AvatarPose;
+use super::clip_names::{look_up_clip, unknown_name};
 use super::manual::pose_joints;
 use super::pins::apply_pins;
-use super::{ClipChoice, LayerSampler, NameKind, UnknownName, UpAxis, ViewerState};
-use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
-use crate::library::Model;
-use crate::retarget::ClipOverLayers;
+use super::{ClipChoice, LayerSampler, UnknownName, UpAxis, ViewerState};
+use crate::anim::{Pose, PropertyValues, SampleCursor, TimeRange, clip_time};
+use crate::library::{Model, ModelClip};
 
-/// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
-pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
-    clip_of(model, &state.playhead.clip)
+/// Returns the active clip; `None` for the rest pose, a model without clips, or a clip that the model lacks.
+pub fn active_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a ModelClip> {
+    chosen_clip(model, &state.playhead.clip)
 }
 
 /// Returns the clip that the state names and the model lacks.
 pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownName> {
-    let ClipChoice::Named(name) = &state.playhead.clip else { return None };
-    let unknown = || UnknownName { kind: NameKind::Clip, name: name.clone(), names: model.clip_titles().to_vec() };
-    active_clip(model, state).is_none().then(unknown)
+    let ClipChoice::Clip(clip) = &state.playhead.clip else { return None };
+    look_up_clip(model, clip).is_none().then(|| unknown_name(model, clip))
 }
 
-/// Returns the index of the chosen clip.
-pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
+/// Returns the chosen clip.
+pub(super) fn chosen_clip<'a>(model: &'a Model, choice: &ClipChoice) -> Option<&'a ModelClip> {
     match choice {
-        ClipChoice::First => (model.clip_count() > 0).then_some(0),
+        ClipChoice::First => model.clips().first(),
         ClipChoice::RestPose => None,
-        ClipChoice::Named(name) => clip_called(model, name),
+        ClipChoice::Clip(clip) => look_up_clip(model, clip),
     }
 }
 
-/// Finds a clip by its name, its index in decimal, or its display title.
-pub fn clip_called(model: &Model, name: &str) -> Option<usize> {
-    if name.is_empty() {
-        return None;
-    }
-    // Titles never look like an index unless a clip has that very name.
-    let by_title = || model.clip_titles().iter().position(|title| title == name);
-    find_clip(model.clips(), ClipQuery::NameOrIndex(name)).or_else(by_title)
+/// Returns the length of the crossfade between two clips.
+pub(super) fn crossfade_secs(from: Option<&ModelClip>, to: Option<&ModelClip>) -> f64 {
+    [from, to].map(|clip| clip.map_or(0.0, ModelClip::crossfade_secs)).into_iter().fold(0.0, f64::max)
 }
 
-/// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index, or by title if another clip is called
-/// like the index.
-pub fn name_of_clip(model: &Model, clip: usize) -> String {
-    let (name, index) = (model.clip(clip).map_or("", |clip| clip.name()), clip.to_string());
-    let is_unique = model.clips().filter(|other| other.name() == name).count() == 1;
-    let refers = |name: &str| clip_called(model, name) == Some(clip);
-    match model.clip_titles().get(clip) {
-        _ if is_unique && refers(name) => name.to_owned(),
-        Some(title) if !refers(&index) => title.clone(),
-        _ => index,
-    }
-}
-
-/// Returns the choice of a clip, as [`name_of_clip`] calls it.
-pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
-    ClipChoice::Named(name_of_clip(model, clip))
-}
-
-/// Returns the in and out points, clamped to the clip.
-pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange {
-    let duration_secs = model.clip(clip).map_or(0.0, |clip| f64::from(clip.duration_secs()));
+/// Returns the in and out points, clamped to the active clip.
+pub fn play_range(clip: &ModelClip, state: &ViewerState) -> TimeRange {
+    let duration_secs = clip.duration_secs();
     match state.playhead.range {
         Some(range) => TimeRange {
             start_secs: range.start_secs.clamp(0.0, duration_secs),
@@ -71,9 +47,9 @@ pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange 
     }
 }
 
-/// Returns the clip time of the current pose: the playhead, folded into the range by the loop mode.
-pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
-    clip_time(state.playhead.time_secs, play_range(model, clip, state), state.playback.loop_mode)
+/// Returns the time of the current pose in the active clip: the playhead, folded into the range by the loop mode.
+pub fn clip_secs(clip: &ModelClip, state: &ViewerState) -> f64 {
+    clip_time(state.playhead.time_secs, play_range(clip, state), state.playback.loop_mode)
 }
 
 /// A pose, with the buffers to sample the next one without allocating.
@@ -103,17 +79,15 @@ impl PoseSampler {
     /// alone. Allocates nothing once the buffers have grown.
     pub fn sample_motion(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
-        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
+        let time_secs = clip.map_or(0.0, |clip| clip_secs(clip, state));
         let into = (&mut self.pose, &mut self.properties);
         sample_clip(model, clip, time_secs, state.playhead.time_secs, &mut self.cursor, into);
         if let Some(fade) = &state.playhead.fade {
-            let from = clip_of(model, &fade.clip);
-            let length_secs = model.crossfade_secs(from, clip);
+            let from = chosen_clip(model, &fade.clip);
+            let length_secs = crossfade_secs(from, clip);
             let weight = if length_secs > 0.0 { (fade.elapsed_secs / length_secs).clamp(0.0, 1.0) } else { 1.0 };
             let elapsed_secs = fade.time_secs + fade.elapsed_secs;
-            let duration_secs =
-                from.and_then(|from| model.clip(from)).map_or(0.0, |clip| f64::from(clip.duration_secs()));
-            let range = TimeRange { start_secs: 0.0, end_secs: duration_secs };
+            let range = TimeRange { start_secs: 0.0, end_secs: from.map_or(0.0, ModelClip::duration_secs) };
             let time_secs = clip_time(elapsed_secs, range, state.playback.loop_mode);
             let into = (&mut self.before, &mut self.before_properties);
             sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, into);
@@ -148,18 +122,15 @@ impl PoseSampler {
 /// Samples a clip over the rest pose, and its layers at `elapsed_secs`; without a clip, the rest pose.
 pub(super) fn sample_pose(
     model: &Model,
-    clip: Option<usize>,
+    clip: Option<&ModelClip>,
     time_secs: f64,
     elapsed_secs: f64,
     cursor: &mut SampleCursor,
     pose: &mut Pose,
 ) {
     let skeleton = &model.asset.skeleton;
-    match clip.and_then(|index| Some((index, model.clip(index)?))) {
-        Some((index, clip)) => {
-            let source = ClipOverLayers { clip, below: model.layers(index) };
-            source.sample(skeleton, time_secs, elapsed_secs, cursor, pose);
-        }
+    match clip {
+        Some(clip) => clip.over_layers().sample(skeleton, time_secs, elapsed_secs, cursor, pose),
         None => pose.copy_from(skeleton.rest()),
     }
 }
@@ -167,7 +138,7 @@ pub(super) fn sample_pose(
 /// Samples like [`sample_pose`], and the clip's animated properties.
 fn sample_clip(
     model: &Model,
-    clip: Option<usize>,
+    clip: Option<&ModelClip>,
     time_secs: f64,
     elapsed_secs: f64,
     cursor: &mut SampleCursor,
@@ -175,8 +146,8 @@ fn sample_clip(
 ) {
     sample_pose(model, clip, time_secs, elapsed_secs, cursor, pose);
     properties.clear();
-    if let Some(clip) = clip.and_then(|clip| model.clip(clip)) {
-        clip.sample_properties(time_secs as f32, cursor, properties);
+    if let Some(clip) = clip {
+        clip.clip().sample_properties(time_secs as f32, cursor, properties);
     }
 }
 

@@ -1,12 +1,13 @@
 //! Compares a view with the model it is for: what is out of range, and what the model doesn't have.
 
 use super::apply::{checked, checked_for};
+use super::clip_names::{look_up_clip, unknown_name};
 use super::layers::unknown_layers;
 use super::link::differences;
-use super::playhead::{clip_called, unknown_clip};
+use super::playhead::unknown_clip;
 use super::variant::unknown_variant;
 use super::{LinkError, NameKind, UnknownName, ViewerState};
-use crate::library::Model;
+use crate::library::{ClipEdits, ClipId, Model, ModelClip};
 use crate::retarget::ClipChanges;
 
 const LEFT_OUT: &str = "it is left out";
@@ -37,14 +38,17 @@ fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     for unknown in unknown_layers(model, &edits.layers) {
         add("layers", unknown, "the layer is left out");
     }
-    let clip_unknown =
-        |name: &String| UnknownName { kind: NameKind::Clip, name: name.clone(), names: model.clip_titles().to_vec() };
-    for copy in edits.copies.iter().filter(|copy| clip_called(model, &copy.of).is_none()) {
-        add("copy", clip_unknown(&copy.of), LEFT_OUT);
+    let ClipEdits { copies, names, changes } = &edits.clips;
+    let is_unknown = |clip: &ClipId| look_up_clip(model, clip).is_none();
+    for copy in copies.iter().filter(|copy| is_unknown(&copy.of)) {
+        add("copy", unknown_name(model, &copy.of), LEFT_OUT);
     }
-    for (name, changes) in edits.clips.iter().filter(|(name, _)| clip_called(model, name).is_none()) {
+    for clip in names.keys().filter(|clip| clip.name().is_some() && is_unknown(clip)) {
+        add("rename", unknown_name(model, clip), LEFT_OUT);
+    }
+    for (clip, changes) in changes.iter().filter(|(clip, _)| is_unknown(clip)) {
         let is_only_mirrored = *changes == ClipChanges { mirror: true, ..ClipChanges::NONE };
-        add(if is_only_mirrored { "mirror" } else { "change" }, clip_unknown(name), LEFT_OUT);
+        add(if is_only_mirrored { "mirror" } else { "change" }, unknown_name(model, clip), LEFT_OUT);
     }
     if let Some(unknown) = unknown_variant(model, view) {
         add("variant", unknown, "the file's own materials are used");
@@ -58,12 +62,12 @@ fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
 
 /// A trim may begin where its clip has ended.
 fn find_empty_clips(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
-    for (name, ClipChanges { trim, .. }) in &view.edits.clips {
-        let clip = clip_called(model, name).and_then(|clip| model.unchanged_clip(clip));
+    for (id, ClipChanges { trim, .. }) in &view.edits.clips.changes {
+        let clip = look_up_clip(model, id).map(ModelClip::unchanged);
         if let (Some(clip), Some(range)) = (clip, trim)
             && range.start_secs >= f64::from(clip.duration_secs())
         {
-            let value = format!("{name}:trim:{}:{}", range.start_secs, range.end_secs);
+            let value = format!("{id}:trim:{}:{}", range.start_secs, range.end_secs);
             let instead = format!("it ends at {:.3} s, so nothing is left", clip.duration_secs());
             found.push(LinkError::OutOfRange { key: "change", value, expected: "a start within the clip", instead });
         }

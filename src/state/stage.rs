@@ -5,16 +5,16 @@ use glam::{Affine3A, Quat, Vec3};
 use super::ViewerState;
 use super::framing::front_yaw_radians;
 use super::playhead::{active_clip, world_from_model};
-use crate::library::{BorrowedClip, Library, Model};
+use crate::library::{BorrowedClip, ClipId, Library, Model};
 use crate::mesh::Bounds;
 
 /// A motion's own skeleton, playing the original clip.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct SourceOnStage<'a> {
     /// The motion as a model, see [`crate::library::Motion::stage`].
     pub model: &'a Model,
-    /// Index among its own clips.
-    pub clip: usize,
+    /// One of its own clips.
+    pub clip: ClipId,
     /// The retargeted clip, one of the active model's.
     pub borrowed: &'a BorrowedClip,
     /// Includes the up axis and the offset to the place beside the model.
@@ -24,22 +24,18 @@ pub struct SourceOnStage<'a> {
 /// Returns the source on stage; `None` if the state hides it or the clip is not retargeted.
 pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<SourceOnStage<'a>> {
     let model = library.active().filter(|_| state.display.show.source)?;
-    let borrowed = model.borrowed(active_clip(model, state)?)?;
-    let source = library.motions().get(borrowed.motion)?.stage();
+    let active = active_clip(model, state)?;
+    let borrowed = active.borrowed()?;
+    let source = library.motion(&borrowed.motion)?.stage();
+    let clip = ClipId::Own(borrowed.source_clip);
     let in_place = world_from_model(state.edits.up) * borrowed.model_from_source;
-    let clip = active_clip(model, state);
     let bounds = [
-        model.clip_bounds(state.sources.scene, clip, true).transformed(&world_from_model(state.edits.up)),
-        source.clip_bounds(None, Some(borrowed.source_clip), true).transformed(&in_place),
+        model.clip_bounds(state.sources.scene, Some(active.id()), true).transformed(&world_from_model(state.edits.up)),
+        source.clip_bounds(None, Some(&clip), true).transformed(&in_place),
     ];
     let offset = if state.display.show.over { Vec3::ZERO } else { beside(bounds, front_yaw_radians(library, state)) };
     let world_from_source = Affine3A::from_translation(offset) * in_place;
-    world_from_source.is_finite().then_some(SourceOnStage {
-        model: source,
-        clip: borrowed.source_clip,
-        borrowed,
-        world_from_source,
-    })
+    world_from_source.is_finite().then_some(SourceOnStage { model: source, clip, borrowed, world_from_source })
 }
 
 /// The gap between two characters, as a share of their widths.

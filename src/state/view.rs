@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
+use crate::library::{ClipEdits, ClipId};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipChanges, ClipLayer, Contacts, Feet, Pin, RootOptions, Unmapped};
+use crate::retarget::{ClipLayer, Contacts, Feet, Pin, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -189,12 +190,10 @@ pub struct Edits {
     /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
     /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,
-    /// Changes to clips, by their name, or index in decimal, as in [`ClipChoice::Named`]; never empty ones.
-    pub clips: BTreeMap<String, ClipChanges>,
-    /// Copies of clips, in the order in which they were made; the names differ.
-    pub copies: Vec<ClipCopy>,
+    /// Copies, names and changes of clips.
+    pub clips: ClipEdits,
     /// Clips over the active one, the lowest first.
-    pub layers: Vec<ClipLayer>,
+    pub layers: Vec<LayeredClip>,
     /// Name of the material variant (KHR_materials_variants); `None` shows the file's own materials.
     pub variant: Option<String>,
     /// Nodes and materials that are not shown.
@@ -203,23 +202,13 @@ pub struct Edits {
     pub up: UpAxis,
 }
 
-impl Edits {
-    /// The most copies of clips at once.
-    pub const MAX_COPIES: usize = 100;
-
-    /// Whether a copy of a clip has this name.
-    pub fn has_copy(&self, name: &str) -> bool {
-        self.copies.iter().any(|copy| copy.name == name)
-    }
-}
-
-/// A copy of a clip, to have changes of its own.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ClipCopy {
-    /// The name of the copy; not empty.
-    pub name: String,
-    /// The name of the original, or its index in decimal, as in [`ClipChoice::Named`].
-    pub of: String,
+/// A clip over the active one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LayeredClip {
+    /// Which clip.
+    pub clip: ClipId,
+    /// How it changes the pose below it.
+    pub layer: ClipLayer,
 }
 
 /// What the viewport explains about the model.
@@ -375,8 +364,15 @@ pub enum ClipChoice {
     First,
     /// No clip: every joint at rest.
     RestPose,
-    /// A clip's name, or its index in decimal if the name is empty or not unique.
-    Named(String),
+    /// This clip; the rest pose while the model lacks it.
+    Clip(ClipId),
+}
+
+impl ClipChoice {
+    /// Returns the choice of a clip that is still to be looked up by its name, or by its index in decimal.
+    pub fn called(name: &str) -> Self {
+        Self::Clip(ClipId::called(name))
+    }
 }
 
 /// What is drawn. A model without meshes always shows its skeleton.

@@ -5,8 +5,9 @@ use egui::Ui;
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text};
 use crate::anim::TimeRange;
+use crate::library::{ClipEdits, ModelClip};
 use crate::retarget::ClipChanges;
-use crate::state::{Command, Edits, active_clip, changes_of};
+use crate::state::{ClipEdit, Command, active_clip};
 
 const SPEED: SliderSettings = SliderSettings {
     range: (ClipChanges::MIN_SPEED, ClipChanges::MAX_SPEED),
@@ -28,9 +29,10 @@ const DEFAULT_BLEND_SECS: f64 = 0.2;
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let Some(clip) = active_clip(model, shown.state) else { return };
-    let before = changes_of(model, shown.state, clip);
+    let before = shown.state.edits.clips.changes_of(clip.id());
     let mut changes = before.clone();
     controls::section(ui, capitals!(text::CHANGE_CLIP));
+    name(ui, clip, out);
     changes.mirror ^= controls::switch(ui, text::MIRROR, changes.mirror);
     changes.reverse ^= controls::switch(ui, text::BACKWARDS, changes.reverse);
     let copy = trim(ui, shown, &mut changes);
@@ -39,7 +41,7 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
     if let Some(secs) = changes.loop_secs {
         changes.loop_secs = controls::slider(ui, text::BLEND, secs, BLEND).or(changes.loop_secs);
-        if let Some(seam) = model.changed_clip(clip).and_then(|changed| changed.seam) {
+        if let Some(seam) = clip.changed().and_then(|changed| changed.seam) {
             controls::hint(ui, text::seam(seam));
         }
     }
@@ -55,12 +57,31 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if !changes.is_none() && ui.button(text::RESET_CHANGES).clicked() {
         changes = ClipChanges::default();
     }
+    let edit = |edit| Command::EditClip { clip: clip.id().clone(), edit };
     if let Some(changes) = copy {
-        out.commands.push(Command::CopyClip { clip, changes: Box::new(changes) });
-    } else if model.is_copy(clip) && ui.button(text::REMOVE_COPY).clicked() {
-        out.commands.push(Command::RemoveCopy(clip));
+        out.commands.push(edit(ClipEdit::Copy(Box::new(changes))));
+    } else if clip.is_copy() && ui.button(text::REMOVE_COPY).clicked() {
+        out.commands.push(edit(ClipEdit::RemoveCopy));
     } else if changes != before {
-        out.commands.push(Command::ChangeClip { clip, changes: Box::new(changes) });
+        out.commands.push(edit(ClipEdit::Change(Box::new(changes))));
+    }
+}
+
+/// The field for the clip's name: Enter or a click elsewhere accepts, Esc cancels.
+fn name(ui: &mut Ui, clip: &ModelClip, out: &mut Output) {
+    let typed_id = ui.scope_id().with(("clip name", clip.id()));
+    let mut typed: String = ui.data(|data| data.get_temp(typed_id)).unwrap_or_else(|| clip.title().to_owned());
+    let field = controls::text_field(&mut typed).hint_text(text::CLIP_NAME_IN_FILE).desired_width(f32::INFINITY);
+    let field = ui.add(field).accessible_name(text::CLIP_NAME);
+    if field.has_focus() {
+        ui.data_mut(|data| data.insert_temp(typed_id, typed));
+        return;
+    }
+    ui.data_mut(|data| data.remove::<String>(typed_id));
+    let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    if field.lost_focus() && !is_cancelled && typed != clip.title() {
+        let edit = ClipEdit::Rename(typed);
+        out.commands.push(Command::EditClip { clip: clip.id().clone(), edit });
     }
 }
 
@@ -81,7 +102,7 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
         (false, false) => text::NEEDS_RANGE,
     };
     let why_not = range.is_none().then_some(no_range);
-    let is_full = shown.state.edits.copies.len() == Edits::MAX_COPIES;
+    let is_full = shown.state.edits.clips.copies.len() == ClipEdits::MAX_COPIES;
     ui.horizontal_wrapped(|ui| {
         let is_trimmed = changes.trim.is_some();
         if trim_button(ui, text::TRIM_TO_RANGE, why_not) {

@@ -6,8 +6,8 @@ use super::icons::{Icon, icon_button_sized, icon_size};
 use super::search::finds;
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
 use crate::editor::{name_and_place, short_name};
-use crate::library::{Model, ModelId, Motion};
-use crate::state::{ClipChoice, Command, changes_of, choice_of_clip, is_to_bring};
+use crate::library::{ClipId, Model, ModelClip, ModelId};
+use crate::state::{ClipChoice, Command, is_to_bring};
 
 /// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;
@@ -30,13 +30,11 @@ pub struct ClipList {
 }
 
 /// What the list scrolls to the current clip for, when it changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 struct SeenClip {
     model: ModelId,
-    clip: Option<usize>,
+    clip: Option<ClipId>,
     count: usize,
-    /// The motion that the clip is borrowed from: another one's clip may have the same number.
-    motion: Option<ModelId>,
     /// Height of the list.
     height: u32,
 }
@@ -49,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         models(ui, shown, model, list, out);
     }
     controls::section(ui, text::CLIPS_SECTION);
-    let count = model.clip_titles().len();
+    let count = model.clips().len();
     if count > MANY_CLIPS {
         search_field(ui, &mut list.search, &text::search_clips(count));
         ui.add_space(4.0);
@@ -57,19 +55,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         list.search.clear();
     }
     // The current clip stays visible when the list gets shorter, and becomes visible when it is set elsewhere.
-    let clip = shown.clip_index();
-    let seen = SeenClip {
-        model: model.id,
-        clip,
-        count,
-        motion: motion_of(shown, model),
-        height: ui.available_height() as u32,
-    };
-    let before = list.seen_clip.replace(seen);
-    let scrolls = before != Some(seen);
+    let clip = shown.clip();
+    let height = ui.available_height() as u32;
+    let seen = SeenClip { model: model.id, clip: clip.map(|clip| clip.id().clone()), count, height };
+    let before = list.seen_clip.replace(seen.clone());
+    let scrolls = before.as_ref() != Some(&seen);
     // A clip that was set elsewhere, such as the first one of a motion that was just borrowed, is not hidden by a search.
     if before.is_some_and(|before| SeenClip { height: seen.height, ..before } != seen)
-        && clip.and_then(|clip| model.clip_titles().get(clip)).is_some_and(|title| !finds(&list.search, title))
+        && clip.is_some_and(|clip| !finds(&list.search, clip.title()))
     {
         list.search.clear();
     }
@@ -80,43 +73,37 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     });
 }
 
-fn motion_of(shown: &Shown<'_>, model: &Model) -> Option<ModelId> {
-    let borrowed = model.borrowed(shown.clip_index()?)?;
-    shown.library.motions().get(borrowed.motion).map(Motion::id)
-}
-
 /// The rest pose and the clips that match the search, borrowed ones under the name of their motion.
 fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: bool, out: &mut Output) {
-    let current = shown.clip_index();
-    let motions = names_of(shown.library.motions().iter().map(|motion| &*motion.source));
-    let titles = model.clip_titles();
+    let current = shown.clip().map(ModelClip::id);
+    let motions = shown.library.motions();
+    let names = names_of(motions.iter().map(|motion| &*motion.source));
     if search.is_empty() && controls::list_row(ui, text::REST_POSE, "", current.is_none()).clicked() {
         out.commands.push(Command::SetClip(ClipChoice::RestPose));
     }
     let mut found = search.is_empty();
     let mut heading = None;
-    for index in model.listed_clips() {
-        let title = &titles[index];
-        if !finds(search, title) {
+    for clip in model.clips().listed() {
+        if !finds(search, clip.title()) {
             continue;
         }
         found = true;
-        let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
+        let motion = clip.borrowed().map(|borrowed| &borrowed.motion);
         if motion != heading
-            && let Some(name) = motion.and_then(|motion| motions.get(motion))
+            && let Some((_, name)) = motions.iter().zip(&names).find(|(known, _)| Some(known.id()) == motion)
         {
             motion_heading(ui, name);
         }
         heading = motion;
-        let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
-        let row = controls::list_row(ui, title, &format!("{duration:.2} s"), current == Some(index));
-        if scrolls && current == Some(index) {
+        let is_current = current == Some(clip.id());
+        let row = controls::list_row(ui, clip.title(), &format!("{:.2} s", clip.duration_secs()), is_current);
+        if scrolls && is_current {
             row.scroll_to_me(None);
         }
         if row.clicked() {
-            out.commands.push(Command::SetClip(choice_of_clip(model, index)));
+            out.commands.push(Command::SetClip(ClipChoice::Clip(clip.id().clone())));
         }
-        let changes = changes_of(model, shown.state, index);
+        let changes = shown.state.edits.clips.changes_of(clip.id());
         if !changes.is_none() {
             ui.painter().circle_filled(row.rect.left_center() + vec2(5.0, 0.0), 2.5, style::palette(ui).accent);
             let changes = text::changes(&changes);
@@ -126,7 +113,7 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
     }
     if !found {
         controls::hint(ui, text::no_clip_found(search));
-    } else if titles.is_empty() {
+    } else if model.clips().is_empty() {
         ui.add_space(4.0);
         controls::hint(
             ui,
@@ -149,7 +136,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, o
     let room = ui.available_height();
     // What the clips leave free, but at least a fair share.
     let row_height = controls::row_height(ui, controls::ROW_HEIGHT) + ROW_SPACING;
-    let clips_need = CLIPS_HEADING_HEIGHT + (active.clip_count() + 1) as f32 * row_height;
+    let clips_need = CLIPS_HEADING_HEIGHT + (active.clips().len() + 1) as f32 * row_height;
     let max_height = (room - clips_need).max(0.4 * room).max(2.0 * row_height);
     let seen = (active.id, room as u32);
     let scrolls = list.seen_model.replace(seen) != Some(seen);

@@ -23,8 +23,8 @@ struct Tracks<'a> {
 impl<'a> Tracks<'a> {
     /// `None` if there are none.
     fn of(shown: &Shown<'a>) -> Option<Self> {
-        let (model, clip, index) = (shown.library.active()?, shown.clip()?, shown.clip_index()?);
-        let (tracks, duration_secs) = (shown.library.foot_tracks(index), clip.duration_secs());
+        let (model, clip) = (shown.library.active()?, shown.clip()?);
+        let (tracks, duration_secs) = (shown.library.foot_tracks(clip.id()), clip.clip().duration_secs());
         (!tracks.is_empty() && duration_secs > 0.0).then_some(Self { model, tracks, duration_secs })
     }
 

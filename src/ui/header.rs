@@ -6,7 +6,7 @@ use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
 use crate::editor::{ClipFormat, Export, derived_clip};
-use crate::library::Model;
+use crate::library::{Model, ModelClip};
 use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
@@ -167,15 +167,16 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     ui.set_width(MENU_WIDTH);
     let Some(model) = shown.library.active() else { return };
     let clip = active_clip(model, shown.state);
-    let borrowed = clip.and_then(|clip| Some((clip, model.borrowed(clip)?)));
+    let borrowed = clip.and_then(ModelClip::borrowed);
     let pictures = &local.picture_settings;
     let clips = clip.into_iter().flat_map(|clip| {
         let formats = ClipFormat::ALL.into_iter().filter(|format| format.fits(model));
-        formats.map(move |format| (text::save_clip(format), Export::Clip { clip, format }))
+        formats.map(move |format| (text::save_clip(format), Export::Clip { clip: clip.id().clone(), format }))
     });
-    let model_with_clip = derived_clip(model, shown.state).map(|clip| (text::SAVE_GLB, Export::Model { clip }));
+    let model_with_clip =
+        derived_clip(model, shown.state).map(|clip| (text::SAVE_GLB, Export::Model { clip: clip.id().clone() }));
     let others = [
-        borrowed.map(|(_, borrowed)| (text::SAVE_MAP, Export::Map { motion: borrowed.motion })),
+        borrowed.map(|borrowed| (text::SAVE_MAP, Export::Map { motion: borrowed.motion.clone() })),
         (model.asset.format == "obj").then_some((text::SAVE_REST_POSE, Export::FullModel { posed: false })),
         (model.asset.format == "obj").then_some((text::SAVE_CURRENT_POSE, Export::FullModel { posed: true })),
     ];

@@ -5,7 +5,7 @@ use egui::{Context, Key, Modifiers};
 use super::transport::range_here;
 use super::{Output, Sheet, Shown, UiAction, UiState, motion, text, typing};
 use crate::anim::LoopMode;
-use crate::state::{CameraChoice, Command, Show, choice_of_clip};
+use crate::state::{CameraChoice, ClipChoice, Command, Show};
 
 /// A shortcut and its line in the help.
 pub struct KeyHelp {
@@ -65,8 +65,8 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: "Play a clip",
         pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
         act: |shown, _, Press { which, .. }, out| {
-            if let Some(model) = shown.library.active().filter(|model| which < model.clip_count()) {
-                out.commands.push(Command::SetClip(choice_of_clip(model, which)));
+            if let Some(clip) = shown.library.active().and_then(|model| model.clips().iter().nth(which)) {
+                out.commands.push(Command::SetClip(ClipChoice::Clip(clip.id().clone())));
             }
         },
     },

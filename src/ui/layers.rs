@@ -1,14 +1,16 @@
 //! Layers over the current clip: a section below the clip's edits, and tracks under the timeline.
 
+use std::borrow::Cow;
+
 use egui::{Response, Ui};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text, tracks};
 use crate::asset::Slot;
-use crate::library::Model;
+use crate::library::{Model, ModelClip};
 use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use crate::state::{Command, clip_of_layer, name_of_clip, title};
+use crate::state::{Command, LayeredClip, title};
 
 const WEIGHT: SliderSettings =
     SliderSettings { range: (0.0, 1.0), default: 1.0, decimals: 2, suffix: "", logarithmic: false };
@@ -22,7 +24,7 @@ const UPPER_BODY: [BodyPart; 4] = [BodyPart::Torso, BodyPart::Head, BodyPart::Le
 
 /// Shows the section for a model with clips.
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let Some(model) = shown.library.active().filter(|model| model.clip_count() > 0) else { return };
+    let Some(model) = shown.library.active().filter(|model| !model.clips().is_empty()) else { return };
     let before = &shown.state.edits.layers;
     let mut layers = before.clone();
     let mut moved = None;
@@ -33,11 +35,11 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     // A layer that was just added gets the focus. That scrolls to its chooser, so the whole card scrolls into view afterwards.
     let added_id = ui.scope_id().with("added layer");
     let added: Option<usize> = ui.data(|data| data.get_temp(added_id));
-    for (index, layer) in layers.iter_mut().enumerate().rev() {
-        let name = text::layer(index + 1, title_of(model, layer));
+    for (index, over) in layers.iter_mut().enumerate().rev() {
+        let name = text::layer(index + 1, &title_of(model, over));
         let can_rise = index + 1 < before.len();
         let done = ui.push_id(("layer", index), |ui| {
-            controls::group(ui, &name, |ui| controls::card(ui, |ui| card(ui, shown, model, layer, can_rise)))
+            controls::group(ui, &name, |ui| controls::card(ui, |ui| card(ui, shown, model, over, can_rise)))
         });
         let (chooser, how) = done.inner;
         if added == Some(index) && chooser.has_focus() {
@@ -66,12 +68,13 @@ pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
     if add.clicked() {
         // Another clip than the one that plays, if there is one.
-        let playing = shown.clip_index();
-        let clip = (0..model.clip_count()).find(|&clip| Some(clip) != playing).unwrap_or(0);
+        let playing = shown.clip().map(ModelClip::id);
+        let other = model.clips().iter().map(ModelClip::id).find(|clip| Some(*clip) != playing);
         // On the upper body, so that the legs show what a layer is for: the clip below goes on.
         let has_arms = model.body().slots.0.contains_key(&Slot::LeftUpperArm);
         let mask = if has_arms { LayerMask::of_parts(&UPPER_BODY) } else { LayerMask::default() };
-        layers.push(ClipLayer { clip: name_of_clip(model, clip), mask, ..ClipLayer::default() });
+        let layer = ClipLayer { mask, ..ClipLayer::default() };
+        layers.extend(other.or(playing).map(|clip| LayeredClip { clip: clip.clone(), layer }));
         ui.data_mut(|data| data.insert_temp(added_id, before.len()));
     }
     if layers != *before {
@@ -88,8 +91,8 @@ enum Moved {
     },
 }
 
-fn title_of<'a>(model: &'a Model, layer: &'a ClipLayer) -> &'a str {
-    clip_of_layer(model, layer).and_then(|clip| model.clip_titles().get(clip)).unwrap_or(&layer.clip)
+fn title_of<'a>(model: &'a Model, over: &LayeredClip) -> Cow<'a, str> {
+    model.clip(&over.clip).map_or_else(|| over.clip.to_string().into(), |clip| clip.title().into())
 }
 
 /// Returns the chooser of the clip, and how the layer is moved, if it is.
@@ -97,31 +100,29 @@ fn card(
     ui: &mut Ui,
     shown: &Shown<'_>,
     model: &Model,
-    layer: &mut ClipLayer,
+    over: &mut LayeredClip,
     can_rise: bool,
 ) -> (Response, Option<Moved>) {
     let mut moved = None;
-    let clip = clip_of_layer(model, layer);
-    let titles = model.clip_titles();
     let row = ui.horizontal(|ui| {
-        let shown = title_of(model, layer);
+        let shown = title_of(model, over);
         let buttons = controls::button_width(ui, text::RAISE_LAYER) + icon_size(ui, BUTTON_SIZE).x;
         let width = ui.available_width() - buttons - 2.0 * ui.spacing().item_spacing.x;
         let mut picked = None;
         let choices = |ui: &mut Ui| {
-            for (index, title) in titles.iter().enumerate() {
-                if controls::option(ui, clip == Some(index), title) {
-                    picked = Some(index);
+            for clip in model.clips() {
+                if controls::option(ui, *clip.id() == over.clip, clip.title()) {
+                    picked = Some(clip.id().clone());
                 }
             }
         };
         // The text of a combo box takes what is available, whatever its width.
         let chooser = ui.scope(|ui| {
             ui.set_max_width(width);
-            controls::chooser(ui, "clip", text::LAYER_CLIP, shown, choices)
+            controls::chooser(ui, "clip", text::LAYER_CLIP, &shown, choices)
         });
-        if let Some(index) = picked {
-            layer.clip = name_of_clip(model, index);
+        if let Some(clip) = picked {
+            over.clip = clip;
         }
         if ui.add_enabled(can_rise, egui::Button::new(text::RAISE_LAYER)).clicked() {
             moved = Some(Moved::Raised);
@@ -132,6 +133,7 @@ fn card(
         }
         chooser.inner
     });
+    let layer = &mut over.layer;
     let modes = LayerMode::ALL.map(|mode| (mode, text::layer_mode(mode)));
     layer.mode = controls::segmented_about(ui, text::LAYER_MODE, Some(layer.mode), &modes).unwrap_or(layer.mode);
     for (label, value, settings) in [
@@ -178,26 +180,26 @@ fn mask(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer) {
     });
 }
 
-/// The layers that the model has clips for, with their titles.
-fn playable<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a Model, usize)> + use<'a> {
+/// The layers that the model has clips for.
+fn playable<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a ModelClip)> + use<'a> {
     let layers = shown.library.active().map(|model| (model, &shown.state.edits.layers));
-    let layers = layers.into_iter().flat_map(|(model, layers)| layers.iter().map(move |layer| (layer, model)));
-    layers.filter_map(|(layer, model)| Some((layer, model, clip_of_layer(model, layer)?)))
+    let layers = layers.into_iter().flat_map(|(model, layers)| layers.iter().map(move |over| (over, model)));
+    layers.filter_map(|(over, model)| Some((&over.layer, model.clip(&over.clip)?)))
 }
 
 /// Returns the width that the names of the layers take at the left of the timeline; 0 if there are none.
 pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
-    tracks::widest(ui, &mut playable(shown).map(|(_, model, clip)| model.clip_titles()[clip].clone()))
+    tracks::widest(ui, &mut playable(shown).map(|(_, clip)| clip.title().to_owned()))
 }
 
 /// Shows a track for each layer, the top one first, with a bar for each time that its clip plays.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, gutter: f32) {
     let Some(duration_secs) = tracks::duration_secs(shown) else { return };
     let rows: Vec<_> = playable(shown).collect();
-    for (layer, model, clip) in rows.into_iter().rev() {
-        let name = &model.clip_titles()[clip];
+    for (layer, clip) in rows.into_iter().rev() {
+        let name = clip.title();
         tracks::row(ui, shown, gutter, name, &text::layer_track(name), |ui, lane| {
-            let period = model.clip(clip).and_then(|clip| layer.period_secs(clip)).unwrap_or(f64::INFINITY);
+            let period = layer.period_secs(clip.clip()).unwrap_or(f64::INFINITY);
             // Beyond that many, bars would be narrower than the gaps between them.
             let period = period.max(4.0 * duration_secs / f64::from(lane.width().max(1.0)));
             let x_of = |secs: f64| lane.left() + (secs / duration_secs) as f32 * lane.width();

@@ -22,10 +22,9 @@ mod widgets;
 
 use egui::{Context, Rect, Ui};
 
-use crate::anim::Clip;
 use crate::editor::ValidatorReport;
 use crate::frame::Frame;
-use crate::library::{Library, Model, ModelId};
+use crate::library::{Library, Model, ModelClip, ModelId};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
 pub use gestures::{begin_gestures, end_gestures};
@@ -61,14 +60,9 @@ pub struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// Index of the current clip, or `None` for the rest pose.
-    pub fn clip_index(&self) -> Option<usize> {
-        active_clip(self.library.active()?, self.state)
-    }
-
     /// Returns the current clip, or `None` for the rest pose.
-    pub fn clip(&self) -> Option<&'a Clip> {
-        self.library.active()?.clip(self.clip_index()?)
+    pub fn clip(&self) -> Option<&'a ModelClip> {
+        active_clip(self.library.active()?, self.state)
     }
 
     /// Whether the current clip has a duration, so that there is something to play.
@@ -78,18 +72,12 @@ impl<'a> Shown<'a> {
 
     /// Playhead position in the clip; 0 for the rest pose.
     pub fn clip_time_secs(&self) -> f64 {
-        match (self.library.active(), self.clip_index()) {
-            (Some(model), Some(clip)) => clip_secs(model, clip, self.state),
-            _ => 0.0,
-        }
+        self.clip().map_or(0.0, |clip| clip_secs(clip, self.state))
     }
 
     /// Frame rate for frame steps and frame numbers.
     pub fn frames_per_sec(&self) -> f64 {
-        match (self.library.active(), self.clip_index()) {
-            (Some(model), Some(clip)) => model.frames_per_sec(clip),
-            _ => 30.0,
-        }
+        self.clip().map_or(30.0, ModelClip::frames_per_sec)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the panels ask for: changes of the view state, and everything that the app has to do.
 
 use crate::editor::Export;
-use crate::library::ModelId;
+use crate::library::{ModelId, MotionId};
 use crate::state::Command;
 
 /// The requests of one pass.
@@ -32,10 +32,10 @@ pub enum UiAction {
     ShowModel(ModelId),
     /// Close a model; if it is the active one, its neighbour takes its place.
     CloseModel(ModelId),
-    /// Remove the motion at this index in the library, and all others from the same archive.
-    RemoveMotion(usize),
+    /// Remove a motion, and all others from the same archive.
+    RemoveMotion(MotionId),
     /// Show the skeleton of a motion by itself instead of the model.
-    ShowMotionAlone(usize),
+    ShowMotionAlone(MotionId),
     /// Show the skeleton of the motions that were refused.
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
@@ -63,7 +63,7 @@ pub enum UiAction {
 }
 
 /// A file that can be saved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Saved {
     /// A model, clip or joint map that the editor exports.
     File(Export),

@@ -3,6 +3,7 @@
 use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{Shown, controls, scrub, style};
+use crate::library::ModelClip;
 
 const TRACK_HEIGHT: f32 = 18.0;
 /// At most this share of the width is for names.
@@ -15,7 +16,7 @@ pub(super) fn short(name: &str) -> &str {
 
 /// Returns the duration of the clip; `None` if no time passes.
 pub(super) fn duration_secs(shown: &Shown<'_>) -> Option<f64> {
-    shown.clip().map(|clip| f64::from(clip.duration_secs())).filter(|&secs| secs > 0.0)
+    shown.clip().map(ModelClip::duration_secs).filter(|&secs| secs > 0.0)
 }
 
 /// Returns the width of a gutter for the names of tracks.

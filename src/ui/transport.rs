@@ -6,6 +6,7 @@ use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle, play_bu
 use super::scrub::{self, Scrub, Scrubbed};
 use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
+use crate::library::ModelClip;
 use crate::state::Command;
 use crate::ui::widgets::accessible;
 
@@ -13,9 +14,6 @@ use crate::ui::widgets::accessible;
 const MAX_SHARE_OF_TRACKS: f32 = 0.25;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: bool, out: &mut Output) {
-    let model = shown.library.active();
-    let (model_id, revision) = model.map_or_else(Default::default, |model| (model.id, model.clips_revision()));
-    let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX), revision);
     // A low screen has no room for them.
     let has_tracks = !shown.state.page.embed && ui.ctx().content_rect().height() >= LOW_HEIGHT;
     let has_feet = shown.state.display.show.source && has_tracks;
@@ -24,13 +22,13 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
     let gutter = gutters.into_iter().fold(feet_gutter, f32::max);
     let range = shown.state.playhead.range;
     let bar = Scrub {
-        clip: shown.clip(),
+        clip: shown.clip().map(ModelClip::clip),
         time_secs: shown.clip_time_secs(),
         frames_per_sec: shown.frames_per_sec(),
         range,
         gutter,
     };
-    let (scrubbed, is_held) = scrub::show(ui, &bar, clip_id, &mut local.key_marks);
+    let (scrubbed, is_held) = scrub::show(ui, &bar, &mut local.key_marks);
     local.holds_time = is_held;
     match scrubbed {
         Some(Scrubbed::Seek(secs)) => out.commands.push(Command::Seek(secs)),
@@ -96,7 +94,7 @@ fn times(ui: &mut Ui, shown: &Shown<'_>, room: Option<f32>) {
         ui.label(RichText::new(text::REST_POSE).color(palette.weak_text));
         return;
     };
-    let (time_secs, duration_secs) = (shown.clip_time_secs(), f64::from(clip.duration_secs()));
+    let (time_secs, duration_secs) = (shown.clip_time_secs(), clip.duration_secs());
     let per_sec = shown.frames_per_sec();
     let frame = (time_secs * per_sec + 1e-4).floor();
     let last = (duration_secs * per_sec).round();
@@ -162,7 +160,7 @@ fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// The range with its in or out point moved to the playhead.
 pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
-    let duration_secs = f64::from(shown.clip()?.duration_secs());
+    let duration_secs = shown.clip()?.duration_secs();
     let now = shown.clip_time_secs();
     let TimeRange { start_secs, end_secs } =
         shown.state.playhead.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });

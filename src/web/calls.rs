@@ -18,7 +18,7 @@ use crate::editor::{AboutLink, Contents, short_name};
 use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view, within};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
-use crate::library::{Environment, Model, ModelId, Motion, inspect};
+use crate::library::{Environment, Model, ModelClip, ModelId, Motion, inspect};
 use crate::samples;
 use crate::state::{
     EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
@@ -71,8 +71,12 @@ pub async fn apply(partial: String) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| malformed(problem.to_string()))?;
     // Keys that it doesn't set keep the values of a link, whatever the preference for reduced motion has stopped.
-    let before = with_app(&page, |app| app.editor().shared_state()).map_err(stopped)?;
-    let (state, errors) = from_object(&before, &partial);
+    let read = |app: &mut App| {
+        let before = app.editor().shared_state();
+        let (state, errors) = from_object(&before, app.library(), &partial);
+        (before, state, errors)
+    };
+    let (before, state, errors) = with_app(&page, read).map_err(stopped)?;
     if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
@@ -118,7 +122,7 @@ pub fn is_private() -> Result<bool, JsValue> {
 #[wasm_bindgen]
 pub fn state() -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
-    with_app(&page, |app| to_object(app.state()).to_string()).map_err(stopped)
+    with_app(&page, |app| to_object(app.state(), app.library()).to_string()).map_err(stopped)
 }
 
 /// Returns the pose document of the current pose.
@@ -242,7 +246,7 @@ pub fn summary() -> Result<String, JsValue> {
     let summary = |app: &mut App| {
         let state = app.state();
         let model = app.library().active();
-        let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
+        let clip = model.and_then(|model| active_clip(model, state)).map(ModelClip::title);
         let models = app.library().models().iter();
         let unlisted = models.filter(|other| !other.is_placeholder() && !state.sources.model.contains(&other.origin));
         json!({

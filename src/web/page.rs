@@ -18,7 +18,7 @@ use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::{AboutLink, Contents, ExportedFile, short_name};
 use crate::files::{Held, ImageLimits, Item, OpenError, Role, open_items, open_view};
-use crate::library::{Environment, Model, ModelId};
+use crate::library::{Environment, Library, Model, ModelId};
 use crate::samples;
 use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missing, to_link};
 
@@ -428,7 +428,7 @@ impl Host for PageHost {
         query.is_some_and(|query| query.matches())
     }
 
-    fn state_changed(&self, state: &ViewerState) {
-        self.shell.changed(&to_link(state));
+    fn state_changed(&self, state: &ViewerState, library: &Library) {
+        self.shell.changed(&to_link(state, library));
     }
 }

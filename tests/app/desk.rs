@@ -184,7 +184,7 @@ impl Desk {
     }
 
     pub fn retargeted_clips(&self) -> usize {
-        self.library().active().expect("a model").borrowed_clips().count()
+        self.library().active().expect("a model").clips().borrowed().count()
     }
 
     /// Whether a text is visible.
@@ -234,5 +234,5 @@ impl Host for Window {
         format!("#{fragment}")
     }
 
-    fn state_changed(&self, _state: &ViewerState) {}
+    fn state_changed(&self, _state: &ViewerState, _library: &Library) {}
 }

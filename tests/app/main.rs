@@ -2,6 +2,9 @@
 
 #[path = "../support/gpu.rs"]
 mod adapter;
+#[allow(dead_code)]
+#[path = "../support/by_place.rs"]
+mod by_place;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
 mod desk;

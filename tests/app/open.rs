@@ -7,8 +7,9 @@ use std::rc::Rc;
 
 use gaitway::app::Message;
 use gaitway::editor::{AboutLink, ClipFormat, Contents};
+use gaitway::library::ModelClip;
 use gaitway::samples;
-use gaitway::state::{ClipChoice, Command, from_link, to_link};
+use gaitway::state::{ClipChoice, Command, active_clip, from_link, to_link};
 use gaitway::ui::{Tab, text};
 
 use crate::desk::{desk, real};
@@ -16,14 +17,15 @@ use crate::desk::{desk, real};
 #[test]
 fn a_second_model_becomes_active_and_the_first_stays_listed() {
     let Some(mut desk) = desk("sample:pilot") else { return };
-    desk.command(Command::SetClip(ClipChoice::Named("run".to_owned())));
+    desk.command(Command::SetClip(ClipChoice::called("run")));
     desk.open(&["sample:creature".into()]);
     assert_eq!(desk.active(), "sample:creature");
     assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
     assert!(desk.shows("Opened Fox"), "a notice says so");
     desk.press("Pilot");
     assert_eq!(desk.active(), "sample:pilot");
-    assert_eq!(desk.state().playhead.clip, ClipChoice::Named("run".to_owned()), "its view is restored");
+    let clip = active_clip(desk.library().active().expect("a model"), desk.state()).map(ModelClip::title);
+    assert_eq!(clip, Some("run"), "its view is restored");
 }
 
 #[test]
@@ -199,7 +201,11 @@ fn the_link_names_the_active_model_of_an_archive() {
     assert_eq!(desk.state().sources.model, std::slice::from_ref(&file), "the first one");
     desk.press("dwarf.glb");
     assert_eq!(desk.state().sources.model, [format!("{file}#!/in/dwarf.glb")]);
-    assert!(to_link(desk.state()).contains("%23!/in/dwarf.glb"), "{}", to_link(desk.state()));
+    assert!(
+        to_link(desk.state(), desk.library()).contains("%23!/in/dwarf.glb"),
+        "{}",
+        to_link(desk.state(), desk.library())
+    );
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn a_frame_is_the_same_whenever_it_is_drawn_and_the_view_stays() {
     let before = desk.state().clone();
     assert_eq!((video.size, video.frames_per_sec, video.transparent), ([1280, 720], 30, false));
     let model = desk.library().active().expect("a model");
-    let clip = gaitway::state::active_clip(model, &before).and_then(|clip| model.clip(clip)).expect("a clip");
+    let clip = gaitway::state::active_clip(model, &before).expect("a clip").clip();
     assert_eq!(video.frame_count, (clip.duration_secs() * 30.0).round() as u32);
     assert!(desk.shows(text::RECORDING));
 

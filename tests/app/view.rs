@@ -5,6 +5,7 @@ use gaitway::state::{CameraChoice, Command, Edited, Inspect, OrbitCamera, Show};
 use gaitway::ui::{Tab, text};
 use glam::Vec3;
 
+use crate::by_place::motion_at;
 use crate::desk::{Desk, desk};
 
 fn orbit(desk: &Desk) -> OrbitCamera {
@@ -64,7 +65,7 @@ fn a_new_source_of_a_joint_is_told() {
     for (source, told) in
         [(Some(head), "mixamorig:Neck follows mixamorig:Head."), (None, "mixamorig:Neck has no source.")]
     {
-        desk.command(Command::SetSource { motion: 0, target: neck, source });
+        desk.command(Command::SetSource { motion: motion_at(desk.library(), 0), target: neck, source });
         assert_eq!(desk.notice(), Some(told));
     }
 }

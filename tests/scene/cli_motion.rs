@@ -493,3 +493,28 @@ fn contacts_are_kept_by_the_option_or_by_the_map() {
     assert!(kept.0 < 0.6 * plain.0, "{} and {} m", plain.0, kept.0);
     assert!(made(&["--map", &map]) == kept && made(&["--map", &map, "--contacts", "off"]) == plain);
 }
+
+/// Names of the clips in a file.
+fn clip_names(file: &str) -> Vec<String> {
+    let document = document(&["inspect", file, "--json"]);
+    let clips = document["clips"].as_array().expect("clips").iter();
+    clips.map(|clip| clip["name"].as_str().expect("a name").to_owned()).collect()
+}
+
+#[test]
+fn a_written_clip_has_the_name_that_was_asked_for_or_that_of_its_file() {
+    let (folder, motion) = folder("clip-names");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let out = path("out.glb");
+    let retarget = ["retarget", "--model", "sample:walker", "--clip-only", "--out", &out, "--motion"];
+    assert!(run(&[&retarget[..], &[&motion, "--name", "Stroll: 1"]].concat()).status.success());
+    assert_eq!(clip_names(&out), ["Stroll: 1"]);
+    assert!(run(&["convert", &motion, "--name", "Stroll", "--out", &out]).status.success());
+    assert_eq!(clip_names(&out), ["walk", "Stroll"], "a whole model keeps its own");
+    check_fails(&["convert", &motion, "--name", " ", "--out", &out], 2, "not empty");
+    // The name that Mixamo gives to every clip says nothing.
+    let mixamo = path("Samba.glb");
+    assert!(run(&["convert", &motion, "--name", "mixamo.com", "--out", &mixamo]).status.success());
+    assert!(run(&[&retarget[..], &[&mixamo, "--clip", "mixamo.com"]].concat()).status.success());
+    assert_eq!(clip_names(&out), ["Samba 1"]);
+}

@@ -11,7 +11,7 @@ use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
     ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply, from_link,
-    title, to_link, written_skeleton,
+    title, written_skeleton,
 };
 use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
@@ -20,6 +20,7 @@ use crate::coursework::Exercise;
 use crate::data::{library_of, open, walker};
 use crate::data_folder::data_folder;
 use crate::history::undo;
+use crate::texts::link_of;
 
 const BENT: &str = "v=1&clip=&pose=0:10:-20:5,2:0:0:15,5:-60:0:10,6:70:0:0,12:0:30:-20,13:0:0:45,16:-30:20:0";
 
@@ -232,7 +233,7 @@ fn joints_can_be_renamed() {
         title(Some(state), asset, joint).into_owned()
     };
     assert_eq!(rename(&mut state, "  Crown,\tof: the head \n"), "Crown,of: the head");
-    assert_eq!(from_link(&to_link(&state)).0.edits.names, state.edits.names);
+    assert_eq!(from_link(&link_of(&state)).0.edits.names, state.edits.names);
     assert_eq!(rename(&mut state, &"x".repeat(500)).len(), 80);
     assert_eq!(rename(&mut state, ""), before);
     assert_eq!(rename(&mut state, &before.clone()), before, "the file's own name is not a custom name");

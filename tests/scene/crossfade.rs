@@ -5,6 +5,7 @@ use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
 use gaitway::state::{ClipChoice, Command, Playback, Playhead, PoseSampler, ViewerState, apply};
 
+use crate::by_place::ByPlace;
 use crate::data::walker;
 
 /// The walker with its own clips retargeted to itself and a crossfade of 0.4 s.
@@ -29,12 +30,12 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
     let library = walker_with_crossfade();
     let own = library.active().expect("a model").asset.clips.len();
     let mut state = ViewerState {
-        playhead: Playhead { clip: ClipChoice::Named("0".to_owned()), ..Playhead::default() },
+        playhead: Playhead { clip: ClipChoice::called("0"), ..Playhead::default() },
         ..ViewerState::default()
     };
     apply(&mut state, &library, Command::Advance(0.3));
     let before = pose(&library, &state);
-    apply(&mut state, &library, Command::SetClip(ClipChoice::Named(own.to_string())));
+    apply(&mut state, &library, Command::SetClip(ClipChoice::called(&own.to_string())));
     for (now, before) in pose(&library, &state).locals().zip(before.locals()) {
         assert!(now.rotation.angle_between(before.rotation) < 1e-3, "nothing jumps");
         assert!(now.translation.abs_diff_eq(before.translation, 1e-6), "nothing jumps");
@@ -55,7 +56,7 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
 fn nothing_fades_while_paused_or_between_the_models_own_clips() {
     let library = walker_with_crossfade();
     let change = |state: &mut ViewerState, clip: usize| {
-        apply(state, &library, Command::SetClip(ClipChoice::Named(clip.to_string())));
+        apply(state, &library, Command::SetClip(ClipChoice::called(&clip.to_string())));
         state.playhead.fade.clone()
     };
     let mut playing = ViewerState::default();
@@ -72,7 +73,7 @@ fn a_crossfade_into_the_rest_pose_or_past_the_end_of_a_clip_completes() {
     let library = walker_with_crossfade();
     let own = library.active().expect("a model").asset.clips.len();
     let playing = ViewerState {
-        playhead: Playhead { clip: ClipChoice::Named(own.to_string()), ..Playhead::default() },
+        playhead: Playhead { clip: ClipChoice::called(&own.to_string()), ..Playhead::default() },
         ..ViewerState::default()
     };
     let mut resting = playing.clone();
@@ -86,7 +87,7 @@ fn a_crossfade_into_the_rest_pose_or_past_the_end_of_a_clip_completes() {
     let mut once = playing;
     apply(&mut once, &library, Command::SetLoopMode(LoopMode::Once));
     apply(&mut once, &library, Command::SetClip(ClipChoice::First));
-    let secs = library.active().and_then(|model| model.clip(0)).expect("a clip").duration_secs();
+    let secs = library.active().expect("a model").clip_at(0).duration_secs();
     apply(&mut once, &library, Command::SetRange(Some(TimeRange { start_secs: 0.0, end_secs: 0.2 })));
     assert!(secs > 0.2);
     apply(&mut once, &library, Command::Advance(0.25));

@@ -2,7 +2,7 @@
 
 use gaitway::asset::SceneJoints;
 use gaitway::frame::{Frame, evaluate, pose_document};
-use gaitway::library::Library;
+use gaitway::library::{ClipId, Library};
 use gaitway::mesh::{Bounds, SkinningMode};
 use gaitway::state::{ClipChoice, Display, Playhead, ViewerState};
 use glam::Vec3;
@@ -21,13 +21,13 @@ fn exact(library: &Library, state: &ViewerState) -> Bounds {
 fn check(library: &Library, clip: usize) {
     let model = library.active().expect("a model");
     let duration_secs = f64::from(model.asset.clips[clip].duration_secs());
-    let whole = model.clip_bounds(None, Some(clip), false);
+    let whole = model.clip_bounds(None, Some(&ClipId::Own(clip)), false);
     let mut union = Bounds::EMPTY;
     // The times that the bounds are computed from.
     for sample in 0..=24 {
         let time_secs = duration_secs * f64::from(sample) / 24.0;
         let state = ViewerState {
-            playhead: Playhead { clip: ClipChoice::Named(clip.to_string()), time_secs, ..Playhead::default() },
+            playhead: Playhead { clip: ClipChoice::called(&clip.to_string()), time_secs, ..Playhead::default() },
             ..ViewerState::default()
         };
         let exact = exact(library, &state);

@@ -3,7 +3,7 @@
 use gaitway::anim::{Joint, Pose, Skeleton, Transform, model_from_joint};
 use gaitway::asset::{Asset, AssetParts, Light, LightKind, MAX_LIGHTS, MeshInstance};
 use gaitway::frame::{Bone, Frame, PickedJoint, evaluate, pick_joint};
-use gaitway::library::{Library, Model};
+use gaitway::library::{ClipId, Library, Model};
 use gaitway::mesh::{Geometry, Mesh, SkinningMode};
 use gaitway::state::{
     Background, Channel, ClipChoice, Command, Display, Inspect, Playhead, Selection, Show, ViewerState, apply,
@@ -97,7 +97,7 @@ fn equal_states_give_equal_frames() {
 #[test]
 fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     let mut library = walker();
-    let clip = ClipChoice::Named("Wave".to_owned());
+    let clip = ClipChoice::called("Wave");
     let mut state =
         ViewerState { playhead: Playhead { time_secs: 1.3, clip, ..Playhead::default() }, ..ViewerState::default() };
     state.edits.pose.insert(HEAD, [30.0, 0.0, 0.0]);
@@ -107,13 +107,13 @@ fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     model_from_joint(&skeleton, frame.pose(), Affine3A::IDENTITY, &mut world_from_joint);
     assert_eq!(world_from_joint, frame.characters[0].world_from_joint);
     assert_eq!(frame.pose().morph_weights, frame.characters[0].morph_weights);
-    assert_eq!((frame.clip, frame.look.time_secs), (Some(2), 1.3));
+    assert_eq!((frame.clip.clone(), frame.look.time_secs), (Some(ClipId::Own(2)), 1.3));
     state.playhead.clip = ClipChoice::RestPose;
     evaluate(&library, &state, 1.5, &mut frame);
-    assert_eq!((frame.clip, frame.look.time_secs), (None, 0.0));
+    assert_eq!((frame.clip.clone(), frame.look.time_secs), (None, 0.0));
     library = Library::default();
     evaluate(&library, &state, 1.5, &mut frame);
-    assert_eq!((frame.clip, frame.pose()), (None, &Pose::default()));
+    assert_eq!((frame.clip.clone(), frame.pose()), (None, &Pose::default()));
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn file(name: &str) -> Option<Library> {
 }
 
 fn at(clip: usize, time_secs: f64) -> ViewerState {
-    let clip = ClipChoice::Named(clip.to_string());
+    let clip = ClipChoice::called(&clip.to_string());
     ViewerState {
         playhead: Playhead { clip, time_secs, ..Playhead::default() },
         playback: Playback { loop_mode: LoopMode::Once, ..Playback::default() },

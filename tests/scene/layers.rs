@@ -3,28 +3,39 @@
 use gaitway::anim::{Pose, SampleCursor};
 use gaitway::editor::{ClipFormat, Event, Export};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::Library;
+use gaitway::library::{ClipId, Library};
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use gaitway::state::{Command, History, PoseSampler, ViewerState, apply, from_object};
+use gaitway::state::{Command, History, LayeredClip, PoseSampler, ViewerState, apply, from_object};
 use serde_json::json;
 
 use crate::allocation::allocations_while_playing;
 use crate::data::walker;
 use crate::editor::editor;
 use crate::history::undo;
+use crate::texts::with_keys;
 
-const WALK: usize = 0;
-const WAVE: usize = 2;
+const WALK: ClipId = ClipId::Own(0);
+const WAVE: ClipId = ClipId::Own(2);
 
 fn wave() -> ClipLayer {
-    ClipLayer { clip: "Wave".to_owned(), ..ClipLayer::default() }
+    ClipLayer::default()
+}
+
+/// Layers of the wave.
+fn waves(layers: Vec<ClipLayer>) -> Vec<LayeredClip> {
+    layers.into_iter().map(|layer| LayeredClip { clip: WAVE, layer }).collect()
+}
+
+/// A clip that the walker lacks.
+fn fly() -> LayeredClip {
+    LayeredClip { clip: ClipId::called("Fly"), layer: ClipLayer::default() }
 }
 
 fn right_arm(layer: ClipLayer) -> ClipLayer {
     ClipLayer { mask: LayerMask::of_parts(&[BodyPart::RightArm]), ..layer }
 }
 
-fn state_with(library: &Library, layers: Vec<ClipLayer>, time_secs: f64) -> ViewerState {
+fn state_with(library: &Library, layers: Vec<LayeredClip>, time_secs: f64) -> ViewerState {
     let mut state = ViewerState::default();
     apply(&mut state, library, Command::SetPlaying(false));
     apply(&mut state, library, Command::Seek(time_secs));
@@ -38,11 +49,12 @@ fn shown(library: &Library, state: &ViewerState) -> Pose {
     frame.pose().clone()
 }
 
-fn of_clip(library: &Library, clip: usize, time_secs: f64) -> Pose {
+fn of_clip(library: &Library, clip: ClipId, time_secs: f64) -> Pose {
     let model = library.active().expect("a model");
     let skeleton = &model.asset.skeleton;
     let mut pose = skeleton.rest().clone();
-    model.clip(clip).expect("a clip").sample(skeleton, time_secs as f32, &mut SampleCursor::default(), &mut pose);
+    let clip = model.clip(&clip).expect("a clip").clip();
+    clip.sample(skeleton, time_secs as f32, &mut SampleCursor::default(), &mut pose);
     pose
 }
 
@@ -50,7 +62,7 @@ fn of_clip(library: &Library, clip: usize, time_secs: f64) -> Pose {
 fn weights_0_and_1_are_exact() {
     let library = walker();
     for time_secs in [0.0, 0.3, 0.77] {
-        let with = |layer: ClipLayer| shown(&library, &state_with(&library, vec![layer], time_secs));
+        let with = |layer: ClipLayer| shown(&library, &state_with(&library, waves(vec![layer]), time_secs));
         let walk = of_clip(&library, WALK, time_secs);
         assert_eq!(with(ClipLayer { weight: 0.0, ..wave() }), walk);
         assert_eq!(with(wave()), of_clip(&library, WAVE, time_secs));
@@ -65,7 +77,7 @@ fn weights_0_and_1_are_exact() {
 fn legs_walk_while_the_arm_waves() {
     let library = walker();
     let model = library.active().expect("a model");
-    let pose = shown(&library, &state_with(&library, vec![right_arm(wave())], 0.6));
+    let pose = shown(&library, &state_with(&library, waves(vec![right_arm(wave())]), 0.6));
     let (walk, wave) = (of_clip(&library, WALK, 0.6), of_clip(&library, WAVE, 0.6));
     let included = LayerMask::of_parts(&[BodyPart::RightArm]).included(&model.body());
     assert!(included.iter().filter(|&&included| included).count() >= 3);
@@ -79,7 +91,7 @@ fn legs_walk_while_the_arm_waves() {
 #[test]
 fn a_layer_outlasts_the_loops_of_the_clip() {
     let library = walker();
-    let mut state = state_with(&library, vec![right_arm(wave())], 0.0);
+    let mut state = state_with(&library, waves(vec![right_arm(wave())]), 0.0);
     apply(&mut state, &library, Command::SetPlaying(true));
     for _ in 0..90 {
         apply(&mut state, &library, Command::Advance(1.0 / 45.0));
@@ -96,20 +108,20 @@ fn a_layer_outlasts_the_loops_of_the_clip() {
 fn numbers_are_clamped_and_unknown_clips_skipped() {
     let library = walker();
     let wild = ClipLayer { weight: 7.0, speed: f64::NAN, start_secs: -1e9, ..wave() };
-    let state = state_with(&library, vec![wild], 0.0);
+    let state = state_with(&library, waves(vec![wild]), 0.0);
     let expected = ClipLayer { start_secs: -ClipLayer::MAX_START_SECS, ..wave() };
-    assert_eq!(state.edits.layers, [expected]);
+    assert_eq!(state.edits.layers, waves(vec![expected]));
     let mut replaced = ViewerState::default();
     let wild = ClipLayer { weight: f64::INFINITY, ..wave() };
     let mut whole = ViewerState::default();
-    whole.edits.layers = vec![wild];
+    whole.edits.layers = waves(vec![wild]);
     apply(&mut replaced, &library, Command::Replace(Box::new(whole)));
-    assert_eq!(replaced.edits.layers, [wave()]);
-    let fly = ClipLayer { clip: "Fly".to_owned(), ..ClipLayer::default() };
-    let state = state_with(&library, vec![fly, right_arm(wave())], 0.4);
-    let without = state_with(&library, vec![right_arm(wave())], 0.4);
+    assert_eq!(replaced.edits.layers, waves(vec![wave()]));
+    let waves = waves(vec![right_arm(wave())]);
+    let state = state_with(&library, [vec![fly()], waves.clone()].concat(), 0.4);
+    let without = state_with(&library, waves, 0.4);
     assert_eq!(shown(&library, &state), shown(&library, &without));
-    let (_, errors) = from_object(&ViewerState::default(), &json!({ "layers": ["Wave:weight:NaN", "Wave:mask:wing"] }));
+    let (_, errors) = with_keys(&ViewerState::default(), &json!({ "layers": ["Wave:weight:NaN", "Wave:mask:wing"] }));
     let told: Vec<String> = errors.iter().map(ToString::to_string).collect();
     assert!(told.len() == 2 && told[0].starts_with("layers=Wave:weight:NaN: expected a clip"), "{told:?}");
     assert!(told[1].contains("left-arm"), "{told:?}");
@@ -120,7 +132,7 @@ fn layers_are_undone() {
     let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     for weight in [0.2, 0.6] {
-        let layers = vec![ClipLayer { weight, ..wave() }];
+        let layers = waves(vec![ClipLayer { weight, ..wave() }]);
         history.apply(&mut state, &library, Command::SetLayers(layers));
     }
     assert_eq!(state.edits.layers.len(), 1);
@@ -133,7 +145,7 @@ fn playing_layers_does_not_allocate() {
     let library = walker();
     let sum = ClipLayer { mode: LayerMode::Additive, weight: 0.5, ..wave() };
     let mut state = ViewerState::default();
-    state.edits.layers = vec![right_arm(wave()), sum];
+    state.edits.layers = waves(vec![right_arm(wave()), sum]);
     state.camera_options.follow = true;
     assert_eq!(allocations_while_playing(&library, state, 200, 200), 0);
 }
@@ -142,7 +154,7 @@ fn playing_layers_does_not_allocate() {
 #[test]
 fn manual_poses_are_above_layers() {
     let library = walker();
-    let mut state = state_with(&library, vec![wave()], 0.5);
+    let mut state = state_with(&library, waves(vec![wave()]), 0.5);
     apply(&mut state, &library, Command::SetPose { joint: 5, degrees: Some([10.0, 20.0, 30.0]) });
     let skeleton = &library.active().expect("a model").asset.skeleton;
     let joint = skeleton.joint_of_source(5).expect("a head");
@@ -155,7 +167,7 @@ fn manual_poses_are_above_layers() {
 fn an_unknown_layer_of_a_view_is_told() {
     let mut editor = editor("sample:walker");
     let mut view = editor.state().clone();
-    view.edits.layers = vec![ClipLayer { clip: "Fly".to_owned(), ..ClipLayer::default() }];
+    view.edits.layers = vec![fly()];
     editor.apply(Command::Replace(Box::new(view)));
     let told = "layers: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the layer is left out.";
     let events = editor.take_events();
@@ -165,7 +177,7 @@ fn an_unknown_layer_of_a_view_is_told() {
 #[test]
 fn unknown_names_of_a_view_are_told_together() {
     let mut editor = editor("sample:walker");
-    let (view, errors) = from_object(editor.state(), &json!({ "clip": "Swim", "layers": ["Fly"] }));
+    let (view, errors) = from_object(editor.state(), editor.library(), &json!({ "clip": "Swim", "layers": ["Fly"] }));
     assert!(errors.is_empty(), "{errors:?}");
     editor.apply(Command::Replace(Box::new(view)));
     let events = editor.take_events();
@@ -179,12 +191,12 @@ fn unknown_names_of_a_view_are_told_together() {
 fn the_exported_clip_has_the_layers() {
     let mut editor = editor("sample:walker");
     let one_clip = Export::Model { clip: WALK };
-    assert!(editor.export(one_clip).is_err(), "it is in the file as it is");
+    assert!(editor.export(&one_clip).is_err(), "it is in the file as it is");
     editor.apply(Command::SetPlaying(false));
-    editor.apply(Command::SetLayers(vec![right_arm(ClipLayer { speed: 2.625, ..wave() })]));
-    let file = editor.export(Export::Clip { clip: WALK, format: ClipFormat::Glb }).expect("has keys");
+    editor.apply(Command::SetLayers(waves(vec![right_arm(ClipLayer { speed: 2.625, ..wave() })])));
+    let file = editor.export(&Export::Clip { clip: WALK, format: ClipFormat::Glb }).expect("has keys");
     assert_eq!(file.remark, None, "the wave fits the walk");
-    let model = editor.export(one_clip).expect("has layers");
+    let model = editor.export(&one_clip).expect("has layers");
     let mut files = gaitway::formats::FileSet::default();
     files.insert("walk.glb", file.bytes);
     let baked = gaitway::formats::load(&files).expect("a good file");
@@ -207,7 +219,7 @@ fn the_exported_clip_has_the_layers() {
         gaitway::formats::load(&files).expect("a good file").clips.iter().map(|clip| clip.name().to_owned()).collect();
     assert!(names.contains(&"Walk (changed)".to_owned()), "{names:?}");
     // A wave at its own speed ends in the middle of a walk.
-    editor.apply(Command::SetLayers(vec![right_arm(wave())]));
-    let file = editor.export(Export::Clip { clip: WALK, format: ClipFormat::Glb }).expect("has keys");
+    editor.apply(Command::SetLayers(waves(vec![right_arm(wave())])));
+    let file = editor.export(&Export::Clip { clip: WALK, format: ClipFormat::Glb }).expect("has keys");
     assert!(file.remark.is_some_and(|remark| remark.contains("seam")));
 }

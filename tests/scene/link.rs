@@ -1,5 +1,6 @@
 //! The text form of a view: every state round-trips.
 
+use gaitway::library::{ClipCopy, ClipId, CopyId};
 use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway::anim::{LoopMode, TimeRange};
@@ -10,24 +11,25 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, ClipCopy, Display, EnvironmentChoice, Fade, Hidden, KeyLight,
+    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LayeredClip,
     LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show,
-    Sources, ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Sources, ToneMap, UpAxis, VertexChoice, ViewerState, from_link,
 };
 use glam::Vec3;
 
 use crate::random::Random;
+use crate::texts::{link_of, object_of, with_keys};
 
 fn check_round_trip(state: &ViewerState) {
-    let link = to_link(state);
+    let link = link_of(state);
     let (back, errors) = from_link(&link);
     let known = |error: &&LinkError| matches!(error, LinkError::BadValue { .. });
     assert_eq!(errors.iter().find(known), None, "{link}");
     assert_eq!(&back, state, "{link}");
-    assert_eq!(to_link(&back), link);
-    let (back, errors) = from_object(&ViewerState::default(), &to_object(state));
-    assert_eq!(errors.iter().find(known), None, "{}", to_object(state));
-    assert_eq!(&back, state, "{}", to_object(state));
+    assert_eq!(link_of(&back), link);
+    let (back, errors) = with_keys(&ViewerState::default(), &object_of(state));
+    assert_eq!(errors.iter().find(known), None, "{}", object_of(state));
+    assert_eq!(&back, state, "{}", object_of(state));
 }
 
 fn check_read(link: &str, expected: ViewerState) {
@@ -113,12 +115,12 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("retarget.feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
         ("retarget.contacts", with(&|state| state.retarget.contacts = Some(Contacts::Keep))),
         ("sources.scene", with(&|state| state.sources.scene = Some(2))),
-        ("playhead.clip", with(&|state| state.playhead.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
+        ("playhead.clip", with(&|state| state.playhead.clip = ClipChoice::called("Walk & run = 100 %"))),
         ("playhead.time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
         (
             "playhead.fade",
             with(&|state| {
-                let clip = ClipChoice::Named("Walk, slow".to_owned());
+                let clip = ClipChoice::called("Walk, slow");
                 state.playhead.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
             }),
         ),
@@ -171,7 +173,13 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let mirrored = ClipChanges { mirror: true, ..ClipChanges::default() };
                 let looped = ClipChanges { loop_secs: Some(0.0), ..ClipChanges::default() };
                 let clips = [("Walk: fast, 100 % & more", all), ("3", mirrored), ("歩", looped)];
-                state.edits.clips = clips.into_iter().map(|(clip, changes)| (clip.to_owned(), changes)).collect();
+                let clips = clips.into_iter().map(|(clip, changes)| (ClipId::called(clip), changes));
+                state.edits.clips.changes = clips.collect();
+                for (at, (name, of)) in (0..).zip([("Walk: 50 % & more", "Walk"), ("a", "2")]) {
+                    state.edits.clips.copies.push(ClipCopy { id: CopyId(at), of: ClipId::called(of) });
+                    state.edits.clips.names.insert(ClipId::Copy(CopyId(at)), name.to_owned());
+                }
+                state.edits.clips.names.insert(ClipId::called("Run: 1"), "Läufer, 2:1".to_owned());
             }),
         ),
         (
@@ -180,10 +188,11 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let mut mask = LayerMask::of_parts(&[BodyPart::Head, BodyPart::LeftArm]);
                 mask.joints.extend([4, 17]);
                 let (mode, weight) = (LayerMode::AdditiveToRest, 1.0 / 3.0);
-                let all = ClipLayer { clip: "a: b, c".to_owned(), weight, speed: 0.5, start_secs: -0.1, mode, mask };
-                let plain = ClipLayer { clip: "歩 50 % & more".to_owned(), ..ClipLayer::default() };
-                let sum = ClipLayer { mode: LayerMode::Additive, ..plain.clone() };
-                state.edits.layers = vec![all, plain, sum];
+                let over = |clip, layer| LayeredClip { clip: ClipId::called(clip), layer };
+                let all = ClipLayer { weight, speed: 0.5, start_secs: -0.1, mode, mask };
+                let sum = ClipLayer { mode: LayerMode::Additive, ..ClipLayer::default() };
+                let layers = [("a: b, c", all), ("歩 50 % & more", ClipLayer::default()), ("歩 50 % & more", sum)];
+                state.edits.layers = layers.map(|(clip, layer)| over(clip, layer)).to_vec();
             }),
         ),
         (
@@ -213,13 +222,6 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("camera_options.fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
         ("camera_options.follow", with(&|state| state.camera_options.follow = true)),
         ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
-        (
-            "edits.copies",
-            with(&|state| {
-                let copy = |name: &str, of: &str| ClipCopy { name: name.to_owned(), of: of.to_owned() };
-                state.edits.copies = vec![copy("Walk: 50 % & more", "Walk"), copy("a", "2")];
-            }),
-        ),
         ("edits.variant", with(&|state| state.edits.variant = Some("Midnight & blue, 100 %".to_owned()))),
         ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
         ("display.exposure", with(&|state| state.display.exposure = -0.7)),
@@ -267,7 +269,7 @@ fn every_field_of_the_state_has_a_key() {
     let fields: BTreeSet<String> = fields().into_iter().map(|path| path.join(".")).collect();
     assert_eq!(changed.iter().map(|(field, _)| (*field).to_owned()).collect::<BTreeSet<_>>(), fields);
     for (field, state) in &changed {
-        assert_ne!(to_link(state), to_link(&ViewerState::default()), "{field} is not in the link");
+        assert_ne!(link_of(state), link_of(&ViewerState::default()), "{field} is not in the link");
         check_round_trip(state);
     }
 }
@@ -305,7 +307,7 @@ fn any_camera_round_trips_exactly() {
 
 #[test]
 fn defaults_are_left_out() {
-    assert_eq!(to_link(&ViewerState::default()), "v=1");
+    assert_eq!(link_of(&ViewerState::default()), "v=1");
 }
 
 #[test]
@@ -322,7 +324,7 @@ fn links_read_as_documented() {
     check_read(
         "clip=Run",
         ViewerState {
-            playhead: Playhead { clip: ClipChoice::Named("Run".to_owned()), ..default.playhead.clone() },
+            playhead: Playhead { clip: ClipChoice::called("Run"), ..default.playhead.clone() },
             ..default.clone()
         },
     );
@@ -383,7 +385,7 @@ fn a_plain_map_is_short_and_readable() {
         retarget: RetargetEdits { map: maps[1..2].to_vec(), ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    assert_eq!(to_link(&state), "v=1&map=1.ffffffff.0-5,1-");
+    assert_eq!(link_of(&state), "v=1&map=1.ffffffff.0-5,1-");
     check_read("map=1.ffffffff.1-,0-5", state.clone());
     // Any other text is the URL of a file.
     let of_file = |url: &str| ViewerState {
@@ -399,9 +401,9 @@ fn a_plain_map_is_short_and_readable() {
         other
     };
     let proposed = RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() };
-    assert_eq!(to_link(&with(proposed)), "v=1&map=2.ffffffff.0-5,1-");
+    assert_eq!(link_of(&with(proposed)), "v=1&map=2.ffffffff.0-5,1-");
     let edited = with(RootOptions { yaw: RootPart::Freeze, ..proposed });
-    check_read(&to_link(&edited), edited);
+    check_read(&link_of(&edited), edited);
 }
 
 #[test]
@@ -488,7 +490,7 @@ fn a_trim_that_keeps_nothing_is_refused() {
         let told = format!("{link}: expected trim:START:END in seconds, the end after the start");
         assert_eq!(from_link(&link).1[0].to_string(), told);
     }
-    let (same, errors) = from_object(&ViewerState::default(), &serde_json::json!({ "change": ["Walk:trim:5:1"] }));
+    let (same, errors) = with_keys(&ViewerState::default(), &serde_json::json!({ "change": ["Walk:trim:5:1"] }));
     assert_eq!((same, errors.len()), (ViewerState::default(), 1));
     check_bad("change=Walk:trim:5", "change");
 }
@@ -513,11 +515,11 @@ fn unknown_keys_are_kept() {
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");
     assert!(state.display.show.skeleton);
-    assert_eq!(to_link(&state), link);
+    assert_eq!(link_of(&state), link);
     // A line break does not separate values.
     let (state, _) = from_link("v=1&foo=a%0Ab");
-    assert_eq!(to_link(&state), "v=1&foo=a%0Ab");
-    assert_eq!(to_object(&state)["foo"], "a\nb");
+    assert_eq!(link_of(&state), "v=1&foo=a%0Ab");
+    assert_eq!(object_of(&state)["foo"], "a\nb");
 }
 
 #[test]
@@ -530,7 +532,7 @@ fn an_object_changes_only_its_keys() {
     };
     let partial =
         serde_json::json!({ "t": 0.5, "play": false, "camera": [90, 0, 4, 0, 1, 0], "joint": null, "clip": "" });
-    let (state, errors) = from_object(&base, &partial);
+    let (state, errors) = with_keys(&base, &partial);
     assert_eq!(errors, []);
     let (camera, _) = from_link("camera=90,0,4,0,1,0");
     let expected = ViewerState {
@@ -541,7 +543,7 @@ fn an_object_changes_only_its_keys() {
         ..base
     };
     assert_eq!(state, expected);
-    let (same, errors) = from_object(&state, &serde_json::json!("t=1"));
+    let (same, errors) = with_keys(&state, &serde_json::json!("t=1"));
     assert_eq!((same, errors.len()), (state, 1));
 }
 

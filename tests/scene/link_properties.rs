@@ -1,7 +1,8 @@
 //! Properties of all links: old ones keep their meaning, every state round-trips, and any text becomes a stable link of
 //! its valid parts.
 
-use std::collections::BTreeMap;
+use gaitway::library::{ClipCopy, ClipEdits, ClipId, CopyId};
+use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
@@ -10,14 +11,15 @@ use gaitway::retarget::{
     Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, ClipCopy, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight,
+    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LayeredClip,
     LightSetup, LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis,
-    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    VertexChoice, ViewerState, from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
 
 use crate::random::Random;
+use crate::texts::{link_of, object_of, with_keys};
 
 impl Random {
     fn word(&mut self) -> u32 {
@@ -139,24 +141,35 @@ impl Random {
         }
     }
 
-    fn clips(&mut self) -> BTreeMap<String, ClipChanges> {
+    fn called(&mut self) -> ClipId {
+        ClipId::called(&self.text())
+    }
+
+    fn clip_or_rest(&mut self) -> ClipChoice {
+        if self.often() { ClipChoice::RestPose } else { ClipChoice::Clip(self.called()) }
+    }
+
+    fn changed_clips(&mut self) -> BTreeMap<ClipId, ClipChanges> {
         let changes = ClipChanges { reverse: true, mirror: self.often(), ..ClipChanges::default() };
-        (0..self.below(4)).map(|_| (self.text(), changes.clone())).collect()
+        (0..self.below(4)).map(|_| (self.called(), changes.clone())).collect()
     }
 
-    fn copies(&mut self) -> Vec<ClipCopy> {
-        let copies: BTreeMap<String, String> = (0..self.below(4)).map(|_| (self.text(), self.text())).collect();
-        copies.into_iter().map(|(name, of)| ClipCopy { name, of }).collect()
+    fn copy_and_rename(&mut self, edits: &mut ClipEdits) {
+        let names: BTreeSet<String> = (0..self.below(4)).map(|_| self.text()).collect();
+        edits.copies = (0..names.len() as u32).map(|at| ClipCopy { id: CopyId(at), of: self.called() }).collect();
+        edits.names = (0..).zip(names).map(|(at, name)| (ClipId::Copy(CopyId(at)), name)).collect();
+        edits.names.extend((0..self.below(4)).map(|_| (self.called(), self.text())));
     }
 
-    fn layer(&mut self) -> ClipLayer {
+    fn layer(&mut self) -> LayeredClip {
         let mut mask = LayerMask::default();
         for (part, _) in BodyPart::ALL.into_iter().filter(|_| self.below(4) == 0) {
             mask.toggle(part);
         }
         mask.joints = (0..self.below(3)).map(|_| self.below(300)).collect();
         let [weight, speed, start_secs] = [(); 3].map(|()| f64::from(self.number()));
-        ClipLayer { clip: self.text(), weight, speed, start_secs, mode: self.one(&LayerMode::ALL), mask }
+        let layer = ClipLayer { weight, speed, start_secs, mode: self.one(&LayerMode::ALL), mask };
+        LayeredClip { clip: self.called(), layer }
     }
 
     fn pin(&mut self) -> Pin {
@@ -197,10 +210,10 @@ impl Random {
             4 => state.retarget.root = Some(self.root()),
             5 => state.retarget.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
             6 => state.sources.scene = Some(self.below(9)),
-            7 => state.playhead.clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) },
+            7 => state.playhead.clip = self.clip_or_rest(),
             8 => state.playhead.time_secs = f64::from(self.number()) / 3.0,
             9 => {
-                let clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) };
+                let clip = self.clip_or_rest();
                 let (time_secs, elapsed_secs) = (f64::from(self.number()), f64::from(self.number()));
                 state.playhead.fade = Some(Fade { clip, time_secs, elapsed_secs });
             }
@@ -233,8 +246,8 @@ impl Random {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
-            37 => state.edits.clips = self.clips(),
-            42 => state.edits.copies = self.copies(),
+            37 => state.edits.clips.changes = self.changed_clips(),
+            42 => self.copy_and_rename(&mut state.edits.clips),
             38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
             39 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
             41 => state.retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),
@@ -261,13 +274,13 @@ fn any_state_round_trips_through_its_link() {
     let mut random = Random(1);
     for _ in 0..2000 {
         let state = random.state();
-        let link = to_link(&state);
+        let link = link_of(&state);
         let (back, errors) = from_link(&link);
         assert_eq!(errors, [], "{link}");
         assert_eq!(back, state, "{link}");
-        assert_eq!(to_link(&back), link);
-        let object = to_object(&state);
-        let (back, errors) = from_object(&random.state(), &object);
+        assert_eq!(link_of(&back), link);
+        let object = object_of(&state);
+        let (back, errors) = with_keys(&random.state(), &object);
         assert_eq!(errors, [], "{object}");
         assert_eq!(back, state, "an object sets every key, whatever the state was: {object}");
     }
@@ -319,18 +332,18 @@ fn any_text_normalizes_to_a_stable_link() {
     for _ in 0..5000 {
         let text: String = (0..random.below(30)).map(|_| random.one(&words)).collect();
         let (state, _) = from_link(&text);
-        let link = to_link(&state);
+        let link = link_of(&state);
         let (again, errors) = from_link(&link);
         assert!(!errors.iter().any(is_bad), "{text} → {link}: {errors:?}");
         assert_eq!(again, state, "{text} → {link}");
-        assert_eq!(to_link(&again), link, "{text}");
+        assert_eq!(link_of(&again), link, "{text}");
     }
 }
 
 #[test]
 fn old_links_keep_working() {
     let fixtures: Value = serde_json::from_str(include_str!("links.json")).expect("JSON");
-    let now = to_object(&ViewerState::default());
+    let now = object_of(&ViewerState::default());
     for (key, value) in fixtures["defaults"].as_object().expect("an object") {
         assert_eq!(&now[key], value, "v=1 fixes the default of {key}");
     }
@@ -342,8 +355,8 @@ fn old_links_keep_working() {
         for (key, value) in fixture["state"].as_object().expect("an object") {
             expected[key] = value.clone();
         }
-        assert_eq!(to_object(&state), expected, "{link}");
-        assert_eq!(from_link(&to_link(&state)).0, state, "{link}");
+        assert_eq!(object_of(&state), expected, "{link}");
+        assert_eq!(from_link(&link_of(&state)).0, state, "{link}");
     }
 }
 
@@ -355,6 +368,6 @@ fn a_map_of_sixty_joints_is_short() {
     let map = JointMap { joints, ..JointMap::default() };
     let map = vec![MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map })];
     let link =
-        to_link(&ViewerState { retarget: RetargetEdits { map, ..RetargetEdits::default() }, ..ViewerState::default() });
+        link_of(&ViewerState { retarget: RetargetEdits { map, ..RetargetEdits::default() }, ..ViewerState::default() });
     assert!(link.len() < 2000, "{} characters", link.len());
 }

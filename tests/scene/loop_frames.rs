@@ -5,6 +5,7 @@ use gaitway::library::Library;
 use gaitway::state::{CameraChoice, Command, LoopFrames, ViewerState, apply, clip_secs, resolve_camera};
 use glam::Vec3;
 
+use crate::by_place::ByPlace;
 use crate::data::moving_box;
 
 const ASPECT: f32 = 16.0 / 9.0;
@@ -28,7 +29,8 @@ fn check(commands: impl IntoIterator<Item = Command>, expected: &[f64]) {
     let library = one_second();
     let frames = LoopFrames::new(&library, &paused(&library, commands), ASPECT, 10).expect("something plays");
     let model = library.active().expect("a model");
-    let secs: Vec<f64> = (0..frames.count()).map(|frame| clip_secs(model, 0, &frames.state(&library, frame))).collect();
+    let secs: Vec<f64> =
+        (0..frames.count()).map(|frame| clip_secs(model.clip_at(0), &frames.state(&library, frame))).collect();
     assert_eq!(secs.len(), expected.len(), "{secs:?}");
     for (secs, expected) in secs.iter().zip(expected) {
         assert!((secs - expected).abs() < 1e-6, "{secs} instead of {expected}");

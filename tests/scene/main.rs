@@ -5,6 +5,9 @@ mod allocation;
 #[path = "../support/allocations.rs"]
 mod allocations;
 mod avatar;
+#[allow(dead_code)]
+#[path = "../support/by_place.rs"]
+mod by_place;
 
 #[allow(dead_code)]
 #[path = "../support/build_gltf.rs"]
@@ -50,6 +53,7 @@ mod sets;
 mod skeletons;
 mod stage;
 mod state;
+mod texts;
 mod variants;
 mod view_problems;
 mod walker;

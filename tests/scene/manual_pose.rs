@@ -3,7 +3,7 @@
 use gaitway::anim::JointIndex;
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::Library;
+use gaitway::library::{ClipId, Library};
 use gaitway::retarget::{Pin, PinGoal};
 use gaitway::state::{
     CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
@@ -95,9 +95,9 @@ fn missing_joints_and_angles_that_are_not_finite_change_nothing() {
 #[test]
 fn exports_have_what_is_set_manually() {
     let mut editor = Editor::new(walker(), ViewerState::default());
-    let what = Export::Clip { clip: 0, format: ClipFormat::Glb };
-    assert_eq!(editor.export(what).expect("has keys").remark, None);
-    assert!(editor.export(Export::Model { clip: 0 }).is_err(), "the file has this clip");
+    let what = Export::Clip { clip: ClipId::Own(0), format: ClipFormat::Glb };
+    assert_eq!(editor.export(&what).expect("has keys").remark, None);
+    assert!(editor.export(&Export::Model { clip: ClipId::Own(0) }).is_err(), "the file has this clip");
     let hand = Pin { goal: PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)), times: None };
     for command in [
         Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 10.0]) },
@@ -106,9 +106,9 @@ fn exports_have_what_is_set_manually() {
     ] {
         editor.apply(command);
     }
-    let remark = editor.export(what).expect("has keys").remark;
+    let remark = editor.export(&what).expect("has keys").remark;
     assert_eq!(remark.as_deref(), Some("Manually posed joints hold their pose in it."));
-    for what in [what, Export::Model { clip: 0 }] {
+    for what in [&what, &Export::Model { clip: ClipId::Own(0) }] {
         check_written(&editor, &exported(&editor, what), 1.0, (1.8e-4, 0.1));
     }
 }

@@ -14,20 +14,22 @@ use gaitway::retarget::{
 };
 use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
-    active_map, active_maps, apply, from_link, muted_properties, to_link,
+    active_map, active_maps, apply, from_link, muted_properties,
 };
 use glam::{Quat, Vec3};
 
+use crate::by_place::{motion_at, motion_called};
 use crate::data::walker;
 use crate::history::{redo, undo};
 use crate::skeletons;
+use crate::texts::link_of;
 
 /// The walker with its own clips retargeted to itself, shortly after the start of the first of them.
 fn walker_with_motion() -> (Library, ViewerState) {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
-    let clip = ClipChoice::Named("3".to_owned());
+    let clip = ClipChoice::called("3");
     let mut state = ViewerState {
         playback: Playback { playing: false, ..Playback::default() },
         playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
@@ -49,7 +51,7 @@ fn number(library: &Library, name: &str) -> usize {
 }
 
 fn map(library: &Library, state: &ViewerState) -> JointMap {
-    active_map(library, state, 0).expect("a map")
+    active_map(library, state, &motion_at(library, 0)).expect("a map")
 }
 
 fn source(map: &JointMap, target: usize) -> Option<usize> {
@@ -58,7 +60,7 @@ fn source(map: &JointMap, target: usize) -> Option<usize> {
 
 fn edited(library: &Library, state: &ViewerState, edit: MapEdit) -> ViewerState {
     let mut state = state.clone();
-    apply(&mut state, library, Command::EditMap { motion: 0, edit });
+    apply(&mut state, library, Command::EditMap { motion: motion_at(library, 0), edit });
     state
 }
 
@@ -119,9 +121,13 @@ fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expe
     library.add(Model::new("beast.glb".to_owned(), animal(model), Vec::new()));
     library.set_motions(vec![Motion::new("run.bvh".to_owned(), animal(motion))]);
     let mut state = ViewerState::default();
-    apply(&mut state, &library, Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    apply(&mut state, &library, Command::EditMap { motion: motion_at(&library, 0), edit: MapEdit::Clear });
     for &(target, source) in pairs {
-        apply(&mut state, &library, Command::SetSource { motion: 0, target, source: Some(source) });
+        apply(
+            &mut state,
+            &library,
+            Command::SetSource { motion: motion_at(&library, 0), target, source: Some(source) },
+        );
     }
     let swapped = edited(&library, &state, MapEdit::SwapSides);
     let map = map(&library, &swapped);
@@ -150,7 +156,10 @@ fn a_rotation_offset_turns_the_playing_joint() {
     apply(
         &mut state,
         &library,
-        Command::EditMap { motion: 0, edit: MapEdit::Correction { target: neck, correction: turn() * 3.0 } },
+        Command::EditMap {
+            motion: motion_at(&library, 0),
+            edit: MapEdit::Correction { target: neck, correction: turn() * 3.0 },
+        },
     );
     let correction = map(&library, &state).joints[&neck].correction;
     assert!(correction.abs_diff_eq(turn(), 1e-6), "it is normalized: {correction}");
@@ -193,11 +202,15 @@ fn a_cleared_map_stays_empty_until_edited() {
     reconcile(&mut library, &mut cleared);
     assert_eq!(map(&library, &cleared).joints.len(), 0, "no map is proposed again");
     let hips = number(&library, "Hips");
-    apply(&mut cleared, &library, Command::SetSource { motion: 0, target: hips, source: Some(hips) });
+    apply(
+        &mut cleared,
+        &library,
+        Command::SetSource { motion: motion_at(&library, 0), target: hips, source: Some(hips) },
+    );
     reconcile(&mut library, &mut cleared);
     assert_eq!(library.borrow_errors(), []);
     let mut again = cleared.clone();
-    apply(&mut again, &library, Command::SetMap { motion: 0, map: None });
+    apply(&mut again, &library, Command::SetMap { motion: motion_at(&library, 0), map: None });
     assert_eq!(again.retarget.map, state.retarget.map);
 }
 
@@ -227,7 +240,7 @@ fn edits_of_missing_joints_change_nothing() {
     }
     assert_eq!(map(&library, &edited(&library, &state, MapEdit::CrossfadeSecs(-1.0))).crossfade_secs, 0.0);
     let mut other = state.clone();
-    apply(&mut other, &library, Command::EditMap { motion: 7, edit: MapEdit::Clear });
+    apply(&mut other, &library, Command::EditMap { motion: motion_called("another.glb"), edit: MapEdit::Clear });
     assert_eq!(other, state);
 }
 
@@ -244,9 +257,13 @@ fn fifty_edits_are_undone_and_redone() {
     let mut at = 0;
     while seen.len() <= 50 {
         let command = match at % 3 {
-            0 => Command::EditMap { motion: 0, edit: edits[at / 3 % edits.len()].clone() },
-            1 => Command::SetSource { motion: 0, target: targets[at % 15], source: Some(targets[(7 * at) % 15]) },
-            _ => Command::SetMap { motion: 0, map: None },
+            0 => Command::EditMap { motion: motion_at(&library, 0), edit: edits[at / 3 % edits.len()].clone() },
+            1 => Command::SetSource {
+                motion: motion_at(&library, 0),
+                target: targets[at % 15],
+                source: Some(targets[(7 * at) % 15]),
+            },
+            _ => Command::SetMap { motion: motion_at(&library, 0), map: None },
         };
         history.apply(&mut state, &library, command);
         history.end_gesture();
@@ -283,7 +300,7 @@ fn a_drag_is_one_step() {
     for step in 1..40 {
         let correction = Quat::from_rotation_x(0.01 * step as f32);
         let edit = MapEdit::Correction { target: neck, correction };
-        history.apply(&mut state, &library, Command::EditMap { motion: 0, edit });
+        history.apply(&mut state, &library, Command::EditMap { motion: motion_at(&library, 0), edit });
         history.apply(&mut state, &library, Command::Advance(0.01));
     }
     history.end_gesture();
@@ -298,7 +315,7 @@ fn every_edit_round_trips_through_the_link() {
     for edit in all_edits(&library) {
         let mut state = edited(&library, &state, edit.clone());
         reconcile(&mut library, &mut state);
-        let (mut back, errors) = from_link(&to_link(&state));
+        let (mut back, errors) = from_link(&link_of(&state));
         assert_eq!(errors, [], "{edit:?}");
         assert_eq!(reconciled_maps(&library, &back).1, [], "{edit:?}");
         reconcile(&mut library, &mut back);
@@ -372,7 +389,7 @@ fn the_map_key_holds_every_member() {
             ..ViewerState::default()
         };
         assert_ne!(state.retarget.map, ViewerState::default().retarget.map, "{name}");
-        let link = to_link(&state);
+        let link = link_of(&state);
         let (back, errors) = from_link(&link);
         assert_eq!(errors, [], "{name}: {link}");
         assert_eq!(back, state, "{name}: {link}");
@@ -404,7 +421,7 @@ fn a_large_map_stays_short() {
     let maps = vec![MotionMap::Numbers(NumberedMap { checksum: 7, map })];
     let state =
         ViewerState { retarget: RetargetEdits { map: maps, ..RetargetEdits::default() }, ..ViewerState::default() };
-    let link = to_link(&state);
+    let link = link_of(&state);
     assert!(link.len() < 2000, "{} characters", link.len());
     assert_eq!(from_link(&link).0, state);
 }

@@ -3,24 +3,25 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gaitway::anim::Clip;
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys};
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::{MapProblem, reconciled_maps};
 use gaitway::frame::pose_document;
-use gaitway::library::{Library, Motion, names_checksum};
+use gaitway::library::{Library, Motion, MotionId, names_checksum};
 use gaitway::retarget::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
     ClipChoice, Command, History, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map, active_maps,
-    apply, from_link, to_link,
+    apply, from_link,
 };
 use glam::Vec3;
 
+use crate::by_place::{ByPlace, motion_at};
 use crate::data::walker;
 use crate::history::{redo, undo};
 use crate::skeletons;
+use crate::texts::link_of;
 
 /// The walker with its own clips as a motion.
 fn walker_with_motion() -> Library {
@@ -72,7 +73,7 @@ fn a_map_is_proposed_for_every_motion() {
     let hips = number(&library, "Hips");
     assert_eq!(map.map.joints[&hips].source, Some(hips));
     assert_eq!(library.borrow_errors(), []);
-    assert_eq!(library.active().expect("a model").clip_count(), 6);
+    assert_eq!(library.active().expect("a model").clips().len(), 6);
     // An existing map is kept.
     let before = state.clone();
     assert_eq!(reconcile(&mut library, &mut state), []);
@@ -95,22 +96,27 @@ fn only_motions_whose_map_changed_are_baked_again() {
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset), other]);
     let mut state = ViewerState::default();
     assert_eq!(reconcile(&mut library, &mut state), []);
-    let baked = |library: &Library| [0, 1].map(|motion| library.baked_map(motion).expect("a map").clone());
-    let motions = |library: &Library| -> Vec<usize> {
-        library.active().expect("a model").borrowed_clips().map(|(_, borrowed)| borrowed.motion).collect()
+    let baked =
+        |library: &Library| [0, 1].map(|motion| library.baked_map(&motion_at(library, motion)).expect("a map").clone());
+    let motions = |library: &Library| -> Vec<MotionId> {
+        library.active().expect("a model").clips().borrowed().map(|(_, borrowed)| borrowed.motion.clone()).collect()
     };
     assert_eq!(library.borrow_errors(), []);
     let (first, order) = (baked(&library), motions(&library));
     reconcile(&mut library, &mut state);
     assert!(baked(&library).iter().zip(&first).all(|(now, first)| Arc::ptr_eq(now, first)), "nothing changed");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
-    apply(&mut state, &library, Command::SetSource { motion: 0, target: neck, source: Some(head) });
+    apply(
+        &mut state,
+        &library,
+        Command::SetSource { motion: motion_at(&library, 0), target: neck, source: Some(head) },
+    );
     reconcile(&mut library, &mut state);
     let [changed, same] = baked(&library);
     assert_eq!(changed.joints[&neck].source, Some(head));
     assert!(Arc::ptr_eq(&same, &first[1]));
     assert_eq!(motions(&library), order);
-    assert_eq!(order, [0, 0, 0, 1]);
+    assert_eq!(order, [0, 0, 0, 1].map(|motion| motion_at(&library, motion)));
 }
 
 #[test]
@@ -133,7 +139,7 @@ fn a_map_by_name_becomes_numbers_and_round_trips() {
         ..ViewerState::default()
     };
     assert_eq!(reconcile(&mut library, &mut state), []);
-    let map = active_map(&library, &state, 0).expect("the given map");
+    let map = active_map(&library, &state, &motion_at(&library, 0)).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     assert_eq!(map.joints[&neck].source, Some(head));
     assert_eq!(map.joints[&head].source, None);
@@ -158,7 +164,7 @@ fn a_map_that_fits_no_motion_is_reported_and_replaced() {
     let problems = reconcile(&mut library, &mut state);
     assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
     assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
-    assert!(active_map(&library, &state, 0).expect("an automatic map").joints.len() > 10);
+    assert!(active_map(&library, &state, &motion_at(&library, 0)).expect("an automatic map").joints.len() > 10);
 }
 
 /// If joint names changed since a link was made, its numbers may identify other joints.
@@ -167,7 +173,7 @@ fn numbers_for_other_names_are_not_used() {
     let mut library = walker_with_motion();
     let mut state = ViewerState::default();
     reconcile(&mut library, &mut state);
-    let link = to_link(&state);
+    let link = link_of(&state);
     let (mut other, errors) = from_link(&link);
     assert_eq!(errors, []);
     let asset = library.active().expect("a model").asset.clone();
@@ -185,10 +191,11 @@ fn a_source_can_be_changed_and_restored() {
     reconcile(&mut library, &mut state);
     let before = state.clone();
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
-    let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
+    let change = Command::SetSource { motion: motion_at(&library, 0), target: neck, source: Some(head) };
     history.apply(&mut state, &library, change);
-    let source =
-        |library: &Library, state: &ViewerState| active_map(library, state, 0).expect("a map").joints[&neck].source;
+    let source = |library: &Library, state: &ViewerState| {
+        active_map(library, state, &motion_at(library, 0)).expect("a map").joints[&neck].source
+    };
     assert_eq!(source(&library, &state), Some(head));
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
@@ -202,10 +209,10 @@ fn a_source_can_be_changed_and_restored() {
     assert_eq!(source(&library, &state), Some(head));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
-        apply(&mut state, &library, Command::SetSource { motion: 0, target, source });
+        apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target, source });
         assert_eq!(state, now, "missing joints change nothing");
     }
-    apply(&mut state, &library, Command::SetMap { motion: 0, map: None });
+    apply(&mut state, &library, Command::SetMap { motion: motion_at(&library, 0), map: None });
     assert_eq!(state.retarget.map, before.retarget.map, "the proposed map is back");
 }
 
@@ -216,7 +223,7 @@ fn overrides_take_precedence_over_the_map() {
     reconcile(&mut library, &mut state);
     let root = RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() };
     let unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
-    let own = active_map(&library, &state, 0).expect("a map");
+    let own = active_map(&library, &state, &motion_at(&library, 0)).expect("a map");
     for command in [
         Command::SetRoot(Some(root)),
         Command::SetUnmapped(Some(unmapped.clone())),
@@ -225,17 +232,17 @@ fn overrides_take_precedence_over_the_map() {
     ] {
         apply(&mut state, &library, command);
     }
-    let map = active_map(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, &motion_at(&library, 0)).expect("a map");
     assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, contacts: Contacts::Keep, ..own.clone() });
     // Editing a joint doesn't write them into the map.
     let head = number(&library, "Head");
-    apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: None });
+    apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target: head, source: None });
     let cleared =
         [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None), Command::SetContacts(None)];
     for command in cleared {
         apply(&mut state, &library, command);
     }
-    let map = active_map(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, &motion_at(&library, 0)).expect("a map");
     assert_eq!((map.root, map.unmapped, map.feet, map.contacts), (own.root, own.unmapped, own.feet, own.contacts));
 }
 
@@ -249,11 +256,11 @@ fn a_motion_without_anything_in_common_has_no_map() {
     let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
     assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
     assert!(error.to_string().contains("no joint in common"), "{error}");
-    assert_eq!(library.active().expect("a model").clip_count(), 3);
+    assert_eq!(library.active().expect("a model").clips().len(), 3);
     // It can still be mapped manually.
     let head = number(&library, "Head");
-    apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
-    let map = active_map(&library, &state, 0).expect("a map");
+    apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target: head, source: Some(1) });
+    let map = active_map(&library, &state, &motion_at(&library, 0)).expect("a map");
     assert_eq!(map.joints.len(), 1);
     let before = state.retarget.map.clone();
     reconcile(&mut library, &mut state);
@@ -271,23 +278,23 @@ fn a_link_restores_the_same_pose() {
     };
     reconcile(&mut library, &mut state);
     let arm = number(&library, "LeftUpperArm");
-    state.playhead.clip = ClipChoice::Named("3".to_owned());
-    apply(&mut state, &library, Command::SetSource { motion: 0, target: arm, source: None });
+    state.playhead.clip = ClipChoice::called("3");
+    apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target: arm, source: None });
     apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
     let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     apply(&mut state, &library, Command::SetRoot(Some(root)));
     assert_eq!(reconcile(&mut library, &mut state), []);
     let pose = pose_document(&library, &state);
-    assert_eq!(library.active().expect("a model").clip(3).map(Clip::name), Some("Walk"));
+    assert_eq!(library.active().expect("a model").clip_at(3).name(), "Walk");
 
-    let (mut back, errors) = from_link(&to_link(&state));
+    let (mut back, errors) = from_link(&link_of(&state));
     assert_eq!(errors, []);
     let mut fresh = walker_with_motion();
     assert_eq!(reconcile(&mut fresh, &mut back), []);
     assert_eq!(back, state);
     assert_eq!(pose_document(&fresh, &back), pose);
     let plain = ViewerState {
-        playhead: Playhead { clip: ClipChoice::Named("3".to_owned()), ..Playhead::default() },
+        playhead: Playhead { clip: ClipChoice::called("3"), ..Playhead::default() },
         ..ViewerState::default()
     };
     let mut plain = ViewerState {

@@ -4,10 +4,11 @@ use gaitway::anim::JointIndex;
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model};
+use gaitway::library::{ClipId, Library, Model};
 use gaitway::retarget::{ClipLayer, Pin, PinGoal, PinTimes};
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, History, OrbitCamera, Playhead, UpAxis, ViewerState, apply, from_link, to_link,
+    CameraChoice, ClipChoice, Command, History, LayeredClip, OrbitCamera, Playhead, UpAxis, ViewerState, apply,
+    from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -16,6 +17,7 @@ use crate::cli::{check_fails, document, run};
 use crate::cli_motion::folder;
 use crate::data::{library_of, walker};
 use crate::history::{redo, undo};
+use crate::texts::link_of;
 
 /// Joints of the walker, by index in the file.
 const HIPS: usize = 1;
@@ -182,10 +184,10 @@ fn malformed_pins_are_reported_and_the_rest_is_kept() {
         assert_eq!(state.edits.pins.keys().collect::<Vec<_>>(), [&HEAD]);
     }
     let (state, errors) = from_link("pin=9:joint:4");
-    assert_eq!((errors, to_link(&state)), (Vec::new(), "v=1&pin=9:joint:4,0,0,0".to_owned()));
+    assert_eq!((errors, link_of(&state)), (Vec::new(), "v=1&pin=9:joint:4,0,0,0".to_owned()));
 }
 
-pub fn exported(editor: &Editor, what: Export) -> Library {
+pub fn exported(editor: &Editor, what: &Export) -> Library {
     let file = editor.export(what).expect("can be written");
     let mut files = FileSet::default();
     files.insert(&*file.name, file.bytes);
@@ -231,7 +233,7 @@ fn exports_have_the_pins() {
         editor.apply(command);
     }
     let format = ClipFormat::Glb;
-    for what in [Export::Clip { clip: 0, format }, Export::Model { clip: 0 }] {
+    for what in [&Export::Clip { clip: ClipId::Own(0), format }, &Export::Model { clip: ClipId::Own(0) }] {
         check_written(&editor, &exported(&editor, what), 1.0, (1.8e-4, 0.1));
     }
 }
@@ -243,7 +245,8 @@ fn exports_repeat_the_pins_of_a_clip_that_a_layer_makes_longer() {
     let times = Some(PinTimes { start_secs: 0.3, end_secs: 0.6, blend_secs: 0.2 });
     let hand = pin(PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)));
     let mut editor = Editor::new(walker(), ViewerState::default());
-    let wave = ClipLayer { clip: "Wave".to_owned(), speed: 1.3125, ..ClipLayer::default() };
+    let layer = ClipLayer { speed: 1.3125, ..ClipLayer::default() };
+    let wave = LayeredClip { clip: ClipId::called("Wave"), layer };
     for command in [
         Command::SetLayers(vec![wave]),
         set(LEFT_HAND, Pin { times, ..hand }),
@@ -251,7 +254,7 @@ fn exports_repeat_the_pins_of_a_clip_that_a_layer_makes_longer() {
     ] {
         editor.apply(command);
     }
-    let written = exported(&editor, Export::Clip { clip: 0, format: ClipFormat::Glb });
+    let written = exported(&editor, &Export::Clip { clip: ClipId::Own(0), format: ClipFormat::Glb });
     let walk_secs = f64::from(editor.library().active().expect("a model").asset.clips[0].duration_secs());
     let secs = f64::from(written.active().expect("a model").asset.clips[0].duration_secs());
     assert!((secs - 2.0 * walk_secs).abs() < 1e-4, "{secs}");
@@ -387,7 +390,7 @@ fn a_link_has_its_pins() {
     let mut state = ViewerState::default();
     state.playhead.clip = ClipChoice::RestPose;
     apply(&mut state, &library, set(LEFT_HAND, pin(PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)))));
-    let (again, errors) = from_link(&to_link(&state));
+    let (again, errors) = from_link(&link_of(&state));
     assert_eq!(errors, []);
     assert_eq!(frame(&library, &again).pose(), frame(&library, &state).pose());
     assert_ne!(

@@ -2,9 +2,10 @@
 
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
-use gaitway::library::{Library, inspect};
+use gaitway::library::{ClipId, Library, inspect};
 use gaitway::state::{ClipChoice, Playhead, ViewerState, active_clip, front_yaw_radians};
 
+use crate::by_place::ByPlace;
 use crate::data::open;
 
 struct Facts {
@@ -100,11 +101,11 @@ fn the_frame_rate_is_detected_from_the_keys() {
         let Some(library) = open(path) else { return };
         let model = library.active().expect("a model");
         let state = ViewerState {
-            playhead: Playhead { clip: ClipChoice::Named(clip.to_owned()), ..Playhead::default() },
+            playhead: Playhead { clip: ClipChoice::called(clip), ..Playhead::default() },
             ..ViewerState::default()
         };
-        let index = active_clip(model, &state).expect("the clip");
-        assert_eq!(model.frames_per_sec(index), expected, "{path}");
+        let clip = active_clip(model, &state).expect("the clip");
+        assert_eq!(clip.frames_per_sec(), expected, "{path}");
     }
 }
 
@@ -130,9 +131,9 @@ fn following_keeps_a_runner_in_view() {
     // Root motion above the skin: the runner leaves the view unless the camera follows.
     let Some(library) = open("cosc422/mannequin_run.glb") else { return };
     let model = library.active().expect("a model");
-    assert!(model.root_of_clip(0).is_some());
-    let in_place = model.clip_bounds(None, Some(0), true).size();
-    let whole = model.clip_bounds(None, Some(0), false).size();
+    assert!(model.clip_at(0).root().is_some());
+    let in_place = model.clip_bounds(None, Some(&ClipId::Own(0)), true).size();
+    let whole = model.clip_bounds(None, Some(&ClipId::Own(0)), false).size();
     assert!(in_place.max_element() < 0.9 * whole.max_element(), "{in_place} {whole}");
 }
 

@@ -37,13 +37,13 @@ fn check(scene: &Value) {
     library.borrow_each(vec![None; library.motions().len()]);
     assert!(library.borrow_errors().is_empty(), "{link}: {:?}", library.borrow_errors());
     let named_clip = match &wanted.playhead.clip {
-        ClipChoice::Named(name) => Some(name.clone()),
+        ClipChoice::Clip(clip) => clip.name().map(str::to_owned),
         _ => None,
     };
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::Replace(Box::new(wanted)));
     let model = library.active().expect("a model");
-    let clip = active_clip(model, &state).and_then(|clip| model.clip(clip));
+    let clip = active_clip(model, &state);
     assert!(named_clip.is_none_or(|name| clip.is_some_and(|clip| clip.name() == name)), "{link}: no such clip");
     let moves = clip.is_some_and(|clip| clip.duration_secs() > 0.0) || state.camera_options.turntable != 0.0;
     assert!(moves, "{link}: nothing moves");

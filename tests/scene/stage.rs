@@ -10,11 +10,12 @@ use gaitway::library::{Library, Model, Motion, map_for};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{JointMap, RestChoice, RestChoices};
 use gaitway::state::{
-    ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, choice_of_clip, compared_rests,
-    resolved_bounds, source_on_stage,
+    ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, compared_rests, resolved_bounds,
+    source_on_stage,
 };
 use glam::{Quat, Vec2, Vec3};
 
+use crate::by_place::ByPlace;
 use crate::data::walker;
 use crate::skeletons;
 
@@ -32,7 +33,7 @@ fn walker_with_larger_source() -> (Library, ViewerState) {
     library.borrow_each(vec![None]);
     assert_eq!(library.borrow_errors(), []);
     let model = library.active().expect("a model");
-    let clip = choice_of_clip(model, model.asset.clips.len());
+    let clip = ClipChoice::Clip(model.id_at(model.asset.clips.len()));
     (
         library,
         ViewerState { playhead: Playhead { clip, time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() },
@@ -244,7 +245,7 @@ fn long_model() -> (Library, ViewerState) {
     library.set_motions(vec![Motion::new("turn.glb".to_owned(), asset)]);
     library.borrow_each(vec![None]);
     assert_eq!(library.borrow_errors(), []);
-    let clip = choice_of_clip(library.active().expect("a model"), 1);
+    let clip = ClipChoice::Clip(library.active().expect("a model").id_at(1));
     let playhead = Playhead { clip, time_secs: 1.0, ..Playhead::default() };
     (library, ViewerState { playhead, ..ViewerState::default() })
 }

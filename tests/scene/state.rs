@@ -3,14 +3,15 @@
 use std::f32::consts::PI;
 
 use gaitway::anim::{LoopMode, TimeRange};
-use gaitway::library::Library;
+use gaitway::library::{ClipId, Library, ModelClip};
 use gaitway::retarget::ClipChanges;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, History, NameKind, OrbitCamera, Playback, Playhead, UnknownName,
-    ViewerState, active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
+    CameraChoice, CameraOptions, ClipChoice, ClipEdit, Command, History, NameKind, OrbitCamera, Playback, Playhead,
+    UnknownName, ViewerState, active_clip, apply, clip_secs, resolve_camera, to_object,
 };
 use glam::Vec3;
 
+use crate::by_place::ByPlace;
 use crate::data::{moving_box, walker};
 use crate::history::{redo, undo};
 
@@ -28,7 +29,7 @@ fn one_second() -> Library {
 }
 
 fn current_secs(library: &Library, state: &ViewerState) -> f64 {
-    clip_secs(library.active().expect("a model"), 0, state)
+    clip_secs(library.active().expect("a model").clip_at(0), state)
 }
 
 #[test]
@@ -145,7 +146,7 @@ fn steps_are_whole_frames_and_pause() {
 fn a_new_clip_starts_at_its_beginning() {
     let library = walker();
     let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
-    let wave = ClipChoice::Named("Wave".to_owned());
+    let wave = ClipChoice::Clip(ClipId::Own(2));
     let state = after(&library, [Command::Seek(0.5), Command::SetRange(range), Command::SetClip(wave.clone())]);
     assert_eq!((state.playhead.time_secs, state.playhead.range, state.playhead.clip), (0.0, None, wave));
 }
@@ -154,7 +155,8 @@ fn a_new_clip_starts_at_its_beginning() {
 fn a_change_of_speed_keeps_the_pose_and_the_range() {
     let library = walker();
     let range = |start_secs, end_secs| Some(TimeRange { start_secs, end_secs });
-    let change = |clip, changes| Command::ChangeClip { clip, changes: Box::new(changes) };
+    let change =
+        |clip, changes| Command::EditClip { clip: ClipId::Own(clip), edit: ClipEdit::Change(Box::new(changes)) };
     let mut state = after(&library, [Command::Seek(0.5), Command::SetRange(range(0.25, 0.75))]);
     let check = |state: &ViewerState, time_secs, range| {
         assert_eq!((state.playhead.time_secs, state.playhead.range), (time_secs, range));
@@ -172,7 +174,7 @@ fn a_reversed_clip_keeps_the_pose_and_the_range() {
     let library = walker();
     let end_secs = f64::from(library.active().expect("a model").asset.clips[0].duration_secs());
     let range = |start_secs, end_secs| Some(TimeRange { start_secs, end_secs });
-    let change = |changes| Command::ChangeClip { clip: 0, changes: Box::new(changes) };
+    let change = |changes| Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(Box::new(changes)) };
     let mut state = after(&library, [Command::SetRange(range(0.25, 0.5)), Command::Seek(0.375)]);
     apply(&mut state, &library, change(ClipChanges { reverse: true, ..ClipChanges::NONE }));
     check_time(&state, end_secs - 0.375, range(end_secs - 0.5, end_secs - 0.25));
@@ -213,7 +215,11 @@ fn undoing_a_change_of_a_clip_restores_pose_and_range() {
     let twice = ClipChanges { speed: 2.0, ..ClipChanges::NONE };
     let reversed = ClipChanges { reverse: true, ..twice.clone() };
     for changes in [twice, reversed] {
-        history.apply(&mut state, &library, Command::ChangeClip { clip: 0, changes: Box::new(changes) });
+        history.apply(
+            &mut state,
+            &library,
+            Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(Box::new(changes)) },
+        );
         history.end_gesture();
     }
     let end_secs = 0.5 * f64::from(library.active().expect("a model").asset.clips[0].duration_secs());
@@ -235,17 +241,15 @@ fn clips_are_found_by_name_and_by_index() {
     let library = walker();
     let model = library.active().expect("a model");
     let find = |name: &str| {
-        active_clip(
-            model,
-            &ViewerState {
-                playhead: Playhead { clip: ClipChoice::Named(name.to_owned()), ..Playhead::default() },
-                ..ViewerState::default()
-            },
-        )
+        let playhead = Playhead { clip: ClipChoice::called(name), ..Playhead::default() };
+        active_clip(model, &ViewerState { playhead, ..ViewerState::default() }).map(ModelClip::id)
     };
-    assert_eq!((find("Wave"), find("2"), find("wave"), find("3"), find("")), (Some(2), Some(2), None, None, None));
-    assert_eq!(active_clip(model, &ViewerState::default()), Some(0));
-    assert_eq!(choice_of_clip(model, 1), ClipChoice::Named("Idle".to_owned()));
+    let wave = Some(&ClipId::Own(2));
+    assert_eq!((find("Wave"), find("2"), find("wave"), find("3"), find("")), (wave, wave, None, None, None));
+    let first = active_clip(model, &ViewerState::default()).map(ModelClip::id);
+    assert_eq!(first, Some(&ClipId::Own(0)));
+    let state = after(&library, [Command::SetClip(ClipChoice::Clip(ClipId::Own(1)))]);
+    assert_eq!(to_object(&state, &library)["clip"], "Idle");
 }
 
 #[test]

@@ -6,11 +6,12 @@ use gaitway::asset::Asset;
 use gaitway::editor::{Contents, Editor, Event};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model};
-use gaitway::state::{Command, History, ViewerState, apply, from_link, to_link};
+use gaitway::state::{Command, History, ViewerState, apply, from_link};
 use glam::Vec3;
 
 use crate::cli::{check_fails, document};
 use crate::data::{library_of, moving_box};
+use crate::texts::link_of;
 
 /// A box with two variants.
 fn model(source: &str) -> Model {
@@ -51,7 +52,7 @@ fn a_variant_is_undone_and_stays_with_its_model() {
     let mut library = library_of(model("box.glb"));
     let (mut state, mut history, mut kept) = (ViewerState::default(), History::default(), Default::default());
     history.apply(&mut state, &library, chosen("Night"));
-    let link = to_link(&state);
+    let link = link_of(&state);
     assert_eq!(link, "v=1&variant=Night");
     assert_eq!(from_link(&link), (state.clone(), Vec::new()));
     assert!(history.undo(&mut state, &mut kept, &mut library));

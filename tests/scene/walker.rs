@@ -10,7 +10,7 @@ use crate::data::walker;
 
 fn at(clip: &str, time_secs: f64) -> ViewerState {
     ViewerState {
-        playhead: Playhead { clip: ClipChoice::Named(clip.to_owned()), time_secs, ..Playhead::default() },
+        playhead: Playhead { clip: ClipChoice::called(clip), time_secs, ..Playhead::default() },
         ..ViewerState::default()
     }
 }

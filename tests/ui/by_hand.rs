@@ -291,7 +291,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
 fn the_lanes_of_the_feet_are_not_covered() {
     for size in [WIDE, NARROW] {
         let mut harness = motion_bench(size, &["dance.bvh"]);
-        let clip = ClipChoice::Named("3".to_owned());
+        let clip = ClipChoice::called("3");
         harness.state_mut().editor.apply(Command::SetClip(clip));
         harness.state_mut().editor.apply(Command::SetShow(Show { source: true, ..Show::default() }));
         harness.run();

@@ -6,11 +6,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::TimeRange;
 use gaitway::editor::Export;
+use gaitway::library::ClipId;
 use gaitway::retarget::ClipChanges;
-use gaitway::state::{ClipChoice, Command};
+use gaitway::state::{ClipChoice, ClipEdit, Command};
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
-use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, press_key, sample_bench};
+use crate::by_place::{ByPlace, motion_called};
 use crate::header::choose;
 
 #[test]
@@ -24,11 +26,11 @@ fn the_current_clip_is_changed_and_undone() {
     let mirrored = ClipChanges { mirror: true, ..ClipChanges::default() };
     assert_eq!(
         press(&mut harness, text::MIRROR),
-        [Command::ChangeClip { clip: 0, changes: Box::new(mirrored.clone()) }]
+        [Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(Box::new(mirrored.clone())) }]
     );
     assert_ne!(pose(&harness), before);
     let clips = &harness.state().state().edits.clips;
-    assert_eq!(clips.values().collect::<Vec<_>>(), [&mirrored]);
+    assert_eq!(clips.changes.values().collect::<Vec<_>>(), [&mirrored]);
     let mark = |harness: &Harness<'_, Bench>| {
         let row = harness.get_by_label("Walk");
         row.accesskit_node().description()
@@ -37,9 +39,9 @@ fn the_current_clip_is_changed_and_undone() {
     assert_eq!(text::changes(&trimmed), "Changed: mirrored, trimmed");
     assert_eq!(mark(&harness), Some(text::changes(&mirrored)));
     choose(&mut harness, text::EXPORT, text::SAVE_GLB);
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: ClipId::Own(0) }))]);
     press(&mut harness, text::UNDO_STEP);
-    assert!(harness.state().state().edits.clips.is_empty());
+    assert!(harness.state().state().edits.clips.changes.is_empty());
     assert_eq!(pose(&harness), before);
     assert_eq!(mark(&harness), None);
 }
@@ -49,7 +51,10 @@ fn the_current_clip_is_changed_and_undone() {
 fn changes_beyond_the_sliders_stay() {
     let mut harness = sample_bench(WIDE);
     let far = ClipChanges { turn_degrees: 270.0, offset: [20.0, -7.0], loop_secs: Some(3.0), ..ClipChanges::NONE };
-    harness.state_mut().editor.apply(Command::ChangeClip { clip: 0, changes: Box::new(far.clone()) });
+    harness
+        .state_mut()
+        .editor
+        .apply(Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(Box::new(far.clone())) });
     press(&mut harness, Tab::Motion.label());
     harness.get_by_label(text::MIRROR).scroll_to_me();
     harness.run();
@@ -60,7 +65,7 @@ fn changes_beyond_the_sliders_stay() {
         harness.key_press(egui::Key::Tab);
     }
     harness.run();
-    assert_eq!(harness.state().state().edits.clips.values().collect::<Vec<_>>(), [&far]);
+    assert_eq!(harness.state().state().edits.clips.changes.values().collect::<Vec<_>>(), [&far]);
 }
 
 #[test]
@@ -76,7 +81,7 @@ fn the_range_becomes_the_clip() {
     press(&mut harness, text::TRIM_TO_RANGE);
     let duration = |harness: &Harness<'_, Bench>| {
         let model = harness.state().editor.library().active().expect("a model");
-        model.clip(0).expect("a clip").duration_secs()
+        model.clip_at(0).duration_secs()
     };
     assert_eq!(duration(&harness), 0.5);
     assert_eq!(harness.state().state().playhead.range, None);
@@ -87,7 +92,7 @@ fn the_range_becomes_the_clip() {
     press(&mut harness, text::TRIM_TO_RANGE);
     let trim = TimeRange { start_secs: 0.375, end_secs: 0.625 };
     let trimmed = ClipChanges { trim: Some(trim), ..ClipChanges::NONE };
-    assert_eq!(harness.state().state().edits.clips.values().collect::<Vec<_>>(), [&trimmed]);
+    assert_eq!(harness.state().state().edits.clips.changes.values().collect::<Vec<_>>(), [&trimmed]);
     assert_eq!(duration(&harness), 0.25);
     press(&mut harness, text::UNDO_TRIM);
     assert!(duration(&harness) > 0.75);
@@ -96,7 +101,7 @@ fn the_range_becomes_the_clip() {
 #[test]
 fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Named("3".to_owned())));
+    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::called("3")));
     harness.run();
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, text::CLIP);
@@ -104,13 +109,13 @@ fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
     harness.run();
     press(&mut harness, text::MAKE_LOOP);
     let model = harness.state().editor.library().active().expect("a model");
-    let seam = model.changed_clip(3).and_then(|changed| changed.seam).expect("is measured");
+    let seam = model.clip_at(3).changed().and_then(|changed| changed.seam).expect("is measured");
     let told = text::seam(seam);
     assert!(harness.query_by_label(&told).is_some(), "{told}");
     harness.get_by_label(text::RESET_CHANGES).scroll_to_me();
     harness.run();
     press(&mut harness, text::RESET_CHANGES);
-    assert!(harness.state().state().edits.clips.is_empty());
+    assert!(harness.state().state().edits.clips.changes.is_empty());
 }
 
 #[test]
@@ -194,11 +199,40 @@ fn a_finger_on_a_slider_scrolls_up_and_down_and_drags_sideways() {
             assert_eq!(swipe(&mut harness, scrolled, vec2(-4.0, 40.0)), [], "on {size:?}");
             assert!((place(&harness).top() - before.top()).abs() < 1.0, "scrolled back");
             let commands = swipe(&mut harness, before.center(), vec2(40.0, 4.0));
-            assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
+            assert!(
+                matches!(commands.last(), Some(Command::EditClip { edit: ClipEdit::Change(_), .. })),
+                "{commands:?}"
+            );
             assert_eq!(place(&harness).top(), before.top(), "stays");
         }
         let tapped = slider(&harness).left_center() + vec2(20.0, 0.0);
         let commands = swipe(&mut harness, tapped, Vec2::ZERO);
-        assert!(matches!(commands.last(), Some(Command::ChangeClip { .. })), "{commands:?}");
+        assert!(matches!(commands.last(), Some(Command::EditClip { edit: ClipEdit::Change(_), .. })), "{commands:?}");
     }
+}
+
+/// Borrowed clips are renamed like the model's own; Esc leaves the name as it was.
+#[test]
+fn the_current_clip_is_renamed_and_undone() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    let clip = ClipId::Borrowed(motion_called("dance.bvh"), 0);
+    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Clip(clip.clone())));
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::CLIP);
+    let enter = |harness: &mut Harness<'_, Bench>, name: &str, key| {
+        harness.get_by_label(text::CLIP_NAME).focus();
+        harness.run();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        harness.get_by_label(text::CLIP_NAME).type_text(name);
+        harness.run();
+        press_key(harness, key)
+    };
+    assert_eq!(enter(&mut harness, "Never", egui::Key::Escape), []);
+    let rename = Command::EditClip { clip, edit: ClipEdit::Rename("Stroll".to_owned()) };
+    assert_eq!(enter(&mut harness, "Stroll", egui::Key::Enter), [rename]);
+    harness.run();
+    assert!(harness.query_by_label("Stroll").is_some(), "in the list of clips");
+    assert_eq!(harness.get_by_label(text::CLIP_NAME).value().as_deref(), Some("Stroll"));
+    press(&mut harness, text::UNDO_STEP);
+    assert!(harness.query_by_label("Walk (2)").is_some() && harness.query_by_label("Stroll").is_none());
 }

@@ -5,18 +5,19 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
 use gaitway::asset::{Asset, AssetParts, MeshInstance};
 use gaitway::editor::Contents;
-use gaitway::library::{Model, Motion};
+use gaitway::library::{ClipId, Model, Motion};
 use gaitway::mesh::{Geometry, Mesh};
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::text;
 
 use crate::bench::{Bench, WIDE, bench, model_with_clips, press, sample_bench};
+use crate::by_place::motion_called;
 
 #[test]
 fn every_clip_and_the_rest_pose_can_be_chosen() {
     let mut harness = sample_bench(WIDE);
-    for name in ["Wave", "Idle", "Walk"] {
-        let expected = Command::SetClip(ClipChoice::Named(name.to_owned()));
+    for (name, index) in [("Wave", 2), ("Idle", 1), ("Walk", 0)] {
+        let expected = Command::SetClip(ClipChoice::Clip(ClipId::Own(index)));
         assert_eq!(press(&mut harness, name), [expected], "{name}");
     }
     assert_eq!(press(&mut harness, text::REST_POSE), [Command::SetClip(ClipChoice::RestPose)]);
@@ -32,7 +33,7 @@ fn the_chosen_clip_is_in_sight() {
     };
     assert!(!is_in_sight(&harness));
     harness.state_mut().change(|state| {
-        state.playhead.clip = ClipChoice::Named("Move 50".to_owned());
+        state.playhead.clip = ClipChoice::called("Move 50");
     });
     harness.run_steps(30);
     assert!(is_in_sight(&harness));
@@ -76,7 +77,7 @@ fn a_borrowed_clip_is_selected_and_in_sight() {
     }
     harness.run_steps(120);
     assert!(harness.get_by_label("Move 0 (2)").rect().top() > WIDE[1], "scrolled away");
-    harness.state_mut().editor.remove_motion(0);
+    harness.state_mut().editor.remove_motion(&motion_called("first.bvh"));
     borrow(&mut harness, "second.glb");
 }
 
@@ -114,7 +115,7 @@ fn search_narrows_many_clips_and_can_be_cleared() {
     harness.run();
     assert!(harness.query_by_label("Move 11").is_some());
     assert!(harness.query_by_label("Move 3").is_none());
-    let expected = Command::SetClip(ClipChoice::Named("Move 11".to_owned()));
+    let expected = Command::SetClip(ClipChoice::called("Move 11"));
     assert_eq!(press(&mut harness, "Move 11"), [expected]);
     press(&mut harness, text::CLEAR_SEARCH);
     assert!(harness.query_by_label("Move 3").is_some());

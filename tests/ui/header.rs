@@ -4,7 +4,7 @@ use egui::ThemePreference;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::{ClipFormat, Export};
-use gaitway::library::{Library, Model};
+use gaitway::library::{ClipId, Library, Model};
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, Show};
 use gaitway::ui::{Saved, Tab, UiAction, text};
@@ -12,6 +12,7 @@ use gaitway::ui::{Saved, Tab, UiAction, text};
 use crate::bench::{
     Bench, NARROW, WIDE, bench, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench,
 };
+use crate::by_place::motion_called;
 
 /// Presses an entry of a menu.
 pub fn choose(harness: &mut Harness<'_, Bench>, menu: &str, entry: &str) {
@@ -74,16 +75,16 @@ fn export_offers_what_the_view_has() {
     press(&mut harness, text::EXPORT);
     assert!(harness.query_by_label(text::SAVE_MAP).is_none(), "the clip is the model's own");
     press(&mut harness, text::save_clip(ClipFormat::Glb));
-    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::Named("3".to_owned())));
+    harness.state_mut().editor.apply(Command::SetClip(ClipChoice::called("3")));
     harness.run();
     for entry in [text::SAVE_GLB, text::SAVE_MAP, text::save_clip(ClipFormat::Bvh)] {
         choose(&mut harness, text::EXPORT, entry);
     }
     let files = [
-        Export::Clip { clip: 0, format: ClipFormat::Glb },
-        Export::Model { clip: 3 },
-        Export::Map { motion: 0 },
-        Export::Clip { clip: 3, format: ClipFormat::Bvh },
+        Export::Clip { clip: ClipId::Own(0), format: ClipFormat::Glb },
+        Export::Model { clip: ClipId::Borrowed(motion_called("dance.bvh"), 0) },
+        Export::Map { motion: motion_called("dance.bvh") },
+        Export::Clip { clip: ClipId::Borrowed(motion_called("dance.bvh"), 0), format: ClipFormat::Bvh },
     ];
     assert_eq!(harness.state().actions, files.map(|file| UiAction::Save(Saved::File(file))));
     harness.state_mut().actions.clear();
@@ -200,7 +201,7 @@ fn an_open_model_lends_its_motion() {
     let editor = &mut harness.state_mut().editor;
     editor.borrow_from(dancer, &mut |_| Ok(())).expect("it has the same joints");
     let (library, state) = (editor.library(), editor.state());
-    assert_eq!(library.active().expect("a model").borrowed_clips().count(), 3);
+    assert_eq!(library.active().expect("a model").clips().borrowed().count(), 3);
     assert_eq!(state.sources.motion, ["dancer.glb"]);
     assert!(harness.state_mut().editor.undo());
     assert_eq!(harness.state().library().motions().len(), 0);

@@ -3,6 +3,7 @@
 use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::library::ClipId;
 use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
 use gaitway::ui::{KEY_TABLE, RecordingProgress, Tab, UiAction, text};
 
@@ -12,7 +13,7 @@ use crate::motion::press_row;
 
 #[test]
 fn keys_do_what_the_help_says() {
-    let clip = |name: &str| Command::SetClip(ClipChoice::Named(name.to_owned()));
+    let clip = |index| Command::SetClip(ClipChoice::Clip(ClipId::Own(index)));
     let turn = |yaw_radians| Command::Orbit { yaw_radians, pitch_radians: 0.0 };
     let cases = [
         (Key::Space, Command::TogglePlaying),
@@ -22,8 +23,8 @@ fn keys_do_what_the_help_says() {
         (Key::ArrowDown, Command::Zoom { factor: 1.0 / 0.9, right: 0.0, up: 0.0 }),
         (Key::ArrowLeft, turn(-0.12)),
         (Key::ArrowRight, turn(0.12)),
-        (Key::Num1, clip("Walk")),
-        (Key::Num3, clip("Wave")),
+        (Key::Num1, clip(0)),
+        (Key::Num3, clip(2)),
         (Key::F, Command::FrameAll),
         (Key::C, Command::SetFollow(true)),
         (Key::Home, Command::SetCamera(CameraChoice::Auto)),

@@ -3,19 +3,24 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::Export;
+use gaitway::library::ClipId;
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use gaitway::state::Command;
+use gaitway::state::{Command, LayeredClip};
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips_named, motion_bench, press, sample_bench};
 use crate::header::choose;
+
+/// Clips of the walker.
+const IDLE: ClipId = ClipId::Own(1);
+const WAVE: ClipId = ClipId::Own(2);
 
 fn scrolled_to(harness: &mut Harness<'_, Bench>, label: &str) {
     harness.get_by_label(label).scroll_to_me();
     harness.run();
 }
 
-fn layers(harness: &Harness<'_, Bench>) -> Vec<ClipLayer> {
+fn layers(harness: &Harness<'_, Bench>) -> Vec<LayeredClip> {
     harness.state().state().edits.layers.clone()
 }
 
@@ -26,7 +31,8 @@ fn a_layer_is_added_masked_raised_and_removed() {
     scrolled_to(&mut harness, text::ADD_LAYER);
     // The first clip plays, so the layer gets the second.
     let upper = [BodyPart::Torso, BodyPart::Head, BodyPart::LeftArm, BodyPart::RightArm];
-    let idle = ClipLayer { clip: "Idle".to_owned(), mask: LayerMask::of_parts(&upper), ..ClipLayer::default() };
+    let layer = ClipLayer { mask: LayerMask::of_parts(&upper), ..ClipLayer::default() };
+    let idle = LayeredClip { clip: IDLE, layer };
     assert_eq!(press(&mut harness, text::ADD_LAYER), [Command::SetLayers(vec![idle.clone()])]);
     assert!(harness.query_by_label(&text::layer_track("Idle")).is_some());
     scrolled_to(&mut harness, text::body_part(BodyPart::LeftArm));
@@ -35,7 +41,8 @@ fn a_layer_is_added_masked_raised_and_removed() {
     scrolled_to(&mut harness, &name);
     press(&mut harness, &name);
     let without_arm = LayerMask::of_parts(&[BodyPart::Torso, BodyPart::Head, BodyPart::RightArm]);
-    let edited = ClipLayer { mask: without_arm, mode: LayerMode::Additive, ..idle.clone() };
+    let layer = ClipLayer { mask: without_arm, mode: LayerMode::Additive, ..ClipLayer::default() };
+    let edited = LayeredClip { clip: IDLE, layer };
     assert_eq!(layers(&harness), std::slice::from_ref(&edited));
     scrolled_to(&mut harness, text::ADD_LAYER);
     press(&mut harness, text::ADD_LAYER);
@@ -49,7 +56,7 @@ fn a_layer_is_added_masked_raised_and_removed() {
     harness.run();
     assert_eq!(layers(&harness), [idle.clone(), edited.clone()]);
     choose(&mut harness, text::EXPORT, text::SAVE_GLB);
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: ClipId::Own(0) }))]);
     harness.get_all_by_label(text::REMOVE_LAYER).nth(1).expect("two").click();
     harness.run();
     assert_eq!(layers(&harness), [edited]);
@@ -91,7 +98,7 @@ fn a_long_name_leaves_the_panel_as_it_is() {
     scrolled_to(&mut harness, text::ADD_LAYER);
     press(&mut harness, text::ADD_LAYER);
     let whole = &harness.state().state().edits.layers[..];
-    assert!(matches!(whole, [layer] if layer.mask.is_all()), "a model without arms: {whole:?}");
+    assert!(matches!(whole, [over] if over.layer.mask.is_all()), "a model without arms: {whole:?}");
     harness.run();
     assert_eq!(harness.state().viewport.x_range(), before.x_range());
 }
@@ -100,7 +107,7 @@ fn a_long_name_leaves_the_panel_as_it_is() {
 fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     harness.state_mut().editor.apply(Command::SelectJoint(Some(5)));
-    let wave = ClipLayer { clip: "Wave".to_owned(), weight: 0.25, ..ClipLayer::default() };
+    let wave = LayeredClip { clip: WAVE, layer: ClipLayer { weight: 0.25, ..ClipLayer::default() } };
     harness.state_mut().editor.apply(Command::SetLayers(vec![wave.clone()]));
     harness.run();
     press(&mut harness, Tab::Motion.label());
@@ -111,7 +118,7 @@ fn the_selected_joint_limits_a_layer_in_the_motion_tab() {
     scrolled_to(&mut harness, &below);
     press(&mut harness, &below);
     let mut limited = wave.clone();
-    limited.mask.joints.insert(5);
+    limited.layer.mask.joints.insert(5);
     assert_eq!(layers(&harness), [limited]);
     press(&mut harness, &below);
     assert_eq!(layers(&harness), [wave]);
@@ -122,7 +129,7 @@ fn hundreds_of_layers_leave_most_of_the_window_to_the_viewport() {
     let mut harness = sample_bench(WIDE);
     harness.run();
     let before = harness.state().viewport.height();
-    let layer = ClipLayer { clip: "Idle".to_owned(), ..ClipLayer::default() };
+    let layer = LayeredClip { clip: IDLE, layer: ClipLayer::default() };
     harness.state_mut().editor.apply(Command::SetLayers(vec![layer; 300]));
     harness.run();
     let taken = before - harness.state().viewport.height();
@@ -132,10 +139,10 @@ fn hundreds_of_layers_leave_most_of_the_window_to_the_viewport() {
 #[test]
 fn removing_a_layer_by_key_leaves_the_focus_at_the_button_that_adds_one() {
     let mut harness = sample_bench(WIDE);
-    let layer = |clip: &str| ClipLayer { clip: clip.to_owned(), ..ClipLayer::default() };
-    harness.state_mut().editor.apply(Command::SetLayers(vec![layer("Idle"), layer("Wave")]));
+    let layer = |clip| LayeredClip { clip, layer: ClipLayer::default() };
+    harness.state_mut().editor.apply(Command::SetLayers(vec![layer(IDLE), layer(WAVE)]));
     press(&mut harness, Tab::Motion.label());
-    for left in [vec![layer("Wave")], vec![]] {
+    for left in [vec![layer(WAVE)], vec![]] {
         scrolled_to(&mut harness, text::ADD_LAYER);
         harness.get_all_by_label(text::REMOVE_LAYER).last().expect("a layer").focus();
         harness.run();

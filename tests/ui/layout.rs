@@ -3,8 +3,9 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::library::ClipId;
 use gaitway::retarget::ClipLayer;
-use gaitway::state::Command;
+use gaitway::state::{Command, LayeredClip};
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
 use crate::bench::{
@@ -137,7 +138,10 @@ fn a_phone_on_its_side_is_mostly_viewport() {
     for size in [ON_ITS_SIDE, [667.0, 375.0], [932.0, 430.0]] {
         let mut harness = motion_bench(size, &["walk.bvh"]);
         // There is no room for tracks.
-        harness.state_mut().editor.apply(Command::SetLayers(vec![ClipLayer::default()]));
+        harness
+            .state_mut()
+            .editor
+            .apply(Command::SetLayers(vec![LayeredClip { clip: ClipId::Own(0), layer: ClipLayer::default() }]));
         harness.run();
         let whole = harness.state().viewport;
         assert!(whole.area() >= 0.5 * size[0] * size[1], "{whole:?} of {size:?}");

@@ -4,6 +4,9 @@
 mod allocations;
 mod bench;
 mod by_hand;
+#[allow(dead_code)]
+#[path = "../support/by_place.rs"]
+mod by_place;
 mod call_sites;
 mod change;
 mod clips;

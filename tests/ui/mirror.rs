@@ -1,5 +1,6 @@
 //! The panels' mirror: what it lists, when it is built, and what the user does with it.
 
+use gaitway::library::ClipId;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -11,7 +12,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::mirror::{Mirror, entries};
 use gaitway::retarget::ClipLayer;
-use gaitway::state::{Command, Hidden};
+use gaitway::state::{Command, Hidden, LayeredClip};
 use gaitway::ui::{Sheet, Tab, Toast, text};
 use serde_json::Value;
 
@@ -251,7 +252,10 @@ fn every_control_of_a_phone_is_large_enough_for_fingers() {
         let tree = Arc::new(Mutex::new(None));
         harness.ctx.add_plugin(Spy(tree.clone()));
         harness.state_mut().editor.apply(Command::SelectJoint(Some(3)));
-        harness.state_mut().editor.apply(Command::SetLayers(vec![ClipLayer::default()]));
+        harness
+            .state_mut()
+            .editor
+            .apply(Command::SetLayers(vec![LayeredClip { clip: ClipId::Own(0), layer: ClipLayer::default() }]));
         let check = |harness: &mut Harness<'_, Bench>, place: &str| {
             harness.run();
             let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");

@@ -6,6 +6,7 @@ use egui_kittest::kittest::Queryable;
 use gaitway::anim::TimeRange;
 use gaitway::app::mirror::entries;
 use gaitway::editor::Export;
+use gaitway::library::ClipId;
 use gaitway::retarget::{Pin, PinGoal, PinTimes};
 use gaitway::state::Command;
 use gaitway::ui::{Saved, Tab, UiAction, text};
@@ -234,7 +235,7 @@ fn a_pinned_clip_can_be_saved() {
     press(&mut harness, text::EXPORT);
     choice(&mut harness, text::PIN, text::PIN_TO_POINT);
     crate::header::choose(&mut harness, text::EXPORT, text::SAVE_GLB);
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: 0 }))]);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: ClipId::Own(0) }))]);
 }
 
 /// So that nobody has to remember which joints are pinned.

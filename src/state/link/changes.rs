@@ -1,22 +1,25 @@
-//! The keys of changed clips: `mirror=CLIP` and `change=CLIP:trim:0.5:1.5,reverse`, one each per clip, and `copy=NAME:CLIP`.
-//! Mirroring comes first whatever else changes, so it needs no place in the list. Names are escaped as joint names are.
+//! The keys of edited clips: `mirror=CLIP`, `change=CLIP:trim:0.5:1.5,reverse` and `rename=CLIP:NAME`, one each per clip, and
+//! `copy=NAME:CLIP`. Mirroring comes first whatever else changes, so it needs no place in the list. Names are escaped as joint names
+//! are.
 
 use super::values::{escaped_name, finite, unescaped_name};
 use super::{Read, Written};
 use crate::anim::TimeRange;
+use crate::library::{ClipCopy, ClipEdits, ClipId};
 use crate::retarget::ClipChanges;
-use crate::state::{ClipCopy, Edits, ViewerState};
+use crate::state::ViewerState;
 
 pub(super) const MIRROR: &str = "a clip's name or index";
 pub(super) const COPY: &str =
     "a new name and the clip that it is a copy of: Walk part 1:Walk; up to 100, each with its own name";
+pub(super) const RENAME: &str = "a clip and its new name: Walk:Stroll; up to 80 characters";
 pub(super) const CHANGE: &str = "a clip and its changes: Walk:trim:0.5:1.5,reverse,speed:2,loop:0.2,offset:1:0,turn:90; the speed is from 0.1 to 10";
 const TRIM: &str = "trim:START:END in seconds, the end after the start";
 
 pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
-    match clip_name(text) {
-        Some(name) => {
-            state.edits.clips.entry(name).or_default().mirror = true;
+    match read_clip(text) {
+        Some(clip) => {
+            state.edits.clips.changes.entry(clip).or_default().mirror = true;
             Read::Done
         }
         None => Read::Bad(MIRROR),
@@ -24,8 +27,8 @@ pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write_mirror(state: &ViewerState) -> Written {
-    let mirrored = state.edits.clips.iter().filter(|(_, changes)| changes.mirror);
-    Written::List(mirrored.map(|(name, _)| escaped_name(name)).collect())
+    let mirrored = state.edits.clips.changes.iter().filter(|(_, changes)| changes.mirror);
+    Written::List(mirrored.map(|(clip, _)| clip_text(clip)).collect())
 }
 
 pub(super) fn reset_mirror(state: &mut ViewerState) {
@@ -33,29 +36,65 @@ pub(super) fn reset_mirror(state: &mut ViewerState) {
 }
 
 pub(super) fn read_copy(state: &mut ViewerState, text: &str) -> Read {
-    let names = text.split_once(':').and_then(|(name, of)| Some((clip_name(name)?, clip_name(of)?)));
-    let copies = &mut state.edits.copies;
+    let names = text.split_once(':').and_then(|(name, of)| Some((clip_name(name)?, read_clip(of)?)));
+    let edits = &mut state.edits.clips;
     match names {
-        Some((name, of)) if copies.len() < Edits::MAX_COPIES && copies.iter().all(|copy| copy.name != name) => {
-            copies.push(ClipCopy { name, of });
+        Some((name, of))
+            if edits.copies.len() < ClipEdits::MAX_COPIES && !copy_names(edits).any(|taken| *taken == name) =>
+        {
+            let id = edits.new_copy_id();
+            edits.copies.push(ClipCopy { id, of });
+            edits.names.insert(ClipId::Copy(id), name);
             Read::Done
         }
         _ => Read::Bad(COPY),
     }
 }
 
+fn copy_names(edits: &ClipEdits) -> impl Iterator<Item = &String> {
+    edits.copies.iter().filter_map(|copy| edits.names.get(&ClipId::Copy(copy.id)))
+}
+
 pub(super) fn write_copy(state: &ViewerState) -> Written {
-    let copies = state.edits.copies.iter();
-    Written::List(copies.map(|ClipCopy { name, of }| format!("{}:{}", escaped_name(name), escaped_name(of))).collect())
+    let ClipEdits { copies, names, .. } = &state.edits.clips;
+    let text = |copy: &ClipCopy| {
+        let name = names.get(&ClipId::Copy(copy.id))?;
+        Some(format!("{}:{}", escaped_name(name), clip_text(&copy.of)))
+    };
+    Written::List(copies.iter().filter_map(text).collect())
+}
+
+pub(super) fn reset_copy(state: &mut ViewerState) {
+    let edits = &mut state.edits.clips;
+    edits.copies.clear();
+    edits.names.retain(|clip, _| !matches!(clip, ClipId::Copy(_)));
+}
+
+pub(super) fn read_rename(state: &mut ViewerState, text: &str) -> Read {
+    match text.split_once(':').and_then(|(clip, name)| Some((read_clip(clip)?, clip_name(name)?))) {
+        Some((clip, name)) => {
+            state.edits.clips.names.insert(clip, name);
+            Read::Done
+        }
+        None => Read::Bad(RENAME),
+    }
+}
+
+pub(super) fn write_rename(state: &ViewerState) -> Written {
+    let renamed = state.edits.clips.names.iter().filter(|(clip, _)| !matches!(clip, ClipId::Copy(_)));
+    Written::List(renamed.map(|(clip, name)| format!("{}:{}", clip_text(clip), escaped_name(name))).collect())
+}
+
+pub(super) fn reset_rename(state: &mut ViewerState) {
+    state.edits.clips.names.retain(|clip, _| matches!(clip, ClipId::Copy(_)));
 }
 
 pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
     match read(text) {
-        Ok((name, changes)) => {
+        Ok((clip, changes)) => {
             let clips = &mut state.edits.clips;
-            let mirror = clips.get(&name).is_some_and(|before| before.mirror);
-            clips.insert(name, ClipChanges { mirror, ..changes });
-            clips.retain(|_, changes| !changes.is_none());
+            let mirror = clips.changes_of(&clip).mirror;
+            clips.set_changes(clip, ClipChanges { mirror, ..changes });
             Read::Done
         }
         Err(expected) => Read::Bad(expected),
@@ -63,9 +102,9 @@ pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write_change(state: &ViewerState) -> Written {
-    let texts = state.edits.clips.iter().filter_map(|(name, changes)| {
+    let texts = state.edits.clips.changes.iter().filter_map(|(clip, changes)| {
         let text = words(changes).join(",");
-        (!text.is_empty()).then(|| format!("{}:{text}", escaped_name(name)))
+        (!text.is_empty()).then(|| format!("{}:{text}", clip_text(clip)))
     });
     Written::List(texts.collect())
 }
@@ -75,12 +114,23 @@ pub(super) fn reset_change(state: &mut ViewerState) {
 }
 
 fn reset(state: &mut ViewerState, one: fn(&mut ClipChanges)) {
-    state.edits.clips.values_mut().for_each(one);
-    state.edits.clips.retain(|_, changes| !changes.is_none());
+    let changes = &mut state.edits.clips.changes;
+    changes.values_mut().for_each(one);
+    changes.retain(|_, changes| !changes.is_none());
 }
 
-/// Reads the name or index of a clip.
-pub(super) fn clip_name(text: &str) -> Option<String> {
+/// Writes what a link calls a clip.
+pub(super) fn clip_text(clip: &ClipId) -> String {
+    escaped_name(&clip.to_string())
+}
+
+/// Reads what a link calls a clip.
+pub(super) fn read_clip(text: &str) -> Option<ClipId> {
+    clip_name(text).map(|name| ClipId::called(&name))
+}
+
+/// Reads a name, which isn't empty.
+fn clip_name(text: &str) -> Option<String> {
     unescaped_name(text).filter(|name| !name.is_empty())
 }
 
@@ -109,7 +159,7 @@ fn words(changes: &ClipChanges) -> Vec<String> {
 }
 
 /// The error is what was expected.
-fn read(text: &str) -> Result<(String, ClipChanges), &'static str> {
+fn read(text: &str) -> Result<(ClipId, ClipChanges), &'static str> {
     let (name, words) = text.split_once(':').ok_or(CHANGE)?;
     let mut changes = ClipChanges::default();
     for word in words.split(',') {
@@ -132,5 +182,5 @@ fn read(text: &str) -> Result<(String, ClipChanges), &'static str> {
             _ => return Err(CHANGE),
         }
     }
-    Ok((clip_name(name).ok_or(CHANGE)?, changes))
+    Ok((read_clip(name).ok_or(CHANGE)?, changes))
 }

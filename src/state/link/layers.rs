@@ -1,14 +1,15 @@
 //! The layers of a view, one `layers` key each, the lowest first: `CLIP`, or `CLIP:` and its settings, such as
 //! `Wave:weight:0.5,additive,mask:left-arm:right-arm`. Names are escaped as joint names are. The command line has the same text.
 
-use super::changes::clip_name;
-use super::values::{escaped_name, finite};
+use super::changes::{clip_text, read_clip};
+use super::values::finite;
 use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
+use crate::state::LayeredClip;
 
 pub(super) const EXPECTED: &str = "a clip and its settings: Wave:weight:0.5,speed:2,start:0.3,additive,mask:left-arm:12; \
                                    parts are hips, torso, head, left-arm, right-arm, left-leg and right-leg";
 
-pub(super) fn text(layer: &ClipLayer) -> String {
+pub(super) fn text(LayeredClip { clip, layer }: &LayeredClip) -> String {
     let default = ClipLayer::default();
     let mut words = Vec::new();
     let numbers = [
@@ -29,14 +30,14 @@ pub(super) fn text(layer: &ClipLayer) -> String {
         let items: Vec<String> = parts.chain(layer.mask.joints.iter().map(ToString::to_string)).collect();
         words.push(format!("mask:{}", items.join(":")));
     }
-    let name = escaped_name(&layer.clip);
+    let name = clip_text(clip);
     if words.is_empty() { name } else { format!("{name}:{}", words.join(",")) }
 }
 
 /// Reads what [`text()`] writes.
-pub(super) fn read(text: &str) -> Option<ClipLayer> {
+pub(super) fn read(text: &str) -> Option<LayeredClip> {
     let (name, words) = text.split_once(':').unwrap_or((text, ""));
-    let mut layer = ClipLayer { clip: clip_name(name)?, ..ClipLayer::default() };
+    let (clip, mut layer) = (read_clip(name)?, ClipLayer::default());
     for word in words.split(',').filter(|_| !words.is_empty()) {
         let (kind, value) = word.trim().split_once(':').unwrap_or((word.trim(), ""));
         match (kind, value) {
@@ -49,7 +50,7 @@ pub(super) fn read(text: &str) -> Option<ClipLayer> {
             _ => return None,
         }
     }
-    Some(layer)
+    Some(LayeredClip { clip, layer })
 }
 
 /// Adds a part of the body or a joint.

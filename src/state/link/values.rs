@@ -111,14 +111,14 @@ pub(super) fn read_text(text: &str) -> Option<String> {
 }
 
 pub(super) fn read_clip(text: &str) -> Option<ClipChoice> {
-    Some(if text.is_empty() { ClipChoice::RestPose } else { ClipChoice::Named(text.to_owned()) })
+    Some(if text.is_empty() { ClipChoice::RestPose } else { ClipChoice::called(text) })
 }
 
 pub(super) fn write_clip(clip: &ClipChoice) -> Written {
     match clip {
         ClipChoice::First => Written::Unset,
         ClipChoice::RestPose => Written::Text(String::new()),
-        ClipChoice::Named(name) => Written::Text(name.clone()),
+        ClipChoice::Clip(clip) => Written::Text(clip.to_string()),
     }
 }
 
@@ -270,8 +270,8 @@ pub(super) fn read_range(text: &str) -> Option<TimeRange> {
 /// Writes the elapsed time, the clip's time and the clip's name, which is empty for the rest pose.
 pub(super) fn fade_text(fade: &Fade) -> String {
     let clip = match &fade.clip {
-        ClipChoice::Named(name) => name,
-        ClipChoice::First | ClipChoice::RestPose => "",
+        ClipChoice::Clip(clip) => clip.to_string(),
+        ClipChoice::First | ClipChoice::RestPose => String::new(),
     };
     format!("{},{},{clip}", fade.elapsed_secs, fade.time_secs)
 }
@@ -281,7 +281,7 @@ pub(super) fn read_fade(text: &str) -> Option<Fade> {
     let (elapsed_secs, time_secs) = (finite(parts.next()?)?, finite(parts.next()?)?);
     let clip = match parts.next()? {
         "" => ClipChoice::RestPose,
-        name => ClipChoice::Named(name.to_owned()),
+        name => ClipChoice::called(name),
     };
     Some(Fade { clip, time_secs, elapsed_secs })
 }

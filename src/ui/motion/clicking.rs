@@ -9,17 +9,18 @@ use super::Pairing;
 use super::picker::Picking;
 use crate::anim::JointIndex;
 use crate::frame::Character;
+use crate::library::MotionId;
 use crate::state::{Command, title};
 use crate::ui::viewport::{Canvas, panes};
 use crate::ui::{Output, Sheet, Shown, Tab, UiState, style, text};
 
 /// What the next click in the viewport picks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Clicking {
     /// A joint of the model, to choose a source for.
-    Target { motion: usize },
+    Target { motion: MotionId },
     /// The source of this joint of the model.
-    Source { motion: usize, target: usize },
+    Source { motion: MotionId, target: usize },
 }
 
 /// Maximum distance of a click or touch from a joint.
@@ -43,8 +44,8 @@ pub(in crate::ui) fn stop(local: &mut UiState) -> bool {
 /// While picking, handles the pointer, paints a dot on every joint that can be picked, and returns true.
 pub(in crate::ui) fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
     let Canvas { ui, painter, response, shown } = canvas;
-    let Some(clicking) = local.motion.clicking else { return false };
-    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
+    let Some(clicking) = local.motion.clicking.clone() else { return false };
+    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = &clicking;
     let Some(pairing) = Pairing::of(shown, motion) else {
         local.motion.clicking = None;
         return false;
@@ -80,14 +81,14 @@ pub(in crate::ui) fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Out
             Clicking::Target { .. } => {
                 out.commands.push(Command::SelectJoint(Some(number)));
                 if source_is_shown(shown, &pairing) {
-                    local.motion.clicking = Some(Clicking::Source { motion, target: number });
+                    local.motion.clicking = Some(Clicking::Source { motion: motion.clone(), target: number });
                 } else {
-                    local.motion.picking = Some(Picking::new(motion, number));
+                    local.motion.picking = Some(Picking::new(motion.clone(), number));
                     finish(local);
                 }
             }
             Clicking::Source { target, .. } => {
-                out.commands.push(Command::SetSource { motion, target, source: Some(number) });
+                out.commands.push(Command::SetSource { motion: motion.clone(), target, source: Some(number) });
                 finish(local);
             }
         }
@@ -132,8 +133,8 @@ fn nearest(places: &[(JointIndex, Pos2)], position: Pos2) -> Option<(JointIndex,
 
 /// Says over the viewport what to click, and offers alternatives.
 pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>, local: &mut UiState) {
-    let Some(clicking) = local.motion.clicking else { return };
-    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
+    let Some(clicking) = local.motion.clicking.clone() else { return };
+    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = &clicking;
     let Some(pairing) = Pairing::of(shown, motion) else { return };
     let what = match clicking {
         Clicking::Target { .. } => text::PICK_TARGET.to_owned(),
@@ -163,7 +164,7 @@ pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>,
                 if let Clicking::Source { target, .. } = clicking
                     && ui.button(text::CHOOSE_FROM_LIST).clicked()
                 {
-                    local.motion.picking = Some(Picking::new(motion, target));
+                    local.motion.picking = Some(Picking::new(motion.clone(), target));
                     finish(local);
                 }
                 if ui.button(text::DONE_PICKING).on_hover_text("Esc does the same").clicked() {

@@ -71,7 +71,7 @@ pub(super) struct Turn {
 
 pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out: &mut Output) {
     let &About { shown, pairing, map, row, texts } = about;
-    let edit = |edit| Command::EditMap { motion: pairing.index, edit };
+    let edit = |edit| Command::EditMap { motion: pairing.id(), edit };
     let palette = style::palette(ui);
     // Unfilled, so that fields and buttons stand out.
     let card = egui::Frame::new()
@@ -87,12 +87,12 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
         ui.horizontal_wrapped(|ui| {
             let list = ui.button(text::LIST_SOURCES).on_hover_text("All joints of the motion");
             if list.clicked() {
-                tab.picking = Some(Picking::new(pairing.index, row.number));
+                tab.picking = Some(Picking::new(pairing.id(), row.number));
             }
             if source_is_shown(shown, pairing)
                 && ui.button(text::CLICK_SOURCE).on_hover_text("In the viewport, on the motion's skeleton").clicked()
             {
-                tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
+                tab.clicking = Some(Clicking::Source { motion: pairing.id(), target: row.number });
             }
             let clear = ui.add_enabled(row.source.is_some(), egui::Button::new(text::CLEAR_SOURCE));
             let clear = clear.on_hover_text("Leave the joint unmapped");
@@ -101,7 +101,7 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
                     // There is nothing more to clear.
                     list.request_focus();
                 }
-                out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source: None });
+                out.commands.push(Command::SetSource { motion: pairing.id(), target: row.number, source: None });
             }
         });
         match row.source {
@@ -156,7 +156,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
         match find_source(pairing, &typed.text) {
             Ok(source) => {
                 if source != source_number(pairing, row) {
-                    out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source });
+                    out.commands.push(Command::SetSource { motion: pairing.id(), target: row.number, source });
                 }
                 typed = Typed::new(pairing, row);
             }

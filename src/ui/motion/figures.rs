@@ -5,6 +5,7 @@ use std::rc::Rc;
 use egui::{Align2, Color32, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Contents, MotionTab, Pairing};
+use crate::anim::Clip;
 use crate::retarget::{Contacts, Figures, Planting, Verdict, Verdicts};
 use crate::state::active_clip;
 use crate::ui::widgets::controls::{self, capitals};
@@ -14,7 +15,7 @@ use crate::ui::{Shown, style, text};
 #[derive(Debug)]
 pub(super) struct Fit {
     contents: Rc<Contents>,
-    clip: usize,
+    clip: Clip,
     /// The worst of all verdicts, also in words.
     overall: Option<(Verdict, String)>,
     lines: Vec<Line>,
@@ -44,18 +45,18 @@ pub(super) fn show(
     tab: &mut MotionTab,
 ) {
     let clip = active_clip(pairing.model, shown.state);
-    let Some((clip, figures)) = clip.and_then(|clip| Some((clip, shown.library.figures(clip)?))) else {
+    let Some((clip, figures)) = clip.and_then(|clip| Some((clip, shown.library.figures(clip.id())?))) else {
         controls::hint(ui, text::NOTHING_TO_MEASURE);
         return;
     };
-    tab.fit.take_if(|fit| fit.clip != clip || !Rc::ptr_eq(&fit.contents, contents));
+    tab.fit.take_if(|fit| !fit.clip.is_same(clip.unchanged()) || !Rc::ptr_eq(&fit.contents, contents));
     let fit = tab.fit.get_or_insert_with(|| {
-        let planting = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting);
+        let planting = clip.borrowed().and_then(|borrowed| borrowed.planting);
         let verdicts = Verdicts::new(figures, pairing.model.size_metres(), pairing.map.contacts);
         let overall = verdicts.worst().map(|worst| (worst, text::overall(worst)));
         Fit {
             contents: contents.clone(),
-            clip,
+            clip: clip.unchanged().clone(),
             overall,
             lines: lines(figures, &verdicts, planting, pairing.map.contacts),
         }

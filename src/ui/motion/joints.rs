@@ -262,7 +262,7 @@ impl Table<'_, '_> {
                 tab.table.pressed = joint.map(|joint| (joint, top));
                 self.out.commands.push(Command::SelectJoint(joint));
             }
-            Some(Pressed::Source) => tab.picking = Some(Picking::new(self.pairing.index, row.number)),
+            Some(Pressed::Source) => tab.picking = Some(Picking::new(self.pairing.id(), row.number)),
             None => {}
         }
         if let Some(texts) = detail.as_ref().filter(|_| is_chosen) {

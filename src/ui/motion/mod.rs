@@ -21,9 +21,9 @@ use super::icons::{Icon, icon_button_sized, icon_size};
 use super::{HostState, Output, Shown, UiAction, UiState, change, clips, controls, layers, pins, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
-use crate::library::{Model, ModelId, Motion};
+use crate::library::{ClipId, Model, ModelClip, ModelId, Motion, MotionId};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Reason, Unmapped};
-use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, title};
+use crate::state::{ClipChoice, Command, MapEdit, ViewerState, title};
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
@@ -36,7 +36,7 @@ pub struct MotionTab {
     part: Section,
     table: joints::TableView,
     /// The motion last shown, to stay on when its map is cleared and its clip is gone.
-    motion: usize,
+    motion: Option<MotionId>,
     /// The open list of sources.
     picking: Option<picker::Picking>,
     /// The joint being picked in the viewport.
@@ -175,7 +175,6 @@ static NO_MAP: LazyLock<Arc<JointMap>> = LazyLock::new(Arc::default);
 struct Pairing<'a> {
     model: &'a Model,
     motion: &'a Motion,
-    index: usize,
     map: &'a Arc<JointMap>,
     proposal: Option<&'a Proposal>,
     /// For custom joint names.
@@ -184,18 +183,22 @@ struct Pairing<'a> {
 
 impl<'a> Pairing<'a> {
     /// The motion whose clip plays, else the one last shown, else the first.
-    fn shown(shown: &Shown<'a>, before: usize) -> Option<Self> {
-        let model = shown.library.active()?;
-        let playing = active_clip(model, shown.state).and_then(|clip| model.borrowed(clip));
-        let index = playing.map_or(before, |borrowed| borrowed.motion);
-        Self::of(shown, index).or_else(|| Self::of(shown, 0))
+    fn shown(shown: &Shown<'a>, before: Option<&MotionId>) -> Option<Self> {
+        let playing = shown.clip().and_then(ModelClip::borrowed).map(|borrowed| &borrowed.motion);
+        let first = || Self::of(shown, shown.library.motions().first()?.id());
+        playing.or(before).and_then(|motion| Self::of(shown, motion)).or_else(first)
     }
 
-    fn of(shown: &Shown<'a>, index: usize) -> Option<Self> {
+    fn of(shown: &Shown<'a>, motion: &MotionId) -> Option<Self> {
         let library = shown.library;
-        let (model, motion) = (library.active()?, library.motions().get(index)?);
-        let map = library.baked_map(index).unwrap_or(&NO_MAP);
-        Some(Self { model, motion, index, map, proposal: library.proposal(index), state: shown.state })
+        let (map, proposal) = (library.baked_map(motion).unwrap_or(&NO_MAP), library.proposal(motion));
+        let (model, motion) = (library.active()?, library.motion(motion)?);
+        Some(Self { model, motion, map, proposal, state: shown.state })
+    }
+
+    /// The identity of the motion.
+    fn id(&self) -> MotionId {
+        self.motion.id().clone()
     }
 
     /// Which of the model's own clips joints without a source play, and whether it is frozen; None if they rest.
@@ -211,7 +214,7 @@ impl<'a> Pairing<'a> {
     }
 
     fn clip_title(&self, clip: usize) -> &'a str {
-        self.model.clip_titles().get(clip).map_or("a clip that is not there", String::as_str)
+        self.model.clip(&ClipId::Own(clip)).map_or("a clip that is not there", ModelClip::title)
     }
 
     /// A target's source. None if the map does not mention the target, `Some(None)` if it deliberately has none.
@@ -225,7 +228,7 @@ impl<'a> Pairing<'a> {
 const ROOMY_HEIGHT: f32 = 480.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let Some(pairing) = Pairing::shown(shown, local.motion.motion) else {
+    let Some(pairing) = Pairing::shown(shown, local.motion.motion.as_ref()) else {
         return controls::scrolled(ui, ("motion", Section::Clip), |ui| {
             clip(ui, shown, out);
             ui.add_space(8.0);
@@ -233,17 +236,17 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         });
     };
     let map = pairing.map;
-    local.motion.motion = pairing.index;
+    local.motion.motion = Some(pairing.id());
     let part = local.motion.part;
     let contents = local.motion.contents(shown, &pairing);
     // Each part keeps its own scroll position.
     let place = ("motion", part);
     if ui.available_height() >= ROOMY_HEIGHT {
-        head(ui, &pairing, map, &contents, local, out);
+        head(ui, shown, &pairing, map, &contents, local, out);
         controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, &contents, local, out));
     } else {
         controls::scrolled(ui, place, |ui| {
-            head(ui, &pairing, map, &contents, local, out);
+            head(ui, shown, &pairing, map, &contents, local, out);
             body(ui, shown, &pairing, &contents, local, out);
         });
     }
@@ -251,13 +254,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 
 fn head(
     ui: &mut Ui,
+    shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
     contents: &Contents,
     local: &mut UiState,
     out: &mut Output,
 ) {
-    header(ui, pairing, contents, out);
+    header(ui, shown, pairing, contents, out);
     ui.add_space(4.0);
     let parts = [
         (Section::Joints, text::JOINTS),
@@ -290,8 +294,7 @@ fn body(
     match tab.part {
         Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
         Section::Options => {
-            let playing = active_clip(pairing.model, pairing.state);
-            if playing.is_some_and(|clip| pairing.model.borrowed(clip).is_none()) {
+            if shown.clip().is_some_and(|clip| clip.borrowed().is_none()) {
                 controls::hint(ui, text::OWN_CLIP_PLAYS);
             }
             options::show(ui, shown, pairing, map, contents, out);
@@ -355,17 +358,17 @@ fn edits(
             (text::PICK_IN_VIEWPORT, "Click a joint of the model, then its source")
         };
         if button(ui, width, true, text, hover) {
-            local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
+            local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.id() });
             // On a small screen the sheet makes room for the viewport.
             local.layout.sheet = None;
         }
         arrows(ui, &local.host, out);
     });
-    let motion = pairing.index;
+    let motion = || pairing.id();
     let any = map.joints.values().any(|entry| entry.source.is_some());
     let swap = |ui: &mut Ui, width: f32, label: &str, out: &mut Output| {
         if button(ui, width, any, label, "Map left joints to right ones and vice versa") {
-            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+            out.commands.push(Command::EditMap { motion: motion(), edit: MapEdit::SwapSides });
         }
     };
     // Says what it does, which takes a row, where position and names disagree.
@@ -380,25 +383,26 @@ fn edits(
         let count = if contents.sides_choice.is_some() { 2.0 } else { 3.0 };
         let width = (ui.available_width() - 6.0 * (count - 1.0)) / count;
         if button(ui, width, true, text::REMATCH, "Return to the proposed map") {
-            out.commands.push(Command::SetMap { motion, map: None });
+            out.commands.push(Command::SetMap { motion: motion(), map: None });
         }
         if contents.sides_choice.is_none() {
             swap(ui, width, text::SWAP_SIDES, out);
         }
         if button(ui, width, any, text::CLEAR_MAP, "Leave all joints unmapped") {
-            out.commands.push(Command::EditMap { motion, edit: MapEdit::Clear });
+            out.commands.push(Command::EditMap { motion: motion(), edit: MapEdit::Clear });
         }
     });
 }
 
-fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Output) {
+fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, contents: &Contents, out: &mut Output) {
     let palette = style::palette(ui);
-    if let Some(name) = contents.motions.get(pairing.index) {
+    let motions = || shown.library.motions().iter().map(Motion::id).zip(&contents.motions);
+    if let Some((_, name)) = motions().find(|(motion, _)| *motion == pairing.motion.id()) {
         ui.add_space(4.0);
         controls::chooser(ui, "motion file", text::MOTION_FILE, name, |ui| {
-            for (index, name) in contents.motions.iter().enumerate() {
-                if controls::option(ui, index == pairing.index, name) {
-                    out.commands.extend(first_clip_of(pairing.model, index));
+            for (motion, name) in motions() {
+                if controls::option(ui, motion == pairing.motion.id(), name) {
+                    out.commands.extend(first_clip_of(pairing.model, motion));
                 }
             }
         });
@@ -409,9 +413,9 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
     }
 }
 
-fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
-    let (clip, _) = model.borrowed_clips().find(|(_, borrowed)| borrowed.motion == motion)?;
-    Some(Command::SetClip(choice_of_clip(model, clip)))
+fn first_clip_of(model: &Model, motion: &MotionId) -> Option<Command> {
+    let (clip, _) = model.clips().borrowed().find(|(_, borrowed)| borrowed.motion == *motion)?;
+    Some(Command::SetClip(ClipChoice::Clip(clip.id().clone())))
 }
 
 /// Whether most left and right joints are mapped to the side opposite to the proposal.
@@ -444,7 +448,7 @@ fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
 fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
     const MAX_REMARKS: usize = 4;
     let mut remarks = Vec::new();
-    let mut borrowed = pairing.model.borrowed_clips().filter(|(_, borrowed)| borrowed.motion == pairing.index);
+    let mut borrowed = pairing.model.clips().borrowed().filter(|(_, borrowed)| borrowed.motion == *pairing.motion.id());
     if borrowed.any(|(_, borrowed)| borrowed.motion_rest.is_doubtful()) {
         remarks.push(text::DOUBTFUL_REST.to_owned());
     }

@@ -28,7 +28,7 @@ pub(super) fn show(
     contents: &Contents,
     out: &mut Output,
 ) {
-    let edit = |edit| Command::EditMap { motion: pairing.index, edit };
+    let edit = |edit| Command::EditMap { motion: pairing.id(), edit };
     let inspect = shown.state.inspect;
     controls::section(ui, "FEET AND CONTACTS");
     let planted = map.feet == Feet::Plant;
@@ -151,7 +151,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     );
     ui.add_space(2.0);
     if button(ui, text::SAVE_MAP, None) {
-        out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));
+        out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.id() })));
     }
     if button(ui, text::LOAD_MAP, None) {
         out.actions.push(UiAction::ChooseMotion);
@@ -165,7 +165,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     if button(ui, text::SAVE_GLB, derived.is_none().then_some(problem))
         && let Some(clip) = derived
     {
-        out.actions.push(UiAction::Save(Saved::File(Export::Model { clip })));
+        out.actions.push(UiAction::Save(Saved::File(Export::Model { clip: clip.id().clone() })));
     }
     controls::section(ui, "CLIP ALONE");
     controls::hint(ui, "The current clip with its skeleton, without the meshes.");
@@ -174,22 +174,22 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         if button(ui, text::save_clip(format), clip.is_none().then_some(text::NEEDS_CLIP))
             && let Some(clip) = clip
         {
-            out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip, format })));
+            out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip: clip.id().clone(), format })));
         }
     }
     controls::section(ui, "MOTION");
     let show = shown.state.display.show;
     // Only a borrowed clip has a source to show.
-    let is_borrowed = clip.is_some_and(|clip| pairing.model.borrowed(clip).is_some());
+    let is_borrowed = clip.is_some_and(|clip| clip.borrowed().is_some());
     let label = if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE };
     if button(ui, label, (!is_borrowed).then_some(text::NEEDS_BORROWED_CLIP)) {
         out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
     }
     if button(ui, text::OPEN_INSTEAD, None) {
-        out.actions.push(UiAction::ShowMotionAlone(pairing.index));
+        out.actions.push(UiAction::ShowMotionAlone(pairing.id()));
     }
     if button(ui, text::REMOVE_MOTION, None) {
-        out.actions.push(UiAction::RemoveMotion(pairing.index));
+        out.actions.push(UiAction::RemoveMotion(pairing.id()));
     }
 }
 
@@ -232,7 +232,6 @@ pub(super) fn policy_text(pairing: &Pairing<'_>, policy: &Unmapped) -> String {
 
 fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
     let clips = &pairing.model.asset.clips;
-    let titles = pairing.model.clip_titles();
     let playing = pairing.own_clip(&map.unmapped);
     let plays = |clip: usize, frozen: bool| {
         let unmapped = Unmapped::Clip { clip: ClipRef::Index(clip), frozen };
@@ -246,7 +245,7 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
         if controls::option(ui, playing.is_none(), text::REST) {
             out.commands.push(Command::SetUnmapped(Some(Unmapped::Rest)));
         }
-        for (index, title) in titles.iter().enumerate().take(clips.len()) {
+        for (index, title) in pairing.model.clips().titles().enumerate().take(clips.len()) {
             let chosen = playing.is_some_and(|(clip, _)| clip == index);
             if controls::option(ui, chosen, title) {
                 out.commands.push(plays(index, playing.is_some_and(|(_, frozen)| frozen)));

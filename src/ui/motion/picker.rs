@@ -4,6 +4,7 @@ use egui::{Context, Key, ScrollArea, Ui};
 
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
+use crate::library::MotionId;
 use crate::state::{Command, title};
 use crate::ui::search::finds;
 use crate::ui::{Output, Shown, UiState, controls, modal, text};
@@ -11,7 +12,7 @@ use crate::ui::{Output, Shown, UiState, controls, modal, text};
 /// The joint whose source is being chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Picking {
-    motion: usize,
+    motion: MotionId,
     /// The joint's number in the model's file.
     target: usize,
     search: String,
@@ -22,7 +23,7 @@ pub(super) struct Picking {
 }
 
 impl Picking {
-    pub fn new(motion: usize, target: usize) -> Self {
+    pub fn new(motion: MotionId, target: usize) -> Self {
         Self { motion, target, search: String::new(), stepped: None, fresh: true }
     }
 }
@@ -30,7 +31,7 @@ impl Picking {
 /// Shows the list as a modal while a source is being chosen.
 pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(picking) = &mut local.motion.picking else { return };
-    let Some(pairing) = Pairing::of(shown, picking.motion) else {
+    let Some(pairing) = Pairing::of(shown, &picking.motion) else {
         local.motion.picking = None;
         return;
     };
@@ -85,7 +86,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         closed |= ui.button(text::CANCEL).clicked();
     });
     if let Some(source) = chosen {
-        out.commands.push(Command::SetSource { motion: picking.motion, target: picking.target, source });
+        out.commands.push(Command::SetSource { motion: picking.motion.clone(), target: picking.target, source });
         closed = true;
     }
     if closed || modal.should_close() {

@@ -14,18 +14,17 @@ const MAX_LISTED: usize = 200;
 
 /// One list per clip; that of the current clip is open and has the current values.
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model) {
-    let animated = |index: &usize| model.clip(*index).is_some_and(|clip| !clip.properties().is_empty());
-    let mut clips = (0..model.clip_count()).filter(animated).peekable();
+    let mut clips = model.clips().iter().filter(|clip| !clip.clip().properties().is_empty()).peekable();
     if clips.peek().is_none() {
         return;
     }
     controls::section(ui, "ANIMATED PROPERTIES");
-    for index in clips {
-        let (Some(clip), is_current) = (model.clip(index), shown.frame.clip == Some(index)) else { continue };
-        let title = text::counted(&model.clip_titles()[index], clip.properties().len());
-        let header = egui::CollapsingHeader::new(title).id_salt(("animated", index)).default_open(is_current);
+    for clip in clips {
+        let (properties, is_current) = (clip.clip().properties(), shown.frame.clip.as_ref() == Some(clip.id()));
+        let title = text::counted(clip.title(), properties.len());
+        let header = egui::CollapsingHeader::new(title).id_salt(("animated", clip.id())).default_open(is_current);
         header.show(ui, |ui| {
-            for channel in clip.properties().iter().take(MAX_LISTED) {
+            for channel in properties.iter().take(MAX_LISTED) {
                 let value = if is_current { value(shown, model, channel) } else { None };
                 fact(ui, &name(shown, model, channel.target), &value.unwrap_or_default());
             }

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::avatar;
-use crate::library::Model;
+use crate::library::{Model, ModelClip};
 use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{
     COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant, title as joint_title,
@@ -185,7 +185,7 @@ fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if !show.source {
         return;
     }
-    if active_clip(model, shown.state).and_then(|clip| model.borrowed(clip)).is_none() {
+    if active_clip(model, shown.state).and_then(ModelClip::borrowed).is_none() {
         controls::hint(ui, "This clip is the model's own. Choose a borrowed clip to see its source.");
         return;
     }

@@ -32,7 +32,7 @@ pub use view_options::PictureSettings;
 
 /// Whether there is a clip to edit or a motion to map.
 pub(super) fn has_motion_tab(library: &Library) -> bool {
-    !library.motions().is_empty() || library.active().is_some_and(|model| model.clip_count() > 0)
+    !library.motions().is_empty() || library.active().is_some_and(|model| !model.clips().is_empty())
 }
 
 /// Returns what the dot on the Info tab means: warnings about the file, and errors that the validator found.

@@ -68,7 +68,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, ou
     }
     if let Some(pin) = &mut pin {
         goal(ui, shown, model, &mut pin.goal, others().map(|other| (other, at_joint(other))));
-        times(ui, shown, model, &mut pin.times);
+        times(ui, shown, &mut pin.times);
     }
     if pin != before {
         out.commands.push(Command::SetPin { joint: number, pin });
@@ -111,9 +111,9 @@ fn goal(
 }
 
 /// Limits the pin to the range of the clip that is playing.
-fn times(ui: &mut Ui, shown: &Shown<'_>, model: &Model, times: &mut Option<PinTimes>) {
-    let Some(clip) = shown.clip_index() else { return };
-    let TimeRange { start_secs, end_secs } = play_range(model, clip, shown.state);
+fn times(ui: &mut Ui, shown: &Shown<'_>, times: &mut Option<PinTimes>) {
+    let Some(clip) = shown.clip() else { return };
+    let TimeRange { start_secs, end_secs } = play_range(clip, shown.state);
     let in_range = |blend_secs| Some(PinTimes { start_secs, end_secs, blend_secs });
     if controls::switch(ui, text::PIN_IN_RANGE, times.is_some()) {
         *times = if times.is_some() { None } else { in_range(DEFAULT_BLEND_SECS) };

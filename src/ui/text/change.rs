@@ -4,6 +4,10 @@ use crate::retarget::{BodyPart, ClipChanges, LayerMode, Seam};
 
 /// Heading.
 pub const CHANGE_CLIP: &str = "Edit clip";
+/// Field with the clip's name.
+pub const CLIP_NAME: &str = "Clip name";
+/// What shows in it while it is empty.
+pub const CLIP_NAME_IN_FILE: &str = "As in its file";
 /// Switch: left and right are swapped.
 pub const MIRROR: &str = "Mirror";
 /// Switch: the clip is reversed.

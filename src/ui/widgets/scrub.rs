@@ -4,7 +4,6 @@ use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, 
 
 use super::{accessible, style};
 use crate::anim::{Clip, TimeRange};
-use crate::library::ModelId;
 use crate::ui::text;
 
 pub struct Scrub<'a> {
@@ -29,15 +28,11 @@ const MARK_SPACING: f32 = 6.0;
 /// Minimum distance between times in points.
 const TIME_SPACING: f32 = 64.0;
 
-/// Identifies a clip: its model, its index, and [`Model::clips_revision`](crate::library::Model::clips_revision), since another clip may
-/// take the same index.
-pub type ClipId = (ModelId, usize, u32);
-
 /// Positions of a clip's keys at the resolution of the bar, cached between frames.
 #[derive(Debug, Default)]
 pub struct KeyMarks {
     /// The clip and the width that the marks were computed for.
-    computed_for: Option<(ClipId, u32)>,
+    computed_for: Option<(Clip, u32)>,
     /// From 0 (start) to 1 (end). Of keys closer than [`MARK_SPACING`], only the first has a mark.
     positions: Vec<f32>,
     /// Times at regular distances, with their positions.
@@ -45,12 +40,11 @@ pub struct KeyMarks {
 }
 
 impl KeyMarks {
-    fn refresh(&mut self, clip: &Clip, clip_id: ClipId, width: f32) {
-        let key = (clip_id, width as u32);
-        if self.computed_for == Some(key) {
+    fn refresh(&mut self, clip: &Clip, width: f32) {
+        if self.computed_for.as_ref().is_some_and(|(known, at)| known.is_same(clip) && *at == width as u32) {
             return;
         }
-        self.computed_for = Some(key);
+        self.computed_for = Some((clip.clone(), width as u32));
         self.positions.clear();
         self.times.clear();
         let duration = clip.duration_secs();
@@ -117,7 +111,7 @@ impl Bar {
 }
 
 /// Shows the bar; returns what was dragged, and whether the playhead is held.
-pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMarks) -> (Option<Scrubbed>, bool) {
+pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, marks: &mut KeyMarks) -> (Option<Scrubbed>, bool) {
     // Fingers get more room above the handles and below the rail, if the screen has it.
     let is_roomy = style::is_for_fingers(ui) && ui.ctx().content_rect().height() >= ROOMY_HEIGHT;
     let (above, below) = if is_roomy { (14.0, 5.0) } else { (0.0, 0.0) };
@@ -153,7 +147,7 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, clip_id: ClipId, marks: &mut KeyMark
     for range in dragged.into_iter().flatten() {
         scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
     }
-    marks.refresh(clip, clip_id, rail.width());
+    marks.refresh(clip, rail.width());
     paint_rail(ui, &bar, range, scrub.time_secs, marks);
     paint_playhead(ui, &bar, scrub, &seek, is_held);
     (scrubbed, is_held)
@@ -241,7 +235,6 @@ fn flag(painter: &egui::Painter, x: f32, top: f32, side: f32, bottom: f32, color
 mod tests {
     use super::{KeyMarks, MARK_SPACING, times};
     use crate::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
-    use crate::library::ModelId;
 
     #[test]
     fn marks_of_a_long_clip_stay_apart() {
@@ -251,7 +244,7 @@ mod tests {
         let mut clip = ClipBuilder::new("Long", &skeleton);
         clip.channel(JointIndex(0), Interpolation::Linear, &times, keys).expect("as many keys as times");
         let (mut marks, width) = (KeyMarks::default(), 372.0);
-        marks.refresh(&clip.build(), (ModelId::default(), 0, 0), width);
+        marks.refresh(&clip.build(), width);
         assert!(marks.positions.len() > 40, "{}", marks.positions.len());
         let gaps = marks.positions.windows(2).map(|pair| (pair[1] - pair[0]) * width);
         gaps.for_each(|gap| assert!((MARK_SPACING - 0.01..2.0 * MARK_SPACING).contains(&gap), "{gap}"));

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::{frame, library, model, person, rotation};
 use crate::build_gltf::{Build, F32, floats};
+use crate::by_place::ByPlace;
 use crate::history::undo;
 
 /// A triangle with two morph targets, a clip that holds their weights at 0.25 and 0, and a textured material.
@@ -204,7 +205,7 @@ fn a_vrma_animates_expressions_of_the_same_name() {
     let mut library = library(person("VRMC_vrm", json!([]), expressions));
     library.set_motions(vec![Motion::new("smile.vrma".to_owned(), Arc::new(motion))]);
     library.borrow_each(vec![None]);
-    let clip = model(&library).clip(0).expect("a borrowed clip");
+    let clip = model(&library).clip_at(0).clip();
     assert_eq!(clip.properties().len(), 1, "the model has no expression “grin”");
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::Seek(0.25));

@@ -16,6 +16,7 @@ use gaitway::state::{
 use glam::Vec3;
 
 use super::{any, contents, editor, id_of, motions, open, open_motion, orbit};
+use crate::by_place::motion_at;
 use crate::data_folder::data_folder;
 
 #[test]
@@ -46,7 +47,8 @@ fn an_option_never_moves_the_camera() {
     open_motion(&mut editor, "dance.glb");
     let (before, state) = (view(&editor), editor.state().clone());
     let set = |part| Command::SetRoot(Some(RootOptions { horizontal: part, vertical: part, ..RootOptions::default() }));
-    let options = [set(RootPart::Freeze), Command::EditMap { motion: 0, edit: MapEdit::Clear }];
+    let options =
+        [set(RootPart::Freeze), Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::Clear }];
     for option in options.clone() {
         editor.apply(option);
         assert_eq!(view(&editor), before);
@@ -160,7 +162,7 @@ fn who_has_planted_the_feet_belongs_to_the_view() {
     open_by_hand(&mut editor, "sample:walk");
     assert!(are_automatic(&editor));
     // A link has them planted as well, but says so itself.
-    let (link, errors) = from_link(&to_link(editor.state()));
+    let (link, errors) = from_link(&to_link(editor.state(), editor.library()));
     assert!(errors.is_empty(), "{errors:?}");
     editor.apply(Command::Replace(Box::new(link)));
     assert_eq!((editor.state().retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
@@ -203,7 +205,7 @@ fn feet_that_would_sink_in_are_held() {
     assert!(are_automatic(&editor));
     assert!(editor.undo());
     let clip = active_clip(editor.library().active().expect("is open"), editor.state()).expect("plays");
-    let figures = editor.library().figures(clip).expect("is borrowed");
+    let figures = editor.library().figures(clip.id()).expect("is borrowed");
     let slides = figures.foot_slide_metres_per_sec.expect("has feet");
     assert!(slides < 0.1 && figures.foot_hover_metres_mean.expect("has feet").abs() < 0.001, "{figures:?}");
     assert!(figures.sole_penetration_metres_max.expect("has soles") > 0.1, "{figures:?}");
@@ -258,7 +260,7 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     // A script gets what it says.
     assert_eq!(opened(both(false), super::editor("sample:pilot")), (None, false, false));
     open(&mut editor, "sample:dwarf");
-    editor.remove_motion(0);
+    editor.remove_motion(&motion_at(editor.library(), 0));
     open(&mut editor, "sample:walk");
     assert_eq!(editor.state().retarget.feet, None);
 }

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use gaitway::editor::{Contents, Editor, Export, ModelFiles, OpenedModel};
 use gaitway::files::{EarlyWatch, ImageLimits, decode_images};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{ImageData, Model, ModelId};
+use gaitway::library::{ClipId, ImageData, Model, ModelId};
 use gaitway::state::{Command, ViewerState, from_link};
 use serde_json::json;
 
@@ -126,12 +126,12 @@ fn completing_a_model_changes_nothing_else() {
 fn a_model_is_exported_once_its_images_are_there() {
     let (mut editor, id) = early_editor();
     let whole = Export::FullModel { posed: false };
-    for what in [whole, Export::Model { clip: 0 }] {
+    for what in [&whole, &Export::Model { clip: ClipId::Own(0) }] {
         let refused = editor.export(what).expect_err("the file has not arrived");
         assert!(refused.contains("images have not arrived"), "{refused}");
     }
     editor.complete(id, complete(&file()), &mut any).expect("fits");
-    let exported = editor.export(whole).expect("the file is there");
+    let exported = editor.export(&whole).expect("the file is there");
     assert!(exported.bytes.len() > 3 * 100_000, "{}", exported.bytes.len());
 }
 

@@ -7,8 +7,10 @@ use gaitway::state::{ClipChoice, Command, MapEdit, Sources, ViewerState, active_
 use glam::Vec3;
 use serde_json::json;
 
-use super::{any, contents, editor, motion, notices, open_motion};
+use super::{any, contents, editor, motion, notices, open_motion, title};
+use crate::by_place::motion_at;
 use crate::data::moving_box;
+use crate::texts::object_of;
 
 #[test]
 fn a_manual_map_does_not_start_without_room_for_the_motion() {
@@ -21,7 +23,7 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
     let view = ViewerState { sources: Sources { motion, ..now.sources }, ..now };
     let contents = Contents { motions: Some(motions), ..Contents::default() };
     editor.open(contents, Some(view), &mut any).expect("the model stays");
-    editor.remove_motion(1);
+    editor.remove_motion(&motion_at(editor.library(), 1));
     let again = Contents { motions: Some(vec![Motion::new("again.glb".to_owned(), stranger)]), ..Contents::default() };
     editor.open(again, None, &mut any).expect_err("does not fit");
     editor.undo();
@@ -36,17 +38,19 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
 fn the_rest_pose_is_active_while_a_map_is_empty() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "dance.glb");
-    let playing = editor.state().playhead.clip.clone();
-    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
-    assert_eq!(editor.state().playhead.clip, ClipChoice::RestPose);
+    let playing = title(&editor).map(str::to_owned);
+    let plays = |editor: &Editor| title(editor).map(str::to_owned);
+    editor.apply(Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::Clear });
+    assert_eq!(plays(&editor), None);
+    assert!(to_link(editor.state(), editor.library()).ends_with("clip="), "the link has the rest pose");
     editor.undo();
-    assert_eq!(editor.state().playhead.clip, playing);
+    assert_eq!(plays(&editor), playing);
     editor.redo();
-    assert_eq!(editor.state().playhead.clip, ClipChoice::RestPose);
-    editor.apply(Command::SetMap { motion: 0, map: None });
-    assert_eq!(editor.state().playhead.clip, playing);
+    assert_eq!(plays(&editor), None);
+    editor.apply(Command::SetMap { motion: motion_at(editor.library(), 0), map: None });
+    assert_eq!(plays(&editor), playing);
     // A clip that the user chose meanwhile stays.
-    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    editor.apply(Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::Clear });
     editor.apply(Command::SetClip(ClipChoice::First));
     editor.undo();
     assert_eq!(editor.state().playhead.clip, ClipChoice::First);
@@ -74,7 +78,7 @@ fn a_map_that_does_not_fit_the_motion_that_plays_says_so() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "dance.glb");
     editor.open(contents(&["sample:walk"]), None, &mut any).expect("fits");
-    let proposed = active_map(editor.library(), editor.state(), 1);
+    let proposed = active_map(editor.library(), editor.state(), &motion_at(editor.library(), 1));
     let mut open = |source: &str| {
         let map = format!(r#"{{"gaitway_map": 1, "joints": {{"mixamorig:Hips": {{"source": "{source}"}}}}}}"#);
         let map = JointMapFile::from_json(&map).expect("is valid");
@@ -93,7 +97,7 @@ fn a_map_that_does_not_fit_the_motion_that_plays_says_so() {
     let problem = open("nope").expect_err("fits neither");
     assert!(problem.starts_with("map.json: doesn't fit Walk: "), "{problem}");
     assert_eq!(open("hip").expect("fits the second"), "Applied the joint map and its options to Walk.");
-    assert_ne!(active_map(editor.library(), editor.state(), 1), proposed);
+    assert_ne!(active_map(editor.library(), editor.state(), &motion_at(editor.library(), 1)), proposed);
 }
 
 /// A map by name waits for its motion as the text that the link has.
@@ -102,23 +106,25 @@ fn a_map_waits_for_its_motion() {
     let text = r#"{ "gaitway_map": 1, "joints": { "Hips": { "source": "Hips" } } }"#;
     let (view, errors) = from_link(&format!("model=sample:walker&map={}", text.replace(' ', "%20")));
     assert_eq!(errors, []);
-    assert_eq!(to_object(&view)["map"], json!([text]));
+    assert_eq!(object_of(&view)["map"], json!([text]));
     let mut editor = Editor::default();
     editor.open(contents(&["sample:walker"]), Some(view), &mut any).expect("fits");
-    assert_eq!(to_object(editor.state())["map"], json!([text]), "written back unchanged");
-    let sources = |editor: &Editor| active_map(editor.library(), editor.state(), 0).map(|map| map.joints.len());
+    assert_eq!(to_object(editor.state(), editor.library())["map"], json!([text]), "written back unchanged");
+    let sources = |editor: &Editor| {
+        active_map(editor.library(), editor.state(), &motion_at(editor.library(), 0)).map(|map| map.joints.len())
+    };
     open_motion(&mut editor, "dance.glb");
     assert_eq!(sources(&editor), Some(1));
-    assert!(to_link(editor.state()).contains("map=1."), "by number");
+    assert!(to_link(editor.state(), editor.library()).contains("map=1."), "by number");
     editor.undo();
-    assert_eq!(to_object(editor.state())["map"], json!([text]));
+    assert_eq!(to_object(editor.state(), editor.library())["map"], json!([text]));
     editor.redo();
     assert_eq!(sources(&editor), Some(1));
     // The same for a map that is opened with its model, before any motion.
     let map = OpenedMap { name: "map.json".to_owned(), map: JointMapFile::from_json(text).expect("is valid") };
     let mut editor = Editor::default();
     editor.open(Contents { map: Some(map), ..contents(&["sample:walker"]) }, None, &mut any).expect("fits");
-    let (again, errors) = from_link(&to_link(editor.state()));
+    let (again, errors) = from_link(&to_link(editor.state(), editor.library()));
     assert_eq!((&again.retarget, &errors[..]), (&editor.state().retarget, &[][..]));
     open_motion(&mut editor, "dance.glb");
     assert_eq!(sources(&editor), Some(1));
@@ -128,19 +134,19 @@ fn a_map_waits_for_its_motion() {
 fn matching_again_says_if_that_changed_nothing() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "dance.glb");
-    editor.apply(Command::SetMap { motion: 0, map: None });
+    editor.apply(Command::SetMap { motion: motion_at(editor.library(), 0), map: None });
     assert_eq!(notices(&editor.take_events()), ["The joints are already mapped as proposed."]);
-    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
-    editor.apply(Command::SetMap { motion: 0, map: None });
+    editor.apply(Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::Clear });
+    editor.apply(Command::SetMap { motion: motion_at(editor.library(), 0), map: None });
     assert_eq!(notices(&editor.take_events()), [""; 0], "the table shows it");
     // Nothing to propose: what was mapped by hand stays.
     let mut editor = self::editor("sample:creature");
     editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
     editor.map_refused_manually();
-    editor.apply(Command::SetSource { motion: 0, target: 1, source: Some(0) });
+    editor.apply(Command::SetSource { motion: motion_at(editor.library(), 0), target: 1, source: Some(0) });
     editor.take_events();
     let before = editor.state().clone();
-    editor.apply(Command::SetMap { motion: 0, map: None });
+    editor.apply(Command::SetMap { motion: motion_at(editor.library(), 0), map: None });
     assert_eq!(editor.state(), &before);
     let events = editor.take_events();
     let [text] = notices(&events)[..] else { panic!("{events:?}") };

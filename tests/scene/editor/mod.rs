@@ -4,6 +4,7 @@ mod camera;
 mod copies;
 mod early;
 mod environments;
+mod identity;
 mod maps;
 mod motions;
 mod open;
@@ -61,7 +62,7 @@ fn id_of(editor: &Editor, source: &str) -> gaitway::library::ModelId {
 
 fn title(editor: &Editor) -> Option<&str> {
     let model = editor.library().active()?;
-    Some(&model.clip_titles()[active_clip(model, editor.state())?])
+    Some(active_clip(model, editor.state())?.title())
 }
 
 fn active(editor: &Editor) -> &str {

@@ -6,11 +6,12 @@ use gaitway::anim::Clip;
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::{ClipFormat, Contents, Editor, Event, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{Library, Model, Motion};
+use gaitway::library::{ClipId, Library, Model, Motion};
 use gaitway::state::{ViewerState, active_clip};
 use glam::Vec3;
 
 use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion};
+use crate::by_place::motion_at;
 use crate::cli_motion::BVH;
 use crate::data::moving_box;
 
@@ -65,7 +66,7 @@ fn a_motion_that_was_cut_short_says_so() {
         });
         assert_eq!(problems.as_deref(), told);
         let model = editor.library().active().expect("a model");
-        assert_eq!(model.borrowed_clips().count(), 1, "it is borrowed all the same");
+        assert_eq!(model.clips().borrowed().count(), 1, "it is borrowed all the same");
     }
 }
 
@@ -118,10 +119,10 @@ fn an_exported_clip_of_mixamo_is_named_like_its_file() {
     let mut editor = editor("sample:walker");
     let contents = Contents { motions: Some(vec![motion]), ..Contents::default() };
     editor.open(contents, None, &mut any).expect("fits");
-    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays");
-    for what in [Export::Clip { clip, format: ClipFormat::Glb }, Export::Model { clip }] {
+    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays").id().clone();
+    for what in [Export::Clip { clip: clip.clone(), format: ClipFormat::Glb }, Export::Model { clip }] {
         let mut files = FileSet::default();
-        files.insert("exported.glb", editor.export(what).expect("is written").bytes);
+        files.insert("exported.glb", editor.export(&what).expect("is written").bytes);
         let written = load(&files).expect("a GLB");
         assert_eq!(written.clips.last().map(Clip::name), Some("Samba"));
     }
@@ -136,8 +137,8 @@ fn a_model_with_motions_keeps_the_loaded_ones() {
     editor.open(both, None, &mut any).expect("fits");
     assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
     let model = editor.library().active().expect("a model");
-    let playing = active_clip(model, editor.state()).and_then(|clip| model.borrowed(clip)).expect("a borrowed clip");
-    assert_eq!((playing.motion, playing.source_clip), (1, 0), "the first new clip");
+    let playing = active_clip(model, editor.state()).expect("a clip plays").id().clone();
+    assert_eq!(playing, ClipId::Borrowed(motion_at(editor.library(), 1), 0), "the first new clip");
     assert_eq!(notices(&editor.take_events()), ["Opened Walker. Added 3 clips from other.glb."]);
     // Motions that don't fit are named.
     let mut both = contents(&["sample:morphs"]);
@@ -190,7 +191,7 @@ fn an_open_model_lends_its_clips() {
     assert!(events.contains(&Event::MotionsAdded), "{events:?}");
     assert_eq!((active(&editor), motions(&editor)), ("sample:mannequin", vec!["sample:pilot"]));
     assert_eq!(editor.state().sources.motion, ["sample:pilot"]);
-    assert_eq!(editor.library().active().expect("a model").borrowed_clips().count(), 6);
+    assert_eq!(editor.library().active().expect("a model").clips().borrowed().count(), 6);
     while editor.can_undo() && !motions(&editor).is_empty() {
         editor.undo();
     }

@@ -8,16 +8,17 @@ use gaitway::editor::{AboutLink, ClipFormat, Contents, Editor, Event, Export, Mo
 use gaitway::files::{Held, open_view};
 use gaitway::formats::FileSet;
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, Motion};
+use gaitway::library::{ClipId, Library, Model, ModelClip, Motion};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis, ViewerState, active_clip,
-    choice_of_clip, from_link, to_link,
+    from_link, to_link,
 };
 use glam::Vec3;
 use serde_json::json;
 
 use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion, title};
+use crate::by_place::ByPlace;
 
 #[test]
 fn a_model_that_is_not_admitted_changes_nothing() {
@@ -100,7 +101,7 @@ fn an_unnamed_borrowed_clip_is_called_like_its_file() {
     let motions = Some(vec![unnamed("folder/one.glb", 1), unnamed("https://example.org/two.glb?a=b.c", 2)]);
     editor.open(Contents { motions, ..Contents::default() }, None, &mut any).expect("fits");
     let model = editor.library().active().expect("a model");
-    assert_eq!(model.clip_titles()[model.asset.clips.len()..], ["one", "two 0", "two 1"]);
+    assert_eq!(model.titles()[model.asset.clips.len()..], ["one", "two 0", "two 1"]);
 }
 
 #[test]
@@ -161,20 +162,25 @@ fn a_clip_whose_number_is_the_name_of_another_can_be_chosen() {
     editor.open(Contents { models, ..Contents::default() }, None, &mut any).expect("fits");
     for wanted in 0..4 {
         let model = editor.library().active().expect("a model");
-        let choice = choice_of_clip(model, wanted);
-        editor.apply(Command::SetClip(choice.clone()));
+        let wanted = model.id_at(wanted);
+        editor.apply(Command::SetClip(ClipChoice::Clip(wanted.clone())));
+        // What a link calls it is found again.
+        let (view, _) = from_link(&to_link(editor.state(), editor.library()));
         let model = editor.library().active().expect("a model");
-        assert_eq!(active_clip(model, editor.state()), Some(wanted), "{choice:?}");
+        assert_eq!(active_clip(model, &view).map(ModelClip::id), Some(&wanted), "{:?}", view.playhead.clip);
     }
 }
 
 #[test]
 fn an_exported_clip_is_called_by_its_own_name() {
     let editor = editor("sample:pilot");
-    let titles = editor.library().active().expect("a model").clip_titles().to_vec();
+    let titles = editor.library().active().expect("a model").titles();
     assert!(titles.len() > 1, "{titles:?}");
     for (clip, title) in titles.iter().enumerate() {
-        let name = editor.export(Export::Clip { clip, format: ClipFormat::Glb }).expect("it has keys").name;
+        let name = editor
+            .export(&Export::Clip { clip: ClipId::Own(clip), format: ClipFormat::Glb })
+            .expect("it has keys")
+            .name;
         assert_eq!(name, format!("Pilot-{title}-clip.glb"));
     }
 }
@@ -197,7 +203,7 @@ fn an_unknown_clip_of_a_view_is_told() {
     let told = "clip: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the rest pose is used.";
     let view = || {
         let mut view = ViewerState::of_model("sample:walker".to_owned());
-        view.playhead.clip = ClipChoice::Named("Fly".to_owned());
+        view.playhead.clip = ClipChoice::called("Fly");
         view
     };
     let mut editor = Editor::default();
@@ -258,7 +264,7 @@ fn nothing_is_said_of_what_a_link_names_before_its_files_are_there() {
     assert_eq!((&editor.state().playhead.clip, editor.state().playhead.time_secs), (&ClipChoice::First, 1.0));
     editor.open(contents(false), Some(view), &mut any).expect("fits");
     assert!(told(&editor.take_events()));
-    assert_eq!(editor.state().playhead.clip, ClipChoice::Named("Fly".to_owned()));
+    assert_eq!(editor.state().playhead.clip, ClipChoice::called("Fly"));
 }
 
 /// As for another file under the same name, or one that was exported in other units.
@@ -418,9 +424,13 @@ fn an_empty_stage_awaits_a_model() {
 #[test]
 fn what_a_link_says_of_a_motion_that_never_came_is_not_kept_for_another_model() {
     let mut editor = awaiting(&from_link("v=1&model=file:Soldier.glb&motion=file:walk.bvh&feet=plant").0);
-    assert!(to_link(editor.state()).contains("feet=plant"));
+    assert!(to_link(editor.state(), editor.library()).contains("feet=plant"));
     open(&mut editor, "sample:walker");
-    assert!(!to_link(editor.state()).contains("feet="), "{}", to_link(editor.state()));
+    assert!(
+        !to_link(editor.state(), editor.library()).contains("feet="),
+        "{}",
+        to_link(editor.state(), editor.library())
+    );
 }
 
 #[test]
@@ -463,8 +473,8 @@ fn open_file(editor: &mut Editor, path: &str, is_by_hand: bool) -> Vec<Event> {
 fn a_model_exported_with_a_clip_plays_that_clip() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "walk");
-    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays");
-    let exported = editor.export(Export::Model { clip }).expect("is written");
+    let clip = active_clip(editor.library().active().expect("a model"), editor.state()).expect("plays").id().clone();
+    let exported = editor.export(&Export::Model { clip }).expect("is written");
     let path = std::env::temp_dir().join(format!("gaitway-exported-{}.glb", std::process::id()));
     std::fs::write(&path, &exported.bytes).expect("is written");
     let file = path.to_str().expect("Unicode");
@@ -472,16 +482,17 @@ fn a_model_exported_with_a_clip_plays_that_clip() {
     // Its motion is still loaded, and would be retargeted to the file as well.
     let events = open_file(&mut editor, file, true);
     let model = editor.library().active().expect("a model");
-    let own = model.asset.clips.len() - 1;
-    assert_eq!((active_clip(model, editor.state()), model.borrowed_clips().count() > 0), (Some(own), true));
-    assert!(notices(&events)[0].contains(&model.clip_titles()[own]), "{events:?}");
+    let own = ClipId::Own(model.asset.clips.len() - 1);
+    let active = active_clip(model, editor.state()).expect("plays");
+    assert_eq!((active.id(), model.clips().borrowed().count() > 0), (&own, true));
+    assert!(notices(&events)[0].contains(active.title()), "{events:?}");
     // A link names it, and gives the same.
-    let link = to_link(editor.state());
+    let link = to_link(editor.state(), editor.library());
     assert!(link.contains("clip="), "{link}");
 
     let mut fresh = Editor::default();
     open_file(&mut fresh, file, true);
-    assert_eq!(active_clip(fresh.library().active().expect("a model"), fresh.state()), Some(own));
+    assert_eq!(active_clip(fresh.library().active().expect("a model"), fresh.state()).map(ModelClip::id), Some(&own));
     // Scripts get the first clip, as links do that name none.
     let mut script = Editor::default();
     open_file(&mut script, file, false);

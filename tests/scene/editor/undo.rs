@@ -5,6 +5,7 @@ use gaitway::retarget::Feet;
 use gaitway::state::{Command, Edited, Hidden, Inspect, KeyLight, MapEdit, Show, UpAxis};
 
 use super::{any, editor, id_of, notices, open, open_motion};
+use crate::by_place::motion_at;
 
 #[test]
 fn notices_say_how_to_go_back() {
@@ -78,7 +79,7 @@ fn redo_plays_the_motion_that_was_added_last() {
 fn undo_says_which_models_it_brings_back() {
     let mut editor = editor("sample:pilot");
     open_motion(&mut editor, "dance.glb");
-    editor.open_motion_alone(0, &mut any).expect("fits");
+    editor.open_motion_alone(&motion_at(editor.library(), 0), &mut any).expect("fits");
     editor.take_events();
     editor.undo();
     assert_eq!(notices(&editor.take_events()), ["Back to Pilot. Redo returns to dance.glb."]);
@@ -98,7 +99,7 @@ fn a_panel_knows_whose_edit_undo_takes_back() {
     let can = |editor: &Editor| (editor.can_undo_retargeting(), editor.can_redo_retargeting());
     assert!(editor.can_undo(), "the motion");
     assert_eq!(can(&editor), (false, false));
-    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::SwapSides });
+    editor.apply(Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::SwapSides });
     assert_eq!(can(&editor), (true, false));
     editor.undo();
     assert_eq!(can(&editor), (false, true));

@@ -21,6 +21,7 @@ use self::keys::curves;
 use self::shown::shown;
 use crate::allocation::allocations_while_playing;
 use crate::build_gltf::{Build, warnings};
+use crate::by_place::ByPlace;
 use crate::data::{library_of, open};
 use crate::data_folder::data_folder;
 
@@ -307,10 +308,10 @@ fn retargeted_clips_have_no_properties_and_crossfades_switch_halfway() {
     library.borrow_each(vec![Some(map)]);
     let model = library.active().expect("a model");
     let borrowed = asset.clips.len();
-    assert_eq!(model.clip(borrowed).map(|clip| clip.properties().len()), Some(0));
-    assert_eq!(model.clip(borrowed).map(|clip| clip.channels().is_empty()), Some(false));
+    let clip = model.clip_at(borrowed).clip();
+    assert_eq!((clip.properties().len(), clip.channels().is_empty()), (0, false));
     let is_red = |from: usize, to: usize, elapsed_secs| {
-        let clip = |index: usize| ClipChoice::Named(index.to_string());
+        let clip = |index: usize| ClipChoice::Clip(model.id_at(index));
         let fade = Some(Fade { clip: clip(from), time_secs: 0.0, elapsed_secs });
         let playhead = Playhead { clip: clip(to), fade, ..Playhead::default() };
         let mut sampler = PoseSampler::default();

@@ -11,6 +11,7 @@ use gaitway::ui::{Tab, UiAction, text};
 
 use super::{choose, edit, map, motion_tab, neck_details, number, reach, says};
 use crate::bench::{Bench, WIDE, bench_of, drag, press, press_key};
+use crate::by_place::motion_called;
 
 #[test]
 fn whole_maps_are_swapped_cleared_and_restored() {
@@ -30,7 +31,7 @@ fn whole_maps_are_swapped_cleared_and_restored() {
     assert_eq!(press(&mut harness, text::CLEAR_MAP), [edit(MapEdit::Clear)]);
     assert!(harness.query_by_label(&text::joints_mapped(0, 0)).is_some());
     assert!(harness.query_by_label_contains(&text::row("Hips", text::NO_SOURCE, text::NO_SOURCE)).is_some());
-    assert_eq!(press(&mut harness, text::REMATCH), [Command::SetMap { motion: 0, map: None }]);
+    assert_eq!(press(&mut harness, text::REMATCH), [Command::SetMap { motion: motion_called("dance.bvh"), map: None }]);
     for _ in 0..3 {
         harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
         harness.run();
@@ -148,7 +149,7 @@ fn the_row_has_the_focus_after_its_details_were_closed_by_a_key() {
     let (mut harness, neck) = neck_details();
     harness.get_by_label(text::CLEAR_SOURCE).focus();
     harness.run();
-    let clear = Command::SetSource { motion: 0, target: neck, source: None };
+    let clear = Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source: None };
     assert_eq!(press_key(&mut harness, egui::Key::Enter), [clear]);
     assert!(harness.get_by_label(text::LIST_SOURCES).is_focused(), "there is nothing more to clear");
     assert_eq!(press_key(&mut harness, egui::Key::Escape), [Command::SelectJoint(None)]);
@@ -158,7 +159,7 @@ fn the_row_has_the_focus_after_its_details_were_closed_by_a_key() {
 #[test]
 fn a_joint_without_a_source_can_have_its_own_policy() {
     let (mut harness, neck) = neck_details();
-    let clear = Command::SetSource { motion: 0, target: neck, source: None };
+    let clear = Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source: None };
     assert_eq!(reach(&mut harness, text::CLEAR_SOURCE), [clear]);
     let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
     let commands = choose(&mut harness, text::OWN_POLICY, &text::first_key_of("Wave"));

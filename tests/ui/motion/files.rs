@@ -3,19 +3,22 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::{ClipFormat, Export};
+use gaitway::library::ClipId;
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use super::{motion_tab, reach};
 use crate::bench::{Bench, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
+use crate::by_place::motion_called;
 
 #[test]
 fn borrowed_clips_are_listed_under_the_name_of_their_file() {
     let mut harness = motion_bench(WIDE, &["folder/dance.bvh"]);
     assert!(harness.query_by_label(&text::from_motion("dance.bvh")).is_some());
     let [walk, idle, wave] = ["Walk (2)", "Idle (2)", "Wave (2)"];
-    for (title, index) in [(walk, 3), (idle, 4), (wave, 5)] {
-        let expected = Command::SetClip(ClipChoice::Named(index.to_string()));
+    for (title, clip) in [(walk, 0), (idle, 1), (wave, 2)] {
+        let clip = ClipId::Borrowed(motion_called("folder/dance.bvh"), clip);
+        let expected = Command::SetClip(ClipChoice::Clip(clip));
         assert_eq!(press(&mut harness, title), [expected], "{title}");
     }
 }
@@ -47,11 +50,11 @@ fn files_are_requested_from_the_host() {
     reach(&mut harness, text::OPEN_INSTEAD);
     reach(&mut harness, text::REMOVE_MOTION);
     let expected = [
-        UiAction::Save(Saved::File(Export::Map { motion: 0 })),
+        UiAction::Save(Saved::File(Export::Map { motion: motion_called("dance.bvh") })),
         UiAction::ChooseMotion,
-        UiAction::Save(Saved::File(Export::Model { clip: 3 })),
-        UiAction::ShowMotionAlone(0),
-        UiAction::RemoveMotion(0),
+        UiAction::Save(Saved::File(Export::Model { clip: ClipId::Borrowed(motion_called("dance.bvh"), 0) })),
+        UiAction::ShowMotionAlone(motion_called("dance.bvh")),
+        UiAction::RemoveMotion(motion_called("dance.bvh")),
     ];
     assert_eq!(harness.state().actions, expected);
 }
@@ -65,7 +68,7 @@ fn an_own_clip_can_be_saved_alone() {
     check_disabled(&mut harness, text::SAVE_GLB, text::IS_IN_FILE);
     let format = ClipFormat::Bvh;
     reach(&mut harness, text::save_clip(format));
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Clip { clip: 0, format }))]);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Clip { clip: ClipId::Own(0), format }))]);
     harness.state_mut().editor.apply(Command::SetClip(ClipChoice::RestPose));
     harness.run();
     for label in [text::SAVE_GLB, text::save_clip(format)] {
@@ -93,10 +96,13 @@ fn choosing_a_motion_plays_its_first_clip() {
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, text::MOTION_FILE);
     let commands = press(&mut harness, "second.bvh");
-    assert_eq!(commands, [Command::SetClip(ClipChoice::Named("6".to_owned()))]);
+    assert_eq!(commands, [Command::SetClip(ClipChoice::Clip(ClipId::Borrowed(motion_called("second.bvh"), 0)))]);
     press(&mut harness, text::FILES);
     press(&mut harness, text::SAVE_MAP);
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Map { motion: 1 }))]);
+    assert_eq!(
+        harness.state().actions,
+        [UiAction::Save(Saved::File(Export::Map { motion: motion_called("second.bvh") }))]
+    );
 }
 
 #[test]

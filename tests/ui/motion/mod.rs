@@ -14,6 +14,7 @@ use gaitway::state::{Command, MapEdit, active_map};
 use gaitway::ui::{Tab, text};
 
 use crate::bench::{Bench, WIDE, motion_bench, press};
+use crate::by_place::{motion_at, motion_called};
 
 /// The walker with its own clips as the motion `dance.bvh`, and the Motion tab open.
 pub fn motion_tab() -> Harness<'static, Bench> {
@@ -32,7 +33,7 @@ pub fn neck_details() -> (Harness<'static, Bench>, usize) {
 
 pub fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
-    active_map(bench.library(), bench.state(), motion).expect("a map for the motion")
+    active_map(bench.library(), bench.state(), &motion_at(bench.library(), motion)).expect("a map for the motion")
 }
 
 pub fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
@@ -56,7 +57,7 @@ pub fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
 }
 
 pub fn edit(edit: MapEdit) -> Command {
-    Command::EditMap { motion: 0, edit }
+    Command::EditMap { motion: motion_called("dance.bvh"), edit }
 }
 
 /// Chooses an entry of a drop-down list; other controls may have the same label.

@@ -8,6 +8,7 @@ use gaitway::ui::{Tab, text};
 
 use super::{map, motion_tab, neck_details, number, press_row, reach};
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key};
+use crate::by_place::motion_called;
 
 /// Whether the list of sources is open. Its title is also the name of the dialog.
 fn asks(harness: &Harness<'_, Bench>, target: &str) -> bool {
@@ -21,7 +22,7 @@ fn another_source_is_chosen_from_a_list() {
     press_row(&mut harness, &text::follows("Neck", ""));
     assert!(asks(&harness, "Neck"));
     let commands = press(&mut harness, &text::joint(head, "Head"));
-    assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(head) }]);
+    assert_eq!(commands, [Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source: Some(head) }]);
     assert!(!asks(&harness, "Neck"));
     assert!(harness.query_by_label_contains(&text::follows("Neck", &text::joint(head, "Head"))).is_some());
     assert_eq!(map(&harness, 0).joints[&neck].source, Some(head));
@@ -42,7 +43,11 @@ fn a_source_is_typed_by_number_or_name() {
         harness.get_by_label(text::SEARCH_SOURCES).type_text(&typed);
         harness.run();
         let commands = press_key(&mut harness, egui::Key::Enter);
-        assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(source) }], "{typed}");
+        assert_eq!(
+            commands,
+            [Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source: Some(source) }],
+            "{typed}"
+        );
     }
 }
 
@@ -56,7 +61,10 @@ fn a_source_is_chosen_by_arrow_keys() {
         press_row(&mut harness, &text::follows("Neck", ""));
         keys.iter().for_each(|&key| assert_eq!(press_key(&mut harness, key), []));
         let commands = press_key(&mut harness, egui::Key::Enter);
-        assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(source) }]);
+        assert_eq!(
+            commands,
+            [Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source: Some(source) }]
+        );
     }
 }
 
@@ -83,7 +91,7 @@ fn a_source_is_typed_in_the_table() {
         harness.run();
         press_key(&mut harness, egui::Key::Enter)
     };
-    let set = |source| vec![Command::SetSource { motion: 0, target: neck, source }];
+    let set = |source| vec![Command::SetSource { motion: motion_called("dance.bvh"), target: neck, source }];
     assert_eq!(enter(&head.to_string()), set(Some(head)));
     assert_eq!(enter("chest"), set(Some(chest)));
     assert_eq!(enter("Head"), set(Some(head)));
@@ -133,7 +141,10 @@ fn a_joint_is_picked_in_the_viewport() {
         assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
         assert!(asks(&harness, "LeftHand"));
         let commands = reach(&mut harness, &text::joint(head, "Head"));
-        assert_eq!(commands, [Command::SetSource { motion: 0, target: hand, source: Some(head) }]);
+        assert_eq!(
+            commands,
+            [Command::SetSource { motion: motion_called("dance.bvh"), target: hand, source: Some(head) }]
+        );
         assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some(), "the table is back on {size:?}");
         // The button and Escape both end picking without a change.
         for stop in [true, false] {
@@ -170,7 +181,8 @@ fn both_joints_are_picked_if_both_are_shown() {
     assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label(&text::pick_source_of("LeftHand")).is_some());
     let at = screen_position(&harness, 1, "Head");
-    let source = |source| [Command::SetSource { motion: 0, target: hand, source: Some(source) }];
+    let source =
+        |source| [Command::SetSource { motion: motion_called("dance.bvh"), target: hand, source: Some(source) }];
     assert_eq!(click(&mut harness, at), source(head));
     assert_eq!(map(&harness, 0).joints[&hand].source, Some(head));
     // Starting from the table, only the source is picked.

@@ -14,6 +14,7 @@ use gaitway::ui::{Tab, text};
 use super::{choose, edit, map, motion_tab, number, press_row, reach};
 use crate::allocations::allocations_after;
 use crate::bench::{Bench, WIDE, bench_of, motion_bench, painted, press};
+use crate::by_place::motion_called;
 use crate::call_sites::own_allocations;
 use crate::skeletons;
 
@@ -68,7 +69,7 @@ fn rows_read_like_sentences() {
     let mut harness = motion_tab();
     let [left, head, right] = ["LeftHand", "Head", "RightHand"].map(|name| number(&harness, name));
     for (target, source) in [(left, Some(right)), (head, None)] {
-        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target, source });
+        harness.state_mut().editor.apply(Command::SetSource { motion: motion_called("dance.bvh"), target, source });
     }
     harness.run();
     let shared = format!("{right}  RightHand (conflict): right hand · same name · 100 % · shared with LeftHand");
@@ -184,7 +185,7 @@ fn three_hundred_joints_have_their_rows() {
     press_row(&mut harness, &text::follows("Tentacle250", ""));
     assert_eq!(
         press(&mut harness, text::FOLLOW_NOTHING),
-        [Command::SetSource { motion: 0, target: 250, source: None }]
+        [Command::SetSource { motion: motion_called("dance.bvh"), target: 250, source: None }]
     );
     choose(&mut harness, text::JOINT_FILTER, &text::counted(text::UNMAPPED, 1));
     assert!(harness.query_by_label_contains(&text::row("Tentacle250", text::NO_SOURCE, text::NO_SOURCE)).is_some());
@@ -259,7 +260,11 @@ fn an_open_motion_tab_allocates_nothing_of_its_own() {
         assert!(sites.is_empty(), "{part}: {sites:#?}");
     };
     for (label, source) in [(text::source_of("Neck"), Some(neck)), (text::OWN_POLICY.to_owned(), None)] {
-        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target: neck, source });
+        harness.state_mut().editor.apply(Command::SetSource {
+            motion: motion_called("dance.bvh"),
+            target: neck,
+            source,
+        });
         harness.state_mut().editor.apply(Command::SelectJoint(Some(neck)));
         check(text::JOINTS, &mut harness);
         assert!(harness.query_by_label(&label).is_some());

@@ -216,6 +216,11 @@ impl Clip {
         Self { name, ..self }
     }
 
+    /// Whether the other is a clone of this clip, or both are of another; their names may differ.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared)
+    }
+
     /// Time of the last key of any channel, in seconds.
     pub fn duration_secs(&self) -> f32 {
         self.shared.duration_secs

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Affine3A;
 
-use super::{Model, Motion};
+use super::{Model, Motion, MotionId};
 use crate::anim::{Clip, JointIndex, PropertyTarget};
 use crate::asset::Asset;
 use crate::formats::file_stem;
@@ -20,8 +20,8 @@ pub struct BorrowedClip {
     pub clip: Clip,
     /// Layers that animate the joints without a source.
     pub layers: Vec<LayerClip>,
-    /// Index into [`Library::motions`](super::Library::motions).
-    pub motion: usize,
+    /// The motion that it is retargeted from.
+    pub motion: MotionId,
     /// Index into the motion's clips.
     pub source_clip: usize,
     /// What it is called if its file gives it no name of its own; see [`file_title`].
@@ -131,12 +131,11 @@ pub fn with_expressions(clip: Clip, model: &Asset, motion: &Asset, source_clip: 
 /// Retargets all clips of a motion to a model.
 pub(super) fn borrow(
     model: Body<'_>,
-    motion: Body<'_>,
-    source: &str,
-    index: usize,
+    lender: &Motion,
     map: &ResolvedMap,
     root_of: impl Fn(&Clip) -> Option<JointIndex>,
-) -> Result<Vec<BorrowedClip>, BorrowError> {
+) -> Result<Vec<Arc<BorrowedClip>>, BorrowError> {
+    let (motion, source) = (lender.body(), &*lender.source);
     let layers = layer_clips(model.asset, map);
     let shared = Arc::new(map.clone());
     let clips = 0..motion.asset.clips.len().max(1);
@@ -146,10 +145,10 @@ pub(super) fn borrow(
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
         let clip = with_expressions(baked.clip, model.asset, motion.asset, source_clip);
-        Ok(BorrowedClip {
+        Ok(Arc::new(BorrowedClip {
             clip,
             layers: layers.clone(),
-            motion: index,
+            motion: lender.id().clone(),
             source_clip,
             file_title: file_title(source, source_clip, motion.asset.clips.len()),
             root,
@@ -166,7 +165,7 @@ pub(super) fn borrow(
             measured: OnceLock::new(),
             clips_by_rest: OnceLock::new(),
             crossfade_secs: map.crossfade_secs,
-        })
+        }))
     };
     clips.map(borrow).collect()
 }

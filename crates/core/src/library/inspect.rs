@@ -15,8 +15,13 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let skins: Vec<Value> =
         asset.skins.iter().map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() })).collect();
-    let borrowed: Vec<Value> =
-        model.borrowed_clips().map(|(index, borrowed)| clip_document(asset, index, &borrowed.clip)).collect();
+    let borrowed: Vec<Value> = model
+        .clips()
+        .iter()
+        .enumerate()
+        .filter(|(_, clip)| clip.borrowed().is_some() && !clip.is_copy())
+        .map(|(index, clip)| clip_document(asset, index, clip.unchanged()))
+        .collect();
     let clips: Vec<Value> =
         asset.clips.iter().enumerate().map(|(index, clip)| clip_document(asset, index, clip)).collect();
     json!({

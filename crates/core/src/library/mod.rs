@@ -1,6 +1,7 @@
 //! Everything that is loaded: models, the motions they borrow, and data derived from them once.
 
 mod borrowed;
+mod clips;
 mod extent;
 mod image;
 mod inspect;
@@ -10,6 +11,7 @@ mod motion;
 mod rig;
 
 pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expressions};
+pub use clips::{ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, clip_file_name};
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;
@@ -17,12 +19,11 @@ pub use model::{Derived, Finding, Model, ModelId};
 pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
 
-use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use crate::anim::Clip;
 use crate::asset::Panorama;
-use crate::retarget::{ClipChanges, Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
+use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
 
 /// The active model and the files it borrows from.
 #[derive(Debug, Clone)]
@@ -47,9 +48,8 @@ pub struct Environment {
 fn borrow_motion(
     model: &Model,
     motion: &Motion,
-    index: usize,
     map: Option<&JointMap>,
-) -> Result<Vec<BorrowedClip>, BorrowError> {
+) -> Result<Vec<Arc<BorrowedClip>>, BorrowError> {
     let (map, proposal) = map_for(model, motion, map);
     let resolved = match proposal {
         Some(proposal) if proposal.pairs.is_empty() => Err(MapError::NothingInCommon),
@@ -57,7 +57,18 @@ fn borrow_motion(
     };
     let resolved = resolved.map_err(|problem| BorrowError::Map { motion: motion.source.clone(), problem })?;
     let root_of = |clip: &_| rig::root_of(&model.asset, clip);
-    borrowed::borrow(model.body(), motion.body(), &motion.source, index, &resolved, root_of)
+    borrowed::borrow(model.body(), motion, &resolved, root_of)
+}
+
+/// What is derived from the active model and a motion.
+#[derive(Debug, Default)]
+struct Pairing {
+    /// The map that the borrowed clips were baked with; `None` was the proposed one.
+    baked_with: Option<Arc<JointMap>>,
+    /// The proposed map, computed on demand.
+    proposal: OnceLock<Proposal>,
+    /// See [`names_checksum`]; computed on demand.
+    checksum: OnceLock<u32>,
 }
 
 /// The loaded models, one of which is active, and the motions it borrows.
@@ -70,12 +81,10 @@ pub struct Library {
     active: ModelId,
     /// Files that the active model borrows clips from.
     motions: Vec<Motion>,
-    /// The map per motion that the borrowed clips were baked with; none if they are stale.
-    baked_with: Option<Vec<Option<Arc<JointMap>>>>,
-    /// The proposed map per motion for the active model, computed on demand.
-    proposals: Vec<OnceLock<Proposal>>,
-    /// [`names_checksum`] per motion for the active model, computed on demand.
-    checksums: Vec<OnceLock<u32>>,
+    /// One for each motion.
+    pairings: Vec<Pairing>,
+    /// Whether the borrowed clips are those of the pairings' maps.
+    is_baked: bool,
     borrow_errors: Vec<BorrowError>,
     /// The most recent last.
     environments: Vec<Environment>,
@@ -196,101 +205,101 @@ impl Library {
     }
 
     fn forget_borrowed(&mut self) {
-        self.baked_with = None;
-        self.proposals = self.motions.iter().map(|_| OnceLock::new()).collect();
-        self.checksums = self.motions.iter().map(|_| OnceLock::new()).collect();
+        self.is_baked = false;
+        self.pairings = self.motions.iter().map(|_| Pairing::default()).collect();
     }
 
-    /// Returns the files that clips are borrowed from. Other methods take indices into this list.
+    /// Returns the files that clips are borrowed from.
     pub fn motions(&self) -> &[Motion] {
         &self.motions
     }
 
-    /// Replaces the files that clips are borrowed from.
+    /// Finds a file that clips are borrowed from.
+    pub fn motion(&self, id: &MotionId) -> Option<&Motion> {
+        self.motions.iter().find(|motion| motion.id() == id)
+    }
+
+    /// Replaces the files that clips are borrowed from. Those that were in the list before, or are opened again, keep their identity.
     pub fn set_motions(&mut self, mut motions: Vec<Motion>) {
         for motion in motions.iter_mut().filter(|motion| motion.stage_id == ModelId::default()) {
             self.next_id += 1;
             motion.stage_id = ModelId(self.next_id);
         }
+        MotionId::assign(&mut motions);
         self.motions = motions;
         self.forget_borrowed();
     }
 
+    /// Returns the active model, a motion and what is derived from the two.
+    fn pairing(&self, id: &MotionId) -> Option<(&Model, &Motion, &Pairing)> {
+        let mut pairings = self.motions.iter().zip(&self.pairings);
+        let (motion, pairing) = pairings.find(|(motion, _)| motion.id() == id)?;
+        Some((self.active()?, motion, pairing))
+    }
+
     /// Returns the proposed map of a motion to the active model, cached.
-    pub fn proposal(&self, motion: usize) -> Option<&Proposal> {
-        let (model, slot) = (self.active()?, self.proposals.get(motion)?);
-        let motion = self.motions.get(motion)?;
-        Some(slot.get_or_init(|| proposal_for(model, motion)))
+    pub fn proposal(&self, motion: &MotionId) -> Option<&Proposal> {
+        let (model, motion, pairing) = self.pairing(motion)?;
+        Some(pairing.proposal.get_or_init(|| proposal_for(model, motion)))
     }
 
     /// Returns the [`names_checksum`] of the active model and a motion, cached.
-    pub fn names_checksum(&self, motion: usize) -> Option<u32> {
-        let (model, slot) = (self.active()?, self.checksums.get(motion)?);
-        let motion = self.motions.get(motion)?;
-        Some(*slot.get_or_init(|| names_checksum(&model.asset, &motion.asset)))
+    pub fn names_checksum(&self, motion: &MotionId) -> Option<u32> {
+        let (model, motion, pairing) = self.pairing(motion)?;
+        Some(*pairing.checksum.get_or_init(|| names_checksum(&model.asset, &motion.asset)))
     }
 
     /// Returns the map that a motion's clips were baked with. It stays the same allocation until the map changes.
-    pub fn baked_map(&self, motion: usize) -> Option<&Arc<JointMap>> {
-        self.baked_with.as_ref()?.get(motion)?.as_ref()
+    pub fn baked_map(&self, motion: &MotionId) -> Option<&Arc<JointMap>> {
+        self.pairing(motion)?.2.baked_with.as_ref()
     }
 
     /// Bakes the active model's borrowed clips if their inputs have changed, with one map per motion; returns whether
     /// they had changed. A motion without a map gets the proposed one. Clips of motions whose map is unchanged are
     /// kept. Motions that fail are reported by [`Library::borrow_errors`]; the others still work.
     pub fn borrow_each(&mut self, maps: Vec<Option<JointMap>>) -> bool {
-        let before = self.baked_with.take();
-        let share = |(index, map): (usize, Option<JointMap>)| {
-            let before = before.as_ref().and_then(|before| before.get(index)?.as_ref());
-            match (before, map) {
-                (Some(before), Some(map)) if **before == map => Some(before.clone()),
-                (_, map) => map.map(Arc::new),
+        let mut is_unchanged = vec![self.is_baked; self.motions.len()];
+        let maps = maps.into_iter().chain(std::iter::repeat_with(|| None));
+        for ((pairing, map), is_unchanged) in self.pairings.iter_mut().zip(maps).zip(&mut is_unchanged) {
+            *is_unchanged &= pairing.baked_with.as_deref() == map.as_ref();
+            if !*is_unchanged {
+                pairing.baked_with = map.map(Arc::new);
             }
-        };
-        let maps: Vec<_> = maps.into_iter().enumerate().map(share).collect();
-        let is_changed = before.as_ref() != Some(&maps);
-        if is_changed {
-            self.bake(&before.unwrap_or_default(), &maps);
         }
-        self.baked_with = Some(maps);
+        let is_changed = !self.is_baked || is_unchanged.contains(&false);
+        if is_changed {
+            self.bake(&is_unchanged);
+        }
+        self.is_baked = true;
         is_changed
     }
 
-    /// Bakes the clips of motions whose map differs from the one in `before`.
-    fn bake(&mut self, before: &[Option<Arc<JointMap>>], maps: &[Option<Arc<JointMap>>]) {
+    /// Bakes the clips of the motions that aren't unchanged.
+    fn bake(&mut self, is_unchanged: &[bool]) {
         self.borrow_errors.clear();
         let active = self.active;
         let Some(model) = self.models.iter_mut().find(|model| model.id == active) else { return };
-        let mut kept: BTreeMap<usize, Vec<BorrowedClip>> = BTreeMap::new();
-        for clip in model.take_borrowed() {
-            if before.get(clip.motion).is_some_and(|before| Some(before) == maps.get(clip.motion)) {
-                kept.entry(clip.motion).or_default().push(clip);
-            }
-        }
+        let before = model.shared_borrowed();
         let mut borrowed = Vec::new();
-        for (index, motion) in self.motions.iter().enumerate() {
-            if let Some(clips) = kept.remove(&index) {
-                borrowed.extend(clips);
+        for ((motion, pairing), is_unchanged) in self.motions.iter().zip(&self.pairings).zip(is_unchanged) {
+            let kept = before.iter().filter(|clip| *is_unchanged && clip.motion == *motion.id());
+            let kept: Vec<_> = kept.cloned().collect();
+            if !kept.is_empty() {
+                borrowed.extend(kept);
                 continue;
             }
-            match borrow_motion(model, motion, index, maps.get(index).and_then(Option::as_deref)) {
+            match borrow_motion(model, motion, pairing.baked_with.as_deref()) {
                 Ok(clips) => borrowed.extend(clips),
                 Err(error) => self.borrow_errors.push(error),
             }
         }
-        model.set_borrowed(borrowed);
+        model.set_borrowed(&borrowed);
     }
 
-    /// Replaces the copies of clips of the active model, each with its name and the index of its original. Returns whether they
-    /// differ from before.
-    pub fn copy_clips(&mut self, copies: &[(String, usize)]) -> bool {
-        self.active_mut().is_some_and(|model| model.copy_clips(copies))
-    }
-
-    /// Applies changes to clips of the active model, by index among all clips, and restores the others. Only clips whose changes
-    /// or originals differ from before are computed again; returns whether any clip differs from before.
-    pub fn change_clips(&mut self, changes: &BTreeMap<usize, ClipChanges>) -> bool {
-        self.active_mut().is_some_and(|model| model.change_clips(changes))
+    /// Replaces what the user has done to the active model's clips: copies, names and changes. Only clips whose changes or originals
+    /// differ from before are computed again; returns whether any edit differs from before.
+    pub fn edit_clips(&mut self, edits: &ClipEdits) -> bool {
+        self.active_mut().is_some_and(|model| model.edit_clips(edits))
     }
 
     fn active_mut(&mut self) -> Option<&mut Model> {
@@ -298,27 +307,27 @@ impl Library {
     }
 
     /// Quality figures of a borrowed clip; none for the model's own clips.
-    pub fn figures(&self, clip: usize) -> Option<&Figures> {
+    pub fn figures(&self, clip: &ClipId) -> Option<&Figures> {
         Some(&self.measured(clip)?.0)
     }
 
     /// Foot-contact tracks of a borrowed clip.
-    pub fn foot_tracks(&self, clip: usize) -> &[FootTrack] {
+    pub fn foot_tracks(&self, clip: &ClipId) -> &[FootTrack] {
         self.measured(clip).map_or(&[], |(_, tracks)| tracks)
     }
 
     /// A borrowed clip retargeted from another rest of its motion; `None` for the model's own clips.
-    pub fn clip_from_rest(&self, clip: usize, rest: RestChoice) -> Option<&Clip> {
+    pub fn clip_from_rest(&self, clip: &ClipId, rest: RestChoice) -> Option<&Clip> {
         let model = self.active()?;
-        let borrowed = model.borrowed(clip)?;
-        let clips = borrowed.clips_by_rest(model.body(), self.motions.get(borrowed.motion)?.body());
+        let borrowed = model.clip(clip)?.borrowed()?;
+        let clips = borrowed.clips_by_rest(model.body(), self.motion(&borrowed.motion)?.body());
         RestChoice::ALL.iter().zip(clips).find_map(|(of, clip)| (*of == rest).then_some(clip))
     }
 
-    fn measured(&self, clip: usize) -> Option<&(Figures, Vec<FootTrack>)> {
+    fn measured(&self, clip: &ClipId) -> Option<&(Figures, Vec<FootTrack>)> {
         let model = self.active()?;
-        let borrowed = model.borrowed(clip)?;
-        borrowed.measured(model.body(), self.motions.get(borrowed.motion)?.body())
+        let borrowed = model.clip(clip)?.borrowed()?;
+        borrowed.measured(model.body(), self.motion(&borrowed.motion)?.body())
     }
 
     /// Errors of the last [`Library::borrow_each`].

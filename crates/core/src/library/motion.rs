@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{Model, ModelId};
+use super::{Model, ModelId, MotionId};
 use crate::asset::{Asset, Humanoid};
 use crate::retarget::{Body, Recognized, recognize};
 
@@ -21,6 +21,8 @@ pub struct Motion {
     pub slots: Humanoid,
     recognized: Arc<Recognized>,
     /// Assigned by the library.
+    pub(super) id: MotionId,
+    /// Assigned by the library.
     pub(super) stage_id: ModelId,
     stage: Arc<OnceLock<Model>>,
 }
@@ -36,6 +38,7 @@ impl Motion {
             asset,
             slots: recognized.humanoid(),
             recognized: Arc::new(recognized),
+            id: MotionId::default(),
             stage_id: ModelId::default(),
             stage: Arc::default(),
         }
@@ -51,14 +54,20 @@ impl Motion {
         })
     }
 
+    /// Identifies [`Self::stage`]. Unique among all motions that the library has ever held, so also among those with the same
+    /// identity.
+    pub fn stage_id(&self) -> ModelId {
+        self.stage_id
+    }
+
     /// What was recognized in the asset.
     pub fn recognition(&self) -> &Recognized {
         &self.recognized
     }
 
-    /// Unique among all motions the library has ever held.
-    pub fn id(&self) -> ModelId {
-        self.stage_id
+    /// Its identity among the motions of a library, which a motion opened again takes over. Unspecified until it is in a library.
+    pub fn id(&self) -> &MotionId {
+        &self.id
     }
 
     /// Returns the asset with its humanoid slots, as the source of a retarget.

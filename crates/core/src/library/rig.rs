@@ -84,8 +84,9 @@ impl Rig {
         if self.skin_joints == 0 && asset.instances.is_empty() { asset.skeleton.len() } else { self.skin_joints }
     }
 
-    pub(super) fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
-        self.roots.get(clip).copied().flatten()
+    /// The root-motion joints of the asset's own clips.
+    pub(super) fn roots(&self) -> &[Option<JointIndex>] {
+        &self.roots
     }
 }
 

@@ -14,12 +14,10 @@ use crate::anim::{Clip, JointMask, Pose, SampleCursor, Skeleton};
 pub use bake::{StackedLayer, bake_stack};
 pub use mask::{BodyPart, LayerMask};
 
-/// A clip over the one that plays.
+/// How a clip over the one that plays changes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ClipLayer {
-    /// The clip's name, or its index in decimal.
-    pub clip: String,
     /// From 0, no effect, to 1.
     pub weight: f64,
     /// Factor on the speed, up to [`Self::MAX_SPEED`]; 0 holds the first frame.
@@ -52,14 +50,7 @@ impl LayerMode {
 
 impl Default for ClipLayer {
     fn default() -> Self {
-        Self {
-            clip: String::new(),
-            weight: 1.0,
-            speed: 1.0,
-            start_secs: 0.0,
-            mode: LayerMode::Override,
-            mask: LayerMask::default(),
-        }
+        Self { weight: 1.0, speed: 1.0, start_secs: 0.0, mode: LayerMode::Override, mask: LayerMask::default() }
     }
 }
 
