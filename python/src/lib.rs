@@ -1,5 +1,8 @@
 //! The Python package: classes and functions over those of the command line, with NumPy arrays for times and poses. `gaitway.pyi`
 //! has their types, `docs/python.md` an introduction. Whatever takes long lets other Python threads run.
+//!
+//! Options, messages and documents are those of the command line: keyword arguments are parsed as its options. One build for
+//! Python's stable ABI serves all versions from 3.10 on.
 
 #![deny(unsafe_code)]
 // As in the other packages: files are untrusted.

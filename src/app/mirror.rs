@@ -1,5 +1,6 @@
-//! The panels' accessibility tree as a list, for platforms that AccessKit doesn't support: the page turns it into transparent HTML
-//! over the canvas (web/shell/mirror.js), for keyboards and screen readers.
+//! The panels' accessibility tree as a list, for platforms that AccessKit doesn't support: the page turns it into
+//! transparent HTML over the canvas (web/shell/mirror.js), for keyboards and screen readers. What the user does there comes
+//! back as the events that a desktop's assistive technology sends.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! The scene, rendered to a texture of its own.
+//! The scene, rendered to a texture of its own. It holds encoded values, which the screen shows as they are.
 
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 

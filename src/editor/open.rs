@@ -1,5 +1,8 @@
 //! Opening, activating and closing models: one is active, the others are in the model list. Operations that fail change
 //! nothing; those that succeed can be undone. For motions and maps, see `motions`.
+//!
+//! Opening is a step like an edit: undo leads back over it to the model, the motions and the whole view that were there. A
+//! closed model leaves the list and is kept while there is room.
 
 use std::sync::Arc;
 

@@ -1,5 +1,8 @@
 //! Settings chosen for what the user opens: the camera follows a clip that travels, and feet that would slide, hover or
 //! sink in are held on the ground. Links and scripts get exactly what they say.
+//!
+//! They are set with the user's own commands, so a link stays a total description. The state says that feet were planted
+//! automatically: the joint table's undo doesn't take that back.
 
 use super::Editor;
 use crate::library::{ClipId, ModelClip};

@@ -1,4 +1,6 @@
 //! Validation of a model's file: the input and the report of the Khronos validator, which the host runs.
+//!
+//! It checks what was opened, so a `FileSet` keeps a compressed glTF beside what it was converted into.
 
 use serde_json::Value;
 

@@ -1,4 +1,11 @@
 //! A model shown before its images have arrived. It is replaced once its file is complete; see `Editor::complete`.
+//!
+//! The complete file takes the usual path, and what it gives takes this model's place. Parsing it a second time takes
+//! milliseconds, and so no other code has to know how to add images to a model. Until then it is neither exported nor
+//! recorded.
+//!
+//! This is only for a page that starts with a link to a single file: one that shows something already keeps that until the
+//! next model is complete.
 
 use crate::anim::TextureSlot;
 use crate::asset::Asset;

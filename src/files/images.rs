@@ -1,5 +1,8 @@
 //! Decoded images: how large they may be on the device that draws them, and what is reported about them. Decoding itself is
 //! up to the platform.
+//!
+//! KTX2 images are transcoded when the others are decoded, since the device decides into what. The file stays as it is, so a
+//! written model keeps them, and one that can't be decoded costs only its texture.
 
 use gaitway_ktx2::Texture;
 use gaitway_part::Answer;

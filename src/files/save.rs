@@ -1,4 +1,6 @@
-//! Writes files so that nothing is lost: the old file stays until the new one is complete on the disk.
+//! Writes files so that nothing is lost: the old file stays until the new one is complete on the disk. Whatever the program
+//! writes for the user is written here, never over a file that was read: [`Disk`](super::Disk) remembers those, side files
+//! included.
 
 use std::fs::{File, OpenOptions, Permissions, metadata, read_link, remove_file, rename};
 use std::io::{self, ErrorKind, Write};

@@ -1,4 +1,6 @@
 //! The terms of linear blend skinning at one vertex: `p' = Σ w_j · T_j · B_j⁻¹ · p`.
+//!
+//! Computed from the same matrices as the palette but not from the palette, so that tests can compare the two.
 
 use glam::{Affine3A, Vec3};
 

@@ -1,5 +1,7 @@
 //! A frame ready to draw: `evaluate` turns the library and the state into plain numbers. No clock and no randomness: the
 //! same library and state give the same frame.
+//!
+//! A pose is sampled once, into the frame: whatever needs it reads [`Frame::pose`] and the frame's matrices.
 
 mod evaluate;
 mod formula;

@@ -1,4 +1,7 @@
 //! The frame's camera: view and projection, with near and far planes that keep depth precise at any scale.
+//!
+//! A camera of the file hangs on a joint, so only a frame knows where it is. `state`, which has no frame, treats it as the
+//! automatic one; [`current_orbit`] makes an orbit camera of it when the view is moved.
 
 // WebGPU's conventions: right-handed, Y up, depth from 0 to 1.
 use glam::camera::rh::proj::directx::{orthographic, perspective};

@@ -1,4 +1,8 @@
 //! Chooses what to draw of a frame's meshes, in which order and with which pipeline.
+//!
+//! The palette entries of a mesh's copies are consecutive, so that one instanced call draws them. Blended surfaces draw the
+//! depth of their nearly opaque parts first, each right before its colour: triangles aren't sorted, but hair and lashes hide
+//! what is behind them. Masks use alpha to coverage in front of an opaque background, which keeps the picture's alpha.
 
 use super::layouts::Layouts;
 use super::model::{GpuModel, GpuPrimitive};

@@ -3,6 +3,9 @@
 //! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
 //! `textureLoad`. A picture takes a shadow pass and a single scene pass (two with transmissive surfaces), whose
 //! fragment stages write display-ready colours; without multisampling, further scene passes refine it.
+//!
+//! Lit surfaces are tone-mapped and encoded where they are drawn. So unlit colours and overlays come out exactly as given,
+//! and no pass over the whole picture is needed; blending happens in encoded values.
 
 mod blit;
 mod draw_list;

@@ -1,5 +1,8 @@
 //! Progressive refinement of a picture drawn with one sample per pixel: draws the whole scene again, shifted by a
 //! fraction of a pixel, and accumulates the average.
+//!
+//! On software adapters four samples per pixel take twice as long, so a changing view has one. Once it has been still for a
+//! moment, the other samples follow, one per frame; then nothing is drawn. Saved images and videos have all of them at once.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
 use super::layouts::pipeline_layout;

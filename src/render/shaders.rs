@@ -1,4 +1,8 @@
 //! The WGSL modules, concatenated from the files in `shaders/`.
+//!
+//! Surfaces without lobes share one module, whose overrides switch everything else. The lobes' formulas are those of the
+//! Khronos glTF Sample Viewer; `tests/core/lobes.rs` integrates them. MToon and channels are permutations with fragment
+//! stages of their own: a view without channels compiles nothing for them, and cycling through them compiles once.
 
 use std::fmt::Write;
 

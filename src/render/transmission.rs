@@ -1,5 +1,8 @@
 //! The transmission buffer: a copy of everything opaque, which transmissive surfaces refract. Rough ones read its mip
 //! levels.
+//!
+//! The scene pass ends before transmissive surfaces, and another one draws the rest. The copy is already tone-mapped, so the
+//! shader inverts the tone mapping: what is seen through clear glass looks the same as beside it.
 
 use super::full_screen::{FullScreenPipeline, draw_full_screen, sampled_texture_group, sampled_texture_layout};
 use super::layouts::pipeline_layout;

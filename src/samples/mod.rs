@@ -1,5 +1,7 @@
 //! The sample characters. Native builds embed the files of `assets/samples`; the page fetches them from its own folder.
 //! The walker is generated in code, so there is always something to show.
+//!
+//! `assets/samples/gallery.json` lists the scenes of the start screen; page, build and tests read that one table.
 
 mod rehearsal;
 mod walker;

@@ -1,4 +1,7 @@
 //! What an avatar adds to the pose of a clip: gaze, expressions, node constraints and spring bones, in this order.
+//!
+//! Gaze needs the camera, so `frame::evaluate` resolves it after the clip is sampled. Expressions become morph weights and
+//! properties: nothing after this knows of them.
 
 use std::collections::BTreeMap;
 

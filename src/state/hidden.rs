@@ -1,4 +1,6 @@
-//! Parts of the model that the user hides. They stay in exported models.
+//! Parts of the model that the user hides. They stay in exported models. Hidden nodes take the path of those that a file or
+//! a clip hides: they keep their draws, marked as such, so that `gaitway pose` lists their vertices. Materials are skipped
+//! when draws are listed.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,6 @@
-//! The text form of a view state: `key=value` pairs joined by `&` after the `#`, and the same keys as a JSON object. Old links
-//! keep working: `v=1` fixes the defaults, and unknown keys are preserved when the link is written again.
+//! The text form of a view state: `key=value` pairs joined by `&` after the `#`, and the same keys as a JSON object. Old
+//! links keep working: `v=1` fixes the defaults, and unknown keys are preserved when the link is written again. A key is one
+//! row of [`KEYS`].
 
 mod changes;
 mod files;

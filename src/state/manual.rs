@@ -1,4 +1,7 @@
 //! What is set manually and overrides the clip: rotations of joints, morph weights, expressions.
+//!
+//! Rotations are Euler angles from the rest pose, so that sliders show what was set and links stay short. Exported clips
+//! hold all of it still, before pins are baked in.
 
 use glam::{EulerRot, Quat};
 

@@ -1,6 +1,6 @@
 //! The active joint map of each motion. A view holds maps in joint numbers, each with a checksum of the joint names it was
 //! made for, so that a link can hold it without the files, and a better proposal never changes an old link. Maps by name are
-//! only text here.
+//! only text here: links and undo have to hold them, and their joints can't be resolved before the motion is there.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
-// The first frame is drawn off screen, because compiling the shaders for it takes long.
+// The first frame is drawn off screen, because compiling the shaders for it takes long and a visible canvas makes the whole page
+// wait for it. On WebGL2 shaders are linked inside the frame, which can't be deferred: there the canvas is only hidden.
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 

@@ -1,4 +1,6 @@
 //! The page: one program per back end, compiled, bound and optimized here; `xtask/site` makes a site of them.
+//!
+//! There are two since a browser with WebGPU has no use for naga and wgpu's GL back end, a quarter of the download.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};

@@ -1,4 +1,7 @@
 //! Measures the page's download and leaves compressed copies beside the files.
+//!
+//! Most of a program is not ours: egui, its text, wgpu and the standard library. The text font takes 19 KB (Latin, see
+//! assets/font); the browser draws other scripts and decodes all textures but KTX2.
 
 use crate::page::dist;
 use crate::process::{run, target_folder, text};

@@ -1,6 +1,10 @@
 //! Reads the directory of a zip archive: sections 4.3.7, 4.3.12 to 4.3.16, 4.4.4, 4.4.5, 4.5.3, 4.6.9 and appendix D of PKWARE's
 //! APPNOTE.TXT. Decompression and checksums are left to callers, who have code for both. Split and encrypted archives and methods
 //! other than Deflate are not supported.
+//!
+//! The crate `zip`, with as few features as it has, took 18 KB more, and in wasm it calls JavaScript, which a part can't.
+//! `rawzip` is as small, but leaves names in CP437, messages and overlapping files to its user. `rc-zip` needs libraries for
+//! dates and text encodings.
 
 use std::borrow::Cow;
 

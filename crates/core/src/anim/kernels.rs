@@ -1,6 +1,10 @@
 //! SIMD kernels of playback: four joints at a time, one per lane (structure of arrays), so that interpolating keys and
 //! converting local transforms to matrices needs no shuffling. The unit tests have the same formulas for a single
 //! joint, in f64.
+//!
+//! Whatever samples whole poses goes through them. Interpolated rotations stay shorter than 1, and their matrices are
+//! divided by the squared length. Code that handles single joints (the gizmo, the inspector, retargeting) uses `Pose::local`
+//! and `Pose::set_local` instead.
 
 use glam::{Affine3A, BVec4A, Mat3A, Quat, Vec3, Vec4};
 

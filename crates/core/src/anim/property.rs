@@ -1,5 +1,8 @@
-//! Animation of everything but joints: materials, lights, cameras, visibility and single morph weights. Key times are
-//! stored apart from those of the joints, so that clips without such channels pay nothing for them.
+//! Animation of everything but joints: materials, lights, cameras, visibility, expressions, gaze and single morph weights. Key
+//! times are stored apart from those of the joints, so that clips without such channels pay nothing for them.
+//!
+//! What a file's pointer (`KHR_animation_pointer`) animates of a node's transform or weights is an ordinary channel instead.
+//! Retargeting never sees properties; the library adds expressions to retargeted clips by name.
 
 use glam::Vec4;
 

@@ -1,4 +1,5 @@
-//! The result of any loader: immutable, validated, independent of the file format.
+//! The result of any loader: immutable, validated, independent of the file format. Nothing after the loaders checks ranges.
+//! To change an asset, take it apart ([`Asset::into_parts`]) and build another.
 
 mod error;
 mod humanoid;

@@ -1,5 +1,8 @@
 //! The step between a set of files and [`load`](super::load): whatever needs a decoder of its own is converted into plain glTF.
 //! That is the only asynchronous part of loading, because the page has to download the decoder first.
+//!
+//! As long as [`next_preparation`] finds something, callers run the part that it names, and [`Preparation::finish`] puts the
+//! result in its place. So loading itself stays synchronous and knows of no part.
 
 use gaitway_part::Answer;
 

@@ -1,4 +1,8 @@
 //! Clips of other files, retargeted to a model.
+//!
+//! In the page and the window only `Library::borrow_each` resolves maps: it compares each motion's map with the last one
+//! baked, and resolves and bakes again if they differ or if the model or the motions have been replaced. Clips share the
+//! `ResolvedMap` that they were baked with. It lives as long as they do, so it needs no key and can't be stale.
 
 use std::sync::{Arc, OnceLock};
 

@@ -1,4 +1,7 @@
 //! A loaded file with its decoded images and cached derived data.
+//!
+//! A changed clip takes the place of its original, so that the player, exporters and panels need to know nothing of changes.
+//! An empty stage is a model, too, with one node and no surfaces, so that nothing else has to do without one.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};

@@ -1,4 +1,7 @@
 //! The palette: one entry per skin joint, in the form its skinning mode reads.
+//!
+//! On the GPU it is an RGBA32F texture read with `textureLoad` in the vertex stage, on every back end: so there is no limit
+//! on joints, and WebGL2 takes the same path as WebGPU. A mesh without a skin has a palette of one entry, its node.
 
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
 use serde::{Deserialize, Serialize};

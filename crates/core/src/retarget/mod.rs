@@ -7,6 +7,9 @@
 //! parts of it still, `stack` puts others over it, through `baker`, and `pins` holds hands and feet. `pose`, `keys`, `math`,
 //! `times`, `limit` and `two_bones` are shared.
 //!
+//! The result is an ordinary clip: the library lists it after the model's own, and the player cannot tell them apart.
+//! `docs/retargeting.md` has the math.
+//!
 //! ```
 //! use gaitway_core::formats::{FileSet, load};
 //! use gaitway_core::retarget::propose;

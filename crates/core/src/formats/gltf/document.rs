@@ -4,6 +4,9 @@
 //! than a viewer needs to be in many. So the text is deserialized directly first, which works for nearly every file. If that
 //! fails, it is parsed as a plain value, [`loosen`]ed, written as text and deserialized once more; if that fails as well, what
 //! a model can do without is [left out](leave_out).
+//!
+//! They also keep only 32 bits of an index, so a text with a longer integer takes the second path as well, which rejects
+//! such an index. [`strict`] rejects what they would accept beyond glTF while they read.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;

@@ -1,6 +1,8 @@
 //! Changes clips: mirrors, trims, reverses, retimes, loops, moves and turns them. The original is untouched. The result has
 //! its keys; trimming and blending a seam add some, and so does what must be held: the values of a reversed clip that starts late or
 //! has steps, and the joint that moves the body of a clip of an arm. Apart from that, holds parts of a clip still.
+//!
+//! The changes are a struct and not a list: they are applied in the order of its fields, and each can be edited later.
 
 mod hold;
 mod mirror;

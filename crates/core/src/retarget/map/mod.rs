@@ -1,5 +1,8 @@
 //! Which target joint follows which source joint: the map in joint numbers, its file form with names, its resolved form, and
 //! proposals.
+//!
+//! Names exist only where files and links are read and written; everything else identifies joints by number.
+//! `tests/core/layering.rs` keeps the file form to those places.
 
 mod convert;
 mod error;

@@ -1,6 +1,8 @@
 //! A stack of clips over the one that plays: each with a weight, a speed and a start, as an override or an addition, on all
 //! joints or on some. The arithmetic is in `anim`; here are the settings, the time of a layer, and baking the stack into a
 //! clip.
+//!
+//! Layers are applied to poses, after a crossfade. Only exports need a clip of the sum.
 
 mod bake;
 mod mask;

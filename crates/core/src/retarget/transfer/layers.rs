@@ -1,4 +1,5 @@
-//! Joints without a source may play one of the model's own clips, which loops with its own duration.
+//! Joints without a source may play one of the model's own clips, which loops with its own duration. In the player they stay
+//! a layer; exports bake it into the clip.
 
 use std::ops::Mul;
 
