@@ -1,7 +1,9 @@
 //! Enforces the layers: parses the sources for the modules that each module uses.
 
 mod circles;
+mod documents;
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -142,12 +144,12 @@ fn violations(path: &str, text: &str) -> Vec<String> {
     found
 }
 
-fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+fn sources(folder: &Path, extensions: &[&str], files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            sources(&path, extensions, files);
+        } else if path.extension().and_then(OsStr::to_str).is_some_and(|extension| extensions.contains(&extension)) {
             files.push(path);
         }
     }
@@ -158,7 +160,7 @@ fn all_sources() -> Vec<(String, String)> {
     let mut all = Vec::new();
     for root in ["crates/core/src", "src"].map(Path::new) {
         let mut files = Vec::new();
-        sources(root, &mut files);
+        sources(root, &["rs"], &mut files);
         assert!(files.len() > 10, "only {} sources found in {}", files.len(), root.display());
         all.extend(files.into_iter().map(|file| {
             let path = file.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
