@@ -77,7 +77,7 @@ fn a_borrowed_clip_is_selected_and_in_sight() {
     }
     harness.run_steps(120);
     assert!(harness.get_by_label("Move 0 (2)").rect().top() > WIDE[1], "scrolled away");
-    harness.state_mut().editor.remove_motion(&motion_called("first.bvh"));
+    harness.state_mut().editor.remove_motion(&motion_called("first.glb"));
     borrow(&mut harness, "second.glb");
 }
 
@@ -115,7 +115,7 @@ fn search_narrows_many_clips_and_can_be_cleared() {
     harness.run();
     assert!(harness.query_by_label("Move 11").is_some());
     assert!(harness.query_by_label("Move 3").is_none());
-    let expected = Command::SetClip(ClipChoice::called("Move 11"));
+    let expected = Command::SetClip(ClipChoice::Clip(ClipId::Own(11)));
     assert_eq!(press(&mut harness, "Move 11"), [expected]);
     press(&mut harness, text::CLEAR_SEARCH);
     assert!(harness.query_by_label("Move 3").is_some());

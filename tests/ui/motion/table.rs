@@ -185,7 +185,7 @@ fn three_hundred_joints_have_their_rows() {
     press_row(&mut harness, &text::follows("Tentacle250", ""));
     assert_eq!(
         press(&mut harness, text::FOLLOW_NOTHING),
-        [Command::SetSource { motion: motion_called("dance.bvh"), target: 250, source: None }]
+        [Command::SetSource { motion: motion_called("swim.bvh"), target: 250, source: None }]
     );
     choose(&mut harness, text::JOINT_FILTER, &text::counted(text::UNMAPPED, 1));
     assert!(harness.query_by_label_contains(&text::row("Tentacle250", text::NO_SOURCE, text::NO_SOURCE)).is_some());

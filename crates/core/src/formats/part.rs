@@ -1,5 +1,6 @@
 //! The decoders that few files need.
 
+#[cfg(not(target_arch = "wasm32"))]
 use gaitway_part::Answer;
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
