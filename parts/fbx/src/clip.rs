@@ -3,7 +3,7 @@
 //! ufbx evaluates the curves with everything that lies between them and a joint's transform: pivots, rotation orders, layers,
 //! extrapolation. `curves` finds out which ones take part and where they have keys, `fit` does the rest.
 
-use gaitway_glb::{Animation, Glb, Warnings, sort};
+use gaitway_glb::{Animation, Glb, Warnings};
 use ufbx::{Anim, Node, Scene};
 
 use crate::curves::{
@@ -189,7 +189,7 @@ impl<'a> Clip<'a, '_> {
         Ok(())
     }
 
-    fn push(&mut self, keys: &Keys, node: usize, path: &str) -> Result<(), String> {
+    fn push(&mut self, keys: &Keys, node: usize, path: &'static str) -> Result<(), String> {
         let interpolation = match keys.interpolation {
             fit::Interpolation::Linear => "LINEAR",
             fit::Interpolation::Step => "STEP",
@@ -216,7 +216,7 @@ impl<'a> Clip<'a, '_> {
             }
         }
         if !others.is_empty() {
-            sort(&mut others, |a, b| a < b);
+            others.sort_unstable();
             warnings.add(format!("Clip \"{clip}\": animated {} left out.", others.join(", ")));
         }
     }

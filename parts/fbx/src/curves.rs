@@ -1,6 +1,5 @@
 //! Which curves animate what, and when they have keys.
 
-use gaitway_glb::sort;
 use ufbx::{AnimCurve, AnimLayer, AnimStack, AnimValue, ExtrapolationMode, Interpolation};
 
 use crate::fit::Corner;
@@ -59,7 +58,7 @@ impl<'a> Curves<'a> {
         let props = layers.flat_map(|layer: &AnimLayer| &layer.anim_props);
         let mut properties: Vec<_> =
             props.map(|prop| (prop.element.element_id, &*prop.prop_name, &*prop.anim_value)).collect();
-        sort(&mut properties, |a, b| a.0 < b.0);
+        properties.sort_by_key(|&(element, ..)| element);
         let weights = |&(element, name, value): &(u32, &str, &'a AnimValue)| {
             let layer = stack.anim.layers.into_iter().any(|layer| layer.element.element_id == element);
             (layer && name == "Weight").then_some(value)
@@ -130,7 +129,7 @@ impl<'a> Drivers<'a> {
         }
         limits.evaluations += EVALUATIONS_PER_KEY * corners.len() as u64;
         corners.retain(|corner| (0.0..=end).contains(&corner.time));
-        sort(&mut corners, |a, b| a.time < b.time);
+        corners.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
         corners.dedup_by(|later, earlier| {
             let same = later.time == earlier.time;
             earlier.jump |= same && later.jump;

@@ -4,7 +4,7 @@
 //! connected texture replaces the value it is connected to, as in the FBX SDK and Blender. Colours are taken as linear,
 //! as in Blender and Godot.
 
-use gaitway_glb::{Glb, Object, Warnings, base_name, percent_encoded, quoted, roughness_of_exponent};
+use gaitway_glb::{Glb, Object, Warnings, base_name, number, numbers, percent_encoded, push, roughness_of_exponent};
 use ufbx::{Material, MaterialMap, Scene, ShaderType, Texture};
 
 const REPEAT: usize = 10497;
@@ -38,30 +38,30 @@ fn write_material(material: &Material, textures: &mut Textures) -> UvNames {
     let mut json = Object::new();
     let name = &*material.element.name;
     if !name.is_empty() {
-        json.string("name", name);
+        json.set("name", name);
     }
     let mut surface = Object::new();
     let pbr = &material.pbr;
     let base = used(&pbr.base_color).and_then(|texture| textures.reference(texture, &mut uv_names));
     let factor = if pbr.base_factor.has_value { unit(pbr.base_factor.value_vec4.x) } else { 1.0 };
     let color = pbr.base_color.value_vec4;
-    let color = match &base {
+    let color = match base {
         Some(texture) => {
-            surface.raw("baseColorTexture", &texture.end());
+            surface.set("baseColorTexture", texture);
             [factor; 3]
         }
         None if pbr.base_color.has_value => [color.x, color.y, color.z].map(|c| unit(c * factor)),
         None => [0.8; 3],
     };
     let (opacity, blend) = opacity(material, textures.warnings);
-    surface.numbers("baseColorFactor", &[color[0], color[1], color[2], opacity]);
+    surface.set("baseColorFactor", numbers(&[color[0], color[1], color[2], opacity]));
     add_metal_and_roughness(material, &mut surface, textures, &mut uv_names);
-    json.raw("pbrMetallicRoughness", &surface.end());
+    json.set("pbrMetallicRoughness", surface);
     if blend {
-        json.string("alphaMode", "BLEND");
+        json.set("alphaMode", "BLEND");
     }
     add_details(material, &mut json, textures, &mut uv_names);
-    textures.glb.materials.push(&json.end());
+    textures.glb.materials.push(json.into());
     uv_names
 }
 
@@ -70,12 +70,12 @@ fn add_details(material: &Material, json: &mut Object, textures: &mut Textures, 
     let name = &*material.element.name;
     let pbr = &material.pbr;
     if let Some(texture) = used(&pbr.normal_map).and_then(|texture| textures.reference(texture, uv_names)) {
-        json.raw("normalTexture", &texture.end());
+        json.set("normalTexture", texture);
     } else if used(&material.fbx.bump).is_some() {
         textures.warnings.add(format!("Material \"{name}\": bump map left out; glTF has normal maps only."));
     }
     if let Some(texture) = used(&pbr.ambient_occlusion).and_then(|texture| textures.reference(texture, uv_names)) {
-        json.raw("occlusionTexture", &texture.end());
+        json.set("occlusionTexture", texture);
     }
     let emission = &pbr.emission_color;
     let strength = if pbr.emission_factor.has_value { pbr.emission_factor.value_vec4.x } else { 1.0 };
@@ -87,19 +87,21 @@ fn add_details(material: &Material, json: &mut Object, textures: &mut Textures, 
     let brightest = color[0].max(color[1]).max(color[2]);
     if brightest > 0.0 {
         let scale = brightest.max(1.0);
-        json.numbers("emissiveFactor", &color.map(|c| c / scale));
+        json.set("emissiveFactor", numbers(&color.map(|c| c / scale)));
         if let Some(texture) = texture {
-            json.raw("emissiveTexture", &texture.end());
+            json.set("emissiveTexture", texture);
         }
         if scale > 1.0 {
             textures.glb.use_extension("KHR_materials_emissive_strength");
-            let mut extension = Object::new();
-            extension.number("emissiveStrength", scale);
-            json.raw("extensions", &format!("{{\"KHR_materials_emissive_strength\":{}}}", extension.end()));
+            json.set(
+                "extensions",
+                Object::new()
+                    .with("KHR_materials_emissive_strength", Object::new().with("emissiveStrength", number(scale))),
+            );
         }
     }
     if material.features.double_sided.enabled {
-        json.raw("doubleSided", "true");
+        json.set("doubleSided", true);
     }
 }
 
@@ -139,9 +141,10 @@ fn add_metal_and_roughness(material: &Material, surface: &mut Object, textures: 
         (None, true) => 0.5,
         (None, false) => roughness(material),
     };
-    surface.number("metallicFactor", metallic).number("roughnessFactor", rough);
+    surface.set("metallicFactor", number(metallic));
+    surface.set("roughnessFactor", number(rough));
     if let Some(texture) = texture {
-        surface.raw("metallicRoughnessTexture", &texture.end());
+        surface.set("metallicRoughnessTexture", texture);
     }
 }
 
@@ -222,24 +225,24 @@ impl Textures<'_> {
         let index = self.written.iter().position(|&pair| pair == (image, sampler)).unwrap_or_else(|| {
             self.written.push((image, sampler));
             let mut json = Object::new();
-            json.index("sampler", sampler);
+            json.set("sampler", sampler);
             if self.webp.contains(&image) {
                 self.glb.use_extension("EXT_texture_webp");
-                json.raw("extensions", &format!("{{\"EXT_texture_webp\":{{\"source\":{image}}}}}"));
+                json.set("extensions", Object::new().with("EXT_texture_webp", Object::new().with("source", image)));
             } else {
-                json.index("source", image);
+                json.set("source", image);
             }
-            self.glb.textures.push(&json.end())
+            push(&mut self.glb.textures, json)
         });
         let mut json = Object::new();
-        json.index("index", index);
+        json.set("index", index);
         let set = &*texture.uv_set;
         let number = uv_names.iter().position(|name| name == set).unwrap_or_else(|| {
             uv_names.push(set.to_owned());
             uv_names.len() - 1
         });
         if number > 0 {
-            json.index("texCoord", number);
+            json.set("texCoord", number);
         }
         if texture.has_uv_transform {
             self.add_transform(texture, &mut json);
@@ -254,9 +257,7 @@ impl Textures<'_> {
         });
         self.samplers.iter().position(|&other| other == wrap).unwrap_or_else(|| {
             self.samplers.push(wrap);
-            let mut json = Object::new();
-            json.index("wrapS", wrap[0]).index("wrapT", wrap[1]);
-            self.glb.samplers.push(&json.end())
+            push(&mut self.glb.samplers, Object::new().with("wrapS", wrap[0]).with("wrapT", wrap[1]))
         })
     }
 
@@ -272,10 +273,16 @@ impl Textures<'_> {
             return;
         }
         self.glb.use_extension("KHR_texture_transform");
-        let mut extension = Object::new();
-        extension.numbers("offset", &offset).numbers("scale", &scale);
-        extension.number("rotation", libm::atan2(-c, a));
-        json.raw("extensions", &format!("{{\"KHR_texture_transform\":{}}}", extension.end()));
+        json.set(
+            "extensions",
+            Object::new().with(
+                "KHR_texture_transform",
+                Object::new()
+                    .with("offset", numbers(&offset))
+                    .with("scale", numbers(&scale))
+                    .with("rotation", number(libm::atan2(-c, a))),
+            ),
+        );
     }
 
     fn image(&mut self, texture: &Texture) -> Option<usize> {
@@ -294,13 +301,14 @@ impl Textures<'_> {
         let name = path.into_iter().map(|path| base_name(path)).find(|name| !name.is_empty()).unwrap_or_default();
         let mut json = Object::new();
         if !name.is_empty() {
-            json.string("name", name);
+            json.set("name", name);
         }
         let content: &[u8] = &texture.content;
         match media_type(content) {
             Some(media_type) => {
                 let view = self.glb.view(content, None);
-                json.index("bufferView", view).string("mimeType", media_type);
+                json.set("bufferView", view);
+                json.set("mimeType", media_type);
             }
             None if !content.is_empty() => {
                 self.warnings.add(format!(
@@ -310,10 +318,10 @@ impl Textures<'_> {
             }
             None if name.is_empty() => return None,
             None => {
-                json.raw("uri", &quoted(&percent_encoded(name)));
+                json.set("uri", percent_encoded(name));
             }
         }
-        let image = self.glb.images.push(&json.end());
+        let image = push(&mut self.glb.images, json);
         if media_type(content) == Some("image/webp") {
             self.webp.push(image);
         }

@@ -4,7 +4,8 @@
 //! becomes a primitive. The geometric transform of the node is baked into an unskinned mesh, and into the inverse bind
 //! matrices of a skinned one.
 
-use gaitway_glb::{Glb, List, MAX_INFLUENCES, Object, Warnings, indices, numbers, quoted, strongest};
+use gaitway_glb::{Glb, MAX_INFLUENCES, Object, Warnings, numbers, push, strongest};
+use serde_json::Value;
 use ufbx::{BlendShape, Matrix, Mesh, Node, Scene, SkinDeformer};
 
 use crate::material::UvNames;
@@ -136,24 +137,24 @@ impl Meshes<'_> {
         let influences = skin.map(|skin| self.influences(mesh, skin, name));
         let geometry = if skin.is_some() { ufbx::identity_matrix() } else { finite(node.geometry_to_node) };
         let shape = Shape::new(mesh, geometry, influences);
-        let mut primitives = List::default();
+        let mut primitives = Vec::new();
         for part in mesh.material_parts.into_iter().filter(|part| part.num_triangles > 0) {
             let material = node.materials.as_ref().get(part.index as usize);
             let material = material.map(|material| material.element.typed_id as usize);
             let uv_names = material.and_then(|material| self.materials.get(material)).map_or(&[][..], Vec::as_slice);
             if let Some(mut primitive) = shape.primitive(part, uv_names, self.glb)? {
                 if let Some(material) = material {
-                    primitive.index("material", material);
+                    primitive.set("material", material);
                 }
-                primitives.push(&primitive.end());
+                push(&mut primitives, primitive);
             }
         }
         if primitives.is_empty() {
             return Ok(None);
         }
-        let mut json = gaitway_glb::mesh(name, &primitives);
+        let mut json = gaitway_glb::mesh(name, primitives);
         add_targets(mesh, &mut json);
-        Ok(Some(self.glb.meshes.push(&json.end())))
+        Ok(Some(push(&mut self.glb.meshes, json)))
     }
 
     /// Returns the influences of each vertex, strongest first, with sum 1. Vertices without a cluster follow the mesh's
@@ -208,10 +209,11 @@ impl Meshes<'_> {
         let bind = self.glb.floats(&matrices, "MAT4", None, false);
         let mut json = Object::new();
         if !skin.element.name.is_empty() {
-            json.string("name", &skin.element.name);
+            json.set("name", &*skin.element.name);
         }
-        json.index("inverseBindMatrices", bind).raw("joints", &indices(&unique));
-        let index = self.glb.skins.push(&json.end());
+        json.set("inverseBindMatrices", bind);
+        json.set("joints", unique);
+        let index = push(&mut self.glb.skins, json);
         self.skins.push((joints, matrices, index));
         Ok(index)
     }
@@ -246,12 +248,9 @@ fn add_targets(mesh: &Mesh, json: &mut Object) {
     if weights.is_empty() {
         return;
     }
-    let mut names = List::default();
-    for (name, _, _) in shapes(mesh) {
-        names.push(&quoted(name));
-    }
-    json.raw("weights", &numbers(&weights));
-    json.raw("extras", &format!("{{\"targetNames\":{}}}", names.json()));
+    let names: Value = shapes(mesh).map(|(name, _, _)| name).collect();
+    json.set("weights", numbers(&weights));
+    json.set("extras", Object::new().with("targetNames", names));
 }
 
 /// Returns the matrix, or the identity if an element isn't finite.

@@ -1,6 +1,6 @@
 //! The node hierarchy, with its cameras and lights.
 
-use gaitway_glb::{Glb, Object, Warnings, indices};
+use gaitway_glb::{Glb, Object, Warnings, number, numbers, push};
 use ufbx::{Matrix, Node, Quat, Scene, Transform, Vec3};
 
 /// A glTF node under construction.
@@ -132,30 +132,30 @@ impl Nodes {
         for entry in &self.entries {
             let mut node = Object::new();
             if let Some(name) = &entry.name {
-                node.string("name", name);
+                node.set("name", name.as_str());
             }
             if !entry.children.is_empty() {
-                node.raw("children", &indices(&entry.children));
+                node.set("children", entry.children.as_slice());
             }
             add_transform(&mut node, &entry.transform);
             for (key, index) in [("mesh", entry.mesh), ("skin", entry.skin), ("camera", entry.camera)] {
                 if let Some(index) = index {
-                    node.index(key, index);
+                    node.set(key, index);
                 }
             }
             let mut extensions = Object::new();
             if let Some(light) = entry.light {
                 glb.use_extension("KHR_lights_punctual");
-                extensions.raw("KHR_lights_punctual", &format!("{{\"light\":{light}}}"));
+                extensions.set("KHR_lights_punctual", Object::new().with("light", light));
             }
             if !entry.visible {
                 glb.use_extension("KHR_node_visibility");
-                extensions.raw("KHR_node_visibility", "{\"visible\":false}");
+                extensions.set("KHR_node_visibility", Object::new().with("visible", false));
             }
             if !extensions.is_empty() {
-                node.raw("extensions", &extensions.end());
+                node.set("extensions", extensions);
             }
-            glb.nodes.push(&node.end());
+            glb.nodes.push(node.into());
         }
         glb.scene_roots.clone_from(&self.roots);
     }
@@ -191,13 +191,13 @@ pub fn finite(transform: Transform) -> Transform {
 fn add_transform(node: &mut Object, transform: &Transform) {
     let (t, r, s) = (transform.translation, transform.rotation, transform.scale);
     if (t.x, t.y, t.z) != (0.0, 0.0, 0.0) {
-        node.numbers("translation", &[t.x, t.y, t.z]);
+        node.set("translation", numbers(&[t.x, t.y, t.z]));
     }
     if (r.x, r.y, r.z) != (0.0, 0.0, 0.0) {
-        node.numbers("rotation", &[r.x, r.y, r.z, r.w]);
+        node.set("rotation", numbers(&[r.x, r.y, r.z, r.w]));
     }
     if (s.x, s.y, s.z) != (1.0, 1.0, 1.0) {
-        node.numbers("scale", &[s.x, s.y, s.z]);
+        node.set("scale", numbers(&[s.x, s.y, s.z]));
     }
 }
 
@@ -250,7 +250,7 @@ impl Nodes {
 fn write_camera(camera: &ufbx::Camera, glb: &mut Glb) -> usize {
     let mut json = Object::new();
     if !camera.element.name.is_empty() {
-        json.string("name", &camera.element.name);
+        json.set("name", &*camera.element.name);
     }
     let near = if camera.near_plane > 0.0 && camera.near_plane.is_finite() { camera.near_plane } else { 0.01 };
     let far = if camera.far_plane > near && camera.far_plane.is_finite() { camera.far_plane } else { near * 1e5 };
@@ -258,45 +258,53 @@ fn write_camera(camera: &ufbx::Camera, glb: &mut Glb) -> usize {
     if camera.projection_mode == ufbx::ProjectionMode::Orthographic {
         let half = |size: f64| if size > 0.0 && size.is_finite() { size / 2.0 } else { 1.0 };
         let size = camera.orthographic_size;
-        let mut view = Object::new();
-        view.number("xmag", half(size.x)).number("ymag", half(size.y));
-        view.number("zfar", far).number("znear", near);
-        json.string("type", "orthographic").raw("orthographic", &view.end());
+        json.set("type", "orthographic");
+        json.set(
+            "orthographic",
+            Object::new()
+                .with("xmag", number(half(size.x)))
+                .with("ymag", number(half(size.y)))
+                .with("zfar", number(far))
+                .with("znear", number(near)),
+        );
     } else {
         let degrees = camera.field_of_view_deg.y;
         let degrees = if degrees > 0.1 && degrees < 179.0 { degrees } else { 35.0 };
-        let mut view = Object::new();
-        view.number("aspectRatio", aspect).number("yfov", degrees.to_radians());
-        view.number("zfar", far).number("znear", near);
-        json.string("type", "perspective").raw("perspective", &view.end());
+        json.set("type", "perspective");
+        json.set(
+            "perspective",
+            Object::new()
+                .with("aspectRatio", number(aspect))
+                .with("yfov", number(degrees.to_radians()))
+                .with("zfar", number(far))
+                .with("znear", number(near)),
+        );
     }
-    glb.cameras.push(&json.end())
+    push(&mut glb.cameras, json)
 }
 
 /// Writes a light. FBX has no physical units: its intensity of 100 % is written as 1.
 fn write_light(light: &ufbx::Light, glb: &mut Glb) -> usize {
     let mut json = Object::new();
     if !light.element.name.is_empty() {
-        json.string("name", &light.element.name);
+        json.set("name", &*light.element.name);
     }
     let unit = |value: f64| if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
-    json.numbers("color", &[light.color.x, light.color.y, light.color.z].map(unit));
+    json.set("color", numbers(&[light.color.x, light.color.y, light.color.z].map(unit)));
     let lit = light.cast_light && light.intensity.is_finite();
-    json.number("intensity", if lit { light.intensity.max(0.0) } else { 0.0 });
+    json.set("intensity", number(if lit { light.intensity.max(0.0) } else { 0.0 }));
     let kind = match light.type_ {
         ufbx::LightType::Directional => "directional",
         ufbx::LightType::Spot => "spot",
         _ => "point",
     };
-    json.string("type", kind);
+    json.set("type", kind);
     if kind == "spot" {
         let half = |degrees: f64| (degrees / 2.0).to_radians();
         let outer =
             if light.outer_angle > 0.0 && light.outer_angle <= 180.0 { half(light.outer_angle) } else { half(45.0) };
         let inner = if light.inner_angle > 0.0 { half(light.inner_angle).min(outer * 0.999) } else { 0.0 };
-        let mut cone = Object::new();
-        cone.number("innerConeAngle", inner).number("outerConeAngle", outer);
-        json.raw("spot", &cone.end());
+        json.set("spot", Object::new().with("innerConeAngle", number(inner)).with("outerConeAngle", number(outer)));
     }
-    glb.lights.push(&json.end())
+    push(&mut glb.lights, json)
 }

@@ -1,6 +1,6 @@
 //! The triangles of a mesh: from corners of polygons to vertices and indices.
 
-use gaitway_glb::{ARRAY_BUFFER, Glb, List, Object, check_size, linear};
+use gaitway_glb::{ARRAY_BUFFER, Glb, Object, check_size, linear, push};
 use ufbx::{Face, Matrix, Mesh, MeshPart, Vec3};
 
 use crate::mesh::shapes;
@@ -47,26 +47,25 @@ impl<'a> Shape<'a> {
         check_size(glb.len().saturating_add(vertices.bytes(self.influences.is_some())))?;
         let mut attributes = Object::new();
         let positions: Vec<f32> = vertices.ids.iter().flat_map(|&id| self.position(id)).collect();
-        attributes.index("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
+        attributes.set("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
         if !vertices.normals.is_empty() {
             let accessor = glb.floats(vertices.normals.as_flattened(), "VEC3", Some(ARRAY_BUFFER), false);
-            attributes.index("NORMAL", accessor);
+            attributes.set("NORMAL", accessor);
         }
         for (set, uvs) in vertices.uvs.iter().enumerate() {
             let accessor = glb.floats(uvs.as_flattened(), "VEC2", Some(ARRAY_BUFFER), false);
-            attributes.index(&format!("TEXCOORD_{set}"), accessor);
+            attributes.set(&format!("TEXCOORD_{set}"), accessor);
         }
         if !vertices.colors.is_empty() {
             let accessor = glb.floats(vertices.colors.as_flattened(), "VEC4", Some(ARRAY_BUFFER), false);
-            attributes.index("COLOR_0", accessor);
+            attributes.set("COLOR_0", accessor);
         }
         if let Some(influences) = &self.influences {
             let of = |id: &u32| influences.get(*id as usize).map_or(&[][..], Vec::as_slice);
             glb.add_influences(&vertices.ids.iter().map(of).collect::<Vec<_>>(), &mut attributes);
         }
-        let mut primitive = Object::new();
-        primitive.raw("attributes", &attributes.end());
-        primitive.index("indices", glb.triangles(&triangles, vertices.ids.len()));
+        let indices = glb.triangles(&triangles, vertices.ids.len());
+        let mut primitive = Object::new().with("attributes", attributes).with("indices", indices);
         self.add_shapes(&vertices.ids, &mut primitive, glb)?;
         Ok(Some(primitive))
     }
@@ -142,7 +141,7 @@ impl<'a> Shape<'a> {
     }
 
     fn add_shapes(&self, ids: &[u32], primitive: &mut Object, glb: &mut Glb) -> Result<(), String> {
-        let mut targets = List::default();
+        let mut targets = Vec::new();
         let mut offsets = vec![[0.0; 3]; self.mesh.num_vertices];
         for (_, shape, _) in shapes(self.mesh) {
             check_size(glb.len().saturating_add(ids.len() * 16))?;
@@ -165,13 +164,13 @@ impl<'a> Shape<'a> {
                     values.extend(offset);
                 }
             }
-            targets.push(&format!("{{\"POSITION\":{}}}", glb.sparse(ids.len(), &elements, &values)));
+            push(&mut targets, Object::new().with("POSITION", glb.sparse(ids.len(), &elements, &values)));
             for vertex in changed {
                 offsets[vertex] = [0.0; 3];
             }
         }
         if !targets.is_empty() {
-            primitive.raw("targets", &targets.json());
+            primitive.set("targets", targets);
         }
         Ok(())
     }

@@ -1,17 +1,41 @@
 //! A clip under construction.
 
-use crate::{Glb, List, Object, check_size, quoted};
+use serde::Serialize;
+
+use crate::{Glb, check_size};
 
 /// Maximum number of recently written key times that are searched for equal ones.
 const MAX_COMPARED: usize = 64;
 
-/// The samplers and channels of an animation.
-#[derive(Default)]
+/// An animation under construction, as glTF has it.
+#[derive(Default, Serialize)]
 pub struct Animation {
     /// Key times that have been written, with their accessors: channels with the same keys share them.
+    #[serde(skip)]
     times: Vec<(Vec<f32>, usize)>,
-    samplers: List,
-    channels: List,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    name: String,
+    samplers: Vec<Sampler>,
+    channels: Vec<Channel>,
+}
+
+#[derive(Serialize)]
+struct Sampler {
+    input: usize,
+    interpolation: &'static str,
+    output: usize,
+}
+
+#[derive(Serialize)]
+struct Channel {
+    sampler: usize,
+    target: Target,
+}
+
+#[derive(Serialize)]
+struct Target {
+    node: usize,
+    path: &'static str,
 }
 
 impl Animation {
@@ -23,8 +47,8 @@ impl Animation {
     pub fn add(
         &mut self,
         glb: &mut Glb,
-        (node, path): (usize, &str),
-        interpolation: &str,
+        (node, path): (usize, &'static str),
+        interpolation: &'static str,
         times: &[f32],
         values: &[f32],
     ) -> Result<(), String> {
@@ -44,24 +68,15 @@ impl Animation {
             _ => "VEC3",
         };
         let output = glb.floats(values, kind, None, false);
-        let mut sampler = Object::new();
-        sampler.index("input", input).string("interpolation", interpolation).index("output", output);
-        let sampler = self.samplers.push(&sampler.end());
-        self.channels
-            .push(&format!("{{\"sampler\":{sampler},\"target\":{{\"node\":{node},\"path\":{}}}}}", quoted(path)));
+        self.channels.push(Channel { sampler: self.samplers.len(), target: Target { node, path } });
+        self.samplers.push(Sampler { input, interpolation, output });
         Ok(())
     }
 
     /// Appends the animation to the document, unless it has no channels.
     pub fn write(self, name: &str, glb: &mut Glb) {
-        if self.channels.is_empty() {
-            return;
+        if !self.channels.is_empty() {
+            glb.animations.push(Animation { times: Vec::new(), name: name.to_owned(), ..self });
         }
-        let mut json = Object::new();
-        if !name.is_empty() {
-            json.string("name", name);
-        }
-        json.raw("samplers", &self.samplers.json()).raw("channels", &self.channels.json());
-        glb.animations.push(&json.end());
     }
 }

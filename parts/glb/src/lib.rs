@@ -1,72 +1,41 @@
 //! Shared by the converters of other formats: a glTF document under construction, written as GLB, and the conversion of
 //! values to glTF's.
 //!
-//! No serializer: a converter has to stay small as a wasm module, and its JSON is a few dozen fixed shapes, assembled member by
-//! member.
+//! What a file has many of is typed, and the rest are [`serde_json::Value`]s, built member by member.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![forbid(unsafe_code)]
 
+mod accessor;
 mod animation;
-mod sort;
 mod values;
 mod warnings;
 
-use std::fmt::Write;
+use std::io;
 
+use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde_json::ser::{Formatter, Serializer};
+use serde_json::{Map, Value};
+
+use accessor::{Accessor, FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT, View, components};
 pub use animation::Animation;
-pub use sort::sort;
 pub use values::{MAX_INFLUENCES, base_name, linear, percent_encoded, roughness_of_exponent, strongest};
 pub use warnings::Warnings;
 
 /// Maximum size of the GLB. Its header counts bytes with 32 bits.
 const MAX_BYTES: usize = 1 << 29;
 
-const FLOAT: u32 = 5126;
-const UNSIGNED_BYTE: u32 = 5121;
-const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
+/// About how long the JSON of an accessor or a view is.
+const JSON_BYTES: usize = 100;
+
 /// Buffer view target for vertex attributes.
 pub const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// A JSON array of the document, such as `nodes`.
-#[derive(Default)]
-pub struct List {
-    text: String,
-    count: usize,
-}
-
-impl List {
-    /// Appends an element and returns its index.
-    pub fn push(&mut self, json: &str) -> usize {
-        if self.count > 0 {
-            self.text.push(',');
-        }
-        self.text.push_str(json);
-        self.count += 1;
-        self.count - 1
-    }
-
-    /// Returns whether nothing was appended.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Returns the JSON array.
-    pub fn json(&self) -> String {
-        format!("[{}]", self.text)
-    }
-}
-
-/// A JSON object, member by member.
-pub struct Object(String);
-
-impl Default for Object {
-    fn default() -> Self {
-        Self("{".to_owned())
-    }
-}
+/// A JSON object under construction; its members keep their order.
+#[derive(Clone, Default)]
+pub struct Object(Map<String, Value>);
 
 impl Object {
     /// Creates an object without members.
@@ -74,162 +43,67 @@ impl Object {
         Object::default()
     }
 
-    /// Adds a member whose value is JSON already.
-    pub fn raw(&mut self, key: &str, json: &str) -> &mut Object {
-        if self.0.len() > 1 {
-            self.0.push(',');
-        }
-        self.0.push('"');
-        self.0.push_str(key);
-        self.0.push_str("\":");
-        self.0.push_str(json);
+    /// Adds a member and returns the object.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Object {
+        self.set(key, value);
         self
     }
 
-    /// Adds a string.
-    pub fn string(&mut self, key: &str, value: &str) -> &mut Object {
-        self.raw(key, &quoted(value))
-    }
-
-    /// Adds an index or a count.
-    pub fn index(&mut self, key: &str, value: usize) -> &mut Object {
-        self.raw(key, &value.to_string())
-    }
-
-    /// Adds a number.
-    pub fn number(&mut self, key: &str, value: f64) -> &mut Object {
-        self.raw(key, &number(value))
-    }
-
-    /// Adds an array of numbers.
-    pub fn numbers(&mut self, key: &str, values: &[f64]) -> &mut Object {
-        self.raw(key, &numbers(values))
+    /// Adds a member.
+    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+        self.0.insert(key.to_owned(), value.into());
     }
 
     /// Returns whether nothing was added.
     pub fn is_empty(&self) -> bool {
-        self.0.len() == 1
-    }
-
-    /// Returns the JSON object.
-    pub fn end(&self) -> String {
-        format!("{}}}", self.0)
+        self.0.is_empty()
     }
 }
 
-/// Returns a JSON string.
-pub fn quoted(text: &str) -> String {
-    let mut json = String::with_capacity(text.len() + 2);
-    json.push('"');
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => {
-                json.push('\\');
-                json.push(character);
-            }
-            '\u{0}'..='\u{1f}' => {
-                let _ = write!(json, "\\u{:04x}", u32::from(character));
-            }
-            _ => json.push(character),
-        }
+impl From<Object> for Value {
+    fn from(object: Object) -> Value {
+        object.0.into()
     }
-    json.push('"');
-    json
 }
 
-/// Returns a JSON array of numbers.
-pub fn numbers(values: &[f64]) -> String {
-    let mut list = List::default();
-    for &value in values {
-        list.push(&number(value));
-    }
-    list.json()
+/// Appends an element to a list and returns its index.
+pub fn push(list: &mut Vec<Value>, element: impl Into<Value>) -> usize {
+    list.push(element.into());
+    list.len() - 1
 }
 
-/// Returns a JSON array of indices.
-pub fn indices(values: &[usize]) -> String {
-    let mut list = List::default();
-    for value in values {
-        list.push(&value.to_string());
-    }
-    list.json()
-}
-
-/// Returns a JSON number with the fewest digits that give back the value as 32-bit float; 0 for what isn't finite.
-///
-/// The standard library's conversion would be a tenth of our own part of the wasm module.
-fn number(value: f64) -> String {
+/// Returns a number as a 32-bit float; 0 for what isn't finite, which JSON can't express.
+pub fn number(value: f64) -> Value {
     let value = value as f32;
-    if value == 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let sign = if value < 0.0 { "-" } else { "" };
-    let value = value.abs();
-    let mut digits = 0;
-    let mut exponent = 0;
-    for count in 6..=9 {
-        (digits, exponent) = decimal(value, count);
-        if (digits as f64 * power_of_ten(exponent)) as f32 == value {
-            break;
-        }
-    }
-    while digits % 10 == 0 {
-        digits /= 10;
-        exponent += 1;
-    }
-    let text = digits.to_string();
-    let point = text.len() as i32 + exponent;
-    let mut json = String::from(sign);
-    if !(-4..=15).contains(&point) {
-        let _ = write!(json, "{text}e{exponent}");
-        return json;
-    }
-    if point <= 0 {
-        json.push_str("0.");
-        (point..0).for_each(|_| json.push('0'));
-    }
-    for (place, digit) in text.chars().enumerate() {
-        if place > 0 && place as i32 == point {
-            json.push('.');
-        }
-        json.push(digit);
-    }
-    (0..exponent).for_each(|_| json.push('0'));
-    json
+    // Adding 0 leaves -0 out.
+    Value::from(if value.is_finite() { f64::from(value + 0.0) } else { 0.0 })
 }
 
-/// Rounds to `count` significant digits: value ≈ digits · 10^exponent.
-fn decimal(value: f32, count: u32) -> (u64, i32) {
-    let end = 10_u64.pow(count) as f64;
-    let mut scaled = f64::from(value);
-    let mut exponent = 0;
-    while scaled >= end {
-        scaled /= 10.0;
-        exponent += 1;
-    }
-    while scaled < end / 10.0 {
-        scaled *= 10.0;
-        exponent -= 1;
-    }
-    ((scaled + 0.5) as u64, exponent)
+/// Returns an array of numbers.
+pub fn numbers(values: &[f64]) -> Value {
+    values.iter().copied().map(number).collect()
 }
 
-fn power_of_ten(exponent: i32) -> f64 {
-    let mut power = 1.0;
-    for _ in 0..exponent.abs() {
-        power *= 10.0;
-    }
-    if exponent < 0 { 1.0 / power } else { power }
-}
-
-/// Returns a mesh's JSON object, to which the caller can add morph targets. Omits an empty name.
-pub fn mesh(name: &str, primitives: &List) -> Object {
+/// Returns a mesh, to which the caller can add morph targets. Omits an empty name.
+pub fn mesh(name: &str, primitives: Vec<Value>) -> Object {
     let mut mesh = Object::new();
     if !name.is_empty() {
-        mesh.string("name", name);
+        mesh.set("name", name);
     }
-    mesh.raw("primitives", &primitives.json());
+    mesh.set("primitives", primitives);
     mesh
+}
+
+/// Writes numbers with the fewest digits that give back the 32-bit floats that they are.
+struct Floats;
+
+impl Formatter for Floats {
+    fn write_f64<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        let mut buffer = ryu::Buffer::new();
+        let text = buffer.format_finite(value as f32);
+        writer.write_all(text.strip_suffix(".0").unwrap_or(text).as_bytes())
+    }
 }
 
 /// The document.
@@ -238,30 +112,29 @@ pub struct Glb {
     /// The format that it is converted from.
     source: &'static str,
     bytes: Vec<u8>,
-    views: List,
-    accessors: List,
+    views: Vec<View>,
+    accessors: Vec<Accessor>,
     /// `nodes`
-    pub nodes: List,
+    pub nodes: Vec<Value>,
     /// Nodes of the only scene.
     pub scene_roots: Vec<usize>,
     /// `meshes`
-    pub meshes: List,
+    pub meshes: Vec<Value>,
     /// `skins`
-    pub skins: List,
+    pub skins: Vec<Value>,
     /// `materials`
-    pub materials: List,
+    pub materials: Vec<Value>,
     /// `textures`
-    pub textures: List,
+    pub textures: Vec<Value>,
     /// `samplers` of textures
-    pub samplers: List,
+    pub samplers: Vec<Value>,
     /// `images`
-    pub images: List,
+    pub images: Vec<Value>,
     /// `cameras`
-    pub cameras: List,
+    pub cameras: Vec<Value>,
     /// Lights of `KHR_lights_punctual`.
-    pub lights: List,
-    /// `animations`
-    pub animations: List,
+    pub lights: Vec<Value>,
+    animations: Vec<Animation>,
     extensions: Vec<&'static str>,
 }
 
@@ -281,50 +154,41 @@ impl Glb {
     /// Appends bytes to the buffer and returns the index of their view.
     pub fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let mut view = Object::new();
-        view.index("buffer", 0);
-        view.index("byteOffset", self.bytes.len());
-        view.index("byteLength", bytes.len());
-        if let Some(target) = target {
-            view.index("target", target as usize);
-        }
+        let (byte_offset, byte_length) = (self.bytes.len(), bytes.len());
         self.bytes.extend_from_slice(bytes);
-        self.views.push(&view.end())
+        self.views.push(View { buffer: 0, byte_offset, byte_length, target });
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Accessor) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
     }
 
     /// Appends an accessor of floats with as many components as `kind` has. `bounds` adds `min` and `max`.
-    pub fn floats(&mut self, values: &[f32], kind: &str, target: Option<u32>, bounds: bool) -> usize {
-        let width = components(kind);
+    pub fn floats(&mut self, values: &[f32], kind: &'static str, target: Option<u32>, bounds: bool) -> usize {
         let view = self.view(&bytes_of(values, f32::to_le_bytes), target);
-        let mut accessor = accessor(view, FLOAT, values.len() / width, kind);
+        let mut accessor = Accessor::new(Some(view), FLOAT, values.len() / components(kind), kind);
         if bounds {
-            add_bounds(&mut accessor, values, width);
+            accessor.add_bounds(values);
         }
-        self.accessors.push(&accessor.end())
+        self.accessor(accessor)
     }
 
     /// Appends an accessor that is zero but for the given elements, which are in ascending order.
     pub fn sparse(&mut self, count: usize, elements: &[u32], values: &[f32]) -> usize {
-        let mut accessor = Object::new();
-        accessor.index("componentType", FLOAT as usize).index("count", count).string("type", "VEC3");
+        let mut accessor = Accessor::new(None, FLOAT, count, "VEC3");
         let mut reached = values.to_vec();
         if elements.len() < count {
             reached.extend([0.0; 3]);
         }
-        add_bounds(&mut accessor, &reached, 3);
+        accessor.add_bounds(&reached);
         if !elements.is_empty() {
             let places = self.view(&bytes_of(elements, u32::to_le_bytes), None);
             let values = self.view(&bytes_of(values, f32::to_le_bytes), None);
-            accessor.raw(
-                "sparse",
-                &format!(
-                    "{{\"count\":{},\"indices\":{{\"bufferView\":{places},\"componentType\":{UNSIGNED_INT}}},\
-                     \"values\":{{\"bufferView\":{values}}}}}",
-                    elements.len()
-                ),
-            );
+            accessor.replace(elements.len(), places, values);
         }
-        self.accessors.push(&accessor.end())
+        self.accessor(accessor)
     }
 
     /// Appends the indices of triangles.
@@ -335,7 +199,7 @@ impl Glb {
             (bytes_of(indices, u32::to_le_bytes), UNSIGNED_INT)
         };
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
-        self.accessors.push(&accessor(view, kind, indices.len(), "SCALAR").end())
+        self.accessor(Accessor::new(Some(view), kind, indices.len(), "SCALAR"))
     }
 
     /// Appends four joint numbers per vertex.
@@ -346,7 +210,7 @@ impl Glb {
             (bytes_of(joints, u16::to_le_bytes), UNSIGNED_SHORT)
         };
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
-        self.accessors.push(&accessor(view, kind, joints.len() / 4, "VEC4").end())
+        self.accessor(Accessor::new(Some(view), kind, joints.len() / 4, "VEC4"))
     }
 
     /// Appends the influences of vertices, joint and weight, as many sets of four as they need.
@@ -362,15 +226,14 @@ impl Glb {
                     weights.push(weight);
                 }
             }
-            attributes.index(&format!("JOINTS_{set}"), self.joints(&joints));
-            attributes.index(&format!("WEIGHTS_{set}"), self.floats(&weights, "VEC4", Some(ARRAY_BUFFER), false));
+            attributes.set(&format!("JOINTS_{set}"), self.joints(&joints));
+            attributes.set(&format!("WEIGHTS_{set}"), self.floats(&weights, "VEC4", Some(ARRAY_BUFFER), false));
         }
     }
 
-    /// Returns about how many bytes the file has so far.
+    /// Returns about how many bytes the file has so far. Meshes and clips are as long as their accessors are many.
     pub fn len(&self) -> usize {
-        let lists = [&self.views, &self.accessors, &self.meshes, &self.animations];
-        self.bytes.len() + lists.iter().map(|list| list.text.len()).sum::<usize>()
+        self.bytes.len() + JSON_BYTES * (self.views.len() + self.accessors.len())
     }
 
     /// Returns whether nothing with a size was appended.
@@ -381,7 +244,9 @@ impl Glb {
     /// Returns the file's bytes.
     pub fn write(mut self) -> Result<Vec<u8>, String> {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let mut json = self.json().into_bytes();
+        let mut json = Vec::new();
+        let mut serializer = Serializer::with_formatter(&mut json, Floats);
+        self.serialize_into(&mut serializer).map_err(|problem| problem.to_string())?;
         json.resize(json.len().next_multiple_of(4), b' ');
         let total = 12 + 8 + json.len() + if self.bytes.is_empty() { 0 } else { 8 + self.bytes.len() };
         check_size(total)?;
@@ -400,24 +265,27 @@ impl Glb {
         Ok(glb)
     }
 
-    fn json(&self) -> String {
-        let mut document = Object::new();
-        document.raw("asset", &format!("{{\"version\":\"2.0\",\"generator\":\"Gaitway, from {}\"}}", self.source));
+    /// Writes the JSON.
+    fn serialize_into<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let generator = format!("Gaitway, from {}", self.source);
+        let mut document = serializer.serialize_map(None)?;
+        document.serialize_entry(
+            "asset",
+            &Value::from(Object::new().with("version", "2.0").with("generator", generator)),
+        )?;
         if !self.extensions.is_empty() {
-            let mut names = List::default();
-            for name in &self.extensions {
-                names.push(&quoted(name));
-            }
-            document.raw("extensionsUsed", &names.json());
+            document.serialize_entry("extensionsUsed", &self.extensions)?;
         }
         if !self.lights.is_empty() {
-            document.raw("extensions", &format!("{{\"KHR_lights_punctual\":{{\"lights\":{}}}}}", self.lights.json()));
+            let lights = Object::new().with("lights", self.lights.clone());
+            document.serialize_entry("extensions", &Value::from(Object::new().with("KHR_lights_punctual", lights)))?;
         }
         let mut scene = Object::new();
         if !self.scene_roots.is_empty() {
-            scene.raw("nodes", &indices(&self.scene_roots));
+            scene.set("nodes", &*self.scene_roots);
         }
-        document.index("scene", 0).raw("scenes", &format!("[{}]", scene.end()));
+        document.serialize_entry("scene", &0)?;
+        document.serialize_entry("scenes", &[Value::from(scene)])?;
         for (key, list) in [
             ("nodes", &self.nodes),
             ("meshes", &self.meshes),
@@ -427,19 +295,22 @@ impl Glb {
             ("samplers", &self.samplers),
             ("images", &self.images),
             ("cameras", &self.cameras),
-            ("animations", &self.animations),
-            ("accessors", &self.accessors),
-            ("bufferViews", &self.views),
         ] {
-            if !list.is_empty() {
-                document.raw(key, &list.json());
-            }
+            serialize_list(&mut document, key, list)?;
         }
+        serialize_list(&mut document, "animations", &self.animations)?;
+        serialize_list(&mut document, "accessors", &self.accessors)?;
+        serialize_list(&mut document, "bufferViews", &self.views)?;
         if !self.bytes.is_empty() {
-            document.raw("buffers", &format!("[{{\"byteLength\":{}}}]", self.bytes.len()));
+            document.serialize_entry("buffers", &[Value::from(Object::new().with("byteLength", self.bytes.len()))])?;
         }
         document.end()
     }
+}
+
+/// Writes a list as a member of the document. glTF has no empty ones.
+fn serialize_list<M: SerializeMap>(document: &mut M, key: &str, list: &[impl Serialize]) -> Result<(), M::Error> {
+    if list.is_empty() { Ok(()) } else { document.serialize_entry(key, list) }
 }
 
 /// Rejects a file larger than a GLB may become.
@@ -451,35 +322,6 @@ pub fn check_size(bytes: usize) -> Result<(), String> {
         "the converted model is too large: expected at most {MAX_BYTES} bytes, found {bytes}. Export fewer meshes, \
          morph targets or animations."
     ))
-}
-
-fn components(kind: &str) -> usize {
-    match kind {
-        "SCALAR" => 1,
-        "VEC2" => 2,
-        "VEC3" => 3,
-        "VEC4" => 4,
-        _ => 16,
-    }
-}
-
-fn accessor(view: usize, component: u32, count: usize, kind: &str) -> Object {
-    let mut accessor = Object::new();
-    accessor.index("bufferView", view).index("componentType", component as usize);
-    accessor.index("count", count).string("type", kind);
-    accessor
-}
-
-fn add_bounds(accessor: &mut Object, values: &[f32], width: usize) {
-    let mut low = vec![f64::INFINITY; width];
-    let mut high = vec![f64::NEG_INFINITY; width];
-    for element in values.chunks_exact(width) {
-        for (axis, &value) in element.iter().enumerate() {
-            low[axis] = low[axis].min(f64::from(value));
-            high[axis] = high[axis].max(f64::from(value));
-        }
-    }
-    accessor.numbers("min", &low).numbers("max", &high);
 }
 
 /// A loop, since the standard library's adapters take several times the code.
@@ -495,13 +337,19 @@ fn bytes_of<T: Copy, const SIZE: usize>(values: &[T], bytes: impl Fn(T) -> [u8; 
 mod tests {
     use super::*;
 
+    fn text(value: &Value) -> String {
+        let mut text = Vec::new();
+        value.serialize(&mut Serializer::with_formatter(&mut text, Floats)).unwrap();
+        String::from_utf8(text).unwrap()
+    }
+
     #[test]
     fn numbers_read_back_as_the_same_float() {
         let cases =
             [0.1_f32, 1.0, -2.5, 1e-38, 1e-45, 3.4e38, 1234567.0, 16777216.0, 0.001, 9.999_999, -1e10, 123_456.79];
         let more = (0..2000_u32).map(|seed| f32::from_bits(seed.wrapping_mul(2_654_435_761)));
         for value in cases.into_iter().chain(more.filter(|value| value.is_finite())) {
-            let text = number(f64::from(value));
+            let text = text(&number(f64::from(value)));
             let read: f32 = text.parse().unwrap();
             assert_eq!(read, value, "{text}");
             assert_eq!(text.parse::<f64>().unwrap() as f32, value, "{text} through 64 bits");
@@ -510,13 +358,18 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        for (value, text) in [(0.1, "0.1"), (1.0, "1"), (-250.0, "-250"), (0.00025, "0.00025"), (f64::NAN, "0")] {
-            assert_eq!(number(value), text);
+        let numbers = [
+            (0.1, "0.1"),
+            (1.0, "1"),
+            (-250.0, "-250"),
+            (0.00025, "0.00025"),
+            (f64::NAN, "0"),
+            (1e300, "0"),
+            (-0.0, "0"),
+            (-1e-300, "0"),
+        ];
+        for (value, expected) in numbers {
+            assert_eq!(text(&number(value)), expected);
         }
-    }
-
-    #[test]
-    fn strings_are_escaped() {
-        assert_eq!(quoted("a\"\\\n\u{e9}"), "\"a\\\"\\\\\\u000a\u{e9}\"");
     }
 }

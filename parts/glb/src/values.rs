@@ -2,15 +2,12 @@
 
 use std::fmt::Write;
 
-use crate::sort::sort;
-
 /// Maximum number of influences per vertex: four sets of four.
 pub const MAX_INFLUENCES: usize = 16;
 
 /// Returns the strongest influences of a vertex in that order, with sum 1; none if no weight is positive.
 pub fn strongest(mut influences: Vec<(u16, f64)>) -> Vec<(u16, f32)> {
-    // Ties are broken by joint, since sorting isn't stable.
-    sort(&mut influences, |a, b| a.1 > b.1 || (a.1 == b.1 && a.0 < b.0));
+    influences.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     influences.truncate(MAX_INFLUENCES);
     let sum: f64 = influences.iter().map(|&(_, weight)| weight).sum();
     if sum > 0.0 && sum.is_finite() {

@@ -1,6 +1,6 @@
 //! The skeleton of SMPL bodies, with the proportions of an average adult.
 
-use gaitway_glb::{Glb, Object, indices};
+use gaitway_glb::{Glb, Object, numbers};
 use glam::DVec3;
 
 /// Position of the pelvis at rest, relative to where `trans` puts the body.
@@ -78,13 +78,12 @@ pub fn write(count: usize, glb: &mut Glb) {
     }
     for (index, (name, _, offset)) in joints.iter().enumerate() {
         let children: Vec<usize> = (1..joints.len()).filter(|&child| joints[child].1 == index).collect();
-        let mut node = Object::new();
-        node.string("name", name);
+        let mut node = Object::new().with("name", name.as_str());
         if !children.is_empty() {
-            node.raw("children", &indices(&children));
+            node.set("children", children);
         }
-        node.numbers("translation", offset);
-        glb.nodes.push(&node.end());
+        node.set("translation", numbers(offset));
+        glb.nodes.push(node.into());
     }
     glb.scene_roots.push(0);
 }

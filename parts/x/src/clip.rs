@@ -1,6 +1,6 @@
 //! Animation sets as clips.
 
-use gaitway_glb::{Animation, Glb, Warnings, sort};
+use gaitway_glb::{Animation, Glb, Warnings};
 use glam::DQuat;
 
 use crate::document::{Document, short, text};
@@ -145,26 +145,25 @@ fn read_keys(document: &Document, key: usize) -> Result<Keys, String> {
     let kind = numbers.index(4, "the kind of its keys")?;
     let width = [4, 3, 3, 16, 16][kind];
     let count = numbers.count(2 + width, "keys")?;
-    let mut keys = Vec::with_capacity(count);
+    let mut keys: Vec<(f64, &[f64])> = Vec::with_capacity(count);
     let mut ascend = true;
-    for at in 0..count {
+    for _ in 0..count {
         let [ticks] = numbers.array("a time")?;
         let values = numbers.index(width, "the number of values")?;
         if values != width {
             return Err(numbers.damaged(&format!("{width} values for each key"), &values.to_string()));
         }
         let ticks = ticks.max(0.0);
-        ascend &= keys.last().is_none_or(|&(before, _, _)| before < ticks);
-        keys.push((ticks, at, numbers.take(width, "a key")?));
+        ascend &= keys.last().is_none_or(|&(before, _)| before < ticks);
+        keys.push((ticks, numbers.take(width, "a key")?));
     }
     if !ascend {
-        sort(&mut keys, |a, b| (a.0, a.1) < (b.0, b.1));
+        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Of keys at the same time, the last one wins.
         keys.reverse();
         keys.dedup_by(|a, b| a.0 == b.0);
         keys.reverse();
     }
-    let keys: Vec<(f64, &[f64])> = keys.into_iter().map(|(ticks, _, values)| (ticks, values)).collect();
     Ok(if width == 16 { from_matrices(&keys) } else { from_values(kind, &keys) })
 }
 

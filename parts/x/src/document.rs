@@ -1,6 +1,6 @@
 //! The file's objects, whatever their templates are.
 
-use gaitway_glb::{Warnings, sort};
+use gaitway_glb::Warnings;
 
 use crate::container::Contents;
 use crate::token::{Token, Tokens};
@@ -328,7 +328,7 @@ impl<'a> Names<'a> {
     pub fn of(document: &Document<'a>, template: &'static str) -> Names<'a> {
         let named = document.all(template).filter(|(_, object)| !object.name.is_empty());
         let mut names: Vec<_> = named.map(|(index, object)| (object.name, index)).collect();
-        sort(&mut names, |a, b| a < b);
+        names.sort_unstable();
         Names(names)
     }
 

@@ -1,6 +1,6 @@
 //! The node hierarchy.
 
-use gaitway_glb::{Glb, Object, Warnings, indices};
+use gaitway_glb::{Glb, Object, Warnings, numbers};
 use glam::{DAffine3, DVec3};
 
 use crate::document::{Document, Names, short, text};
@@ -91,18 +91,18 @@ impl<'a> Nodes<'a> {
         for entry in &self.entries {
             let mut node = Object::new();
             if !entry.name.is_empty() {
-                node.string("name", &entry.name);
+                node.set("name", entry.name.as_str());
             }
             if !entry.children.is_empty() {
-                node.raw("children", &indices(&entry.children));
+                node.set("children", entry.children.as_slice());
             }
             add_transform(&mut node, entry, warnings);
             for (key, index) in [("mesh", entry.mesh), ("skin", entry.skin)] {
                 if let Some(index) = index {
-                    node.index(key, index);
+                    node.set(key, index);
                 }
             }
-            glb.nodes.push(&node.end());
+            glb.nodes.push(node.into());
         }
         glb.scene_roots.clone_from(&self.roots);
     }
@@ -111,7 +111,7 @@ impl<'a> Nodes<'a> {
 fn add_transform(node: &mut Object, entry: &Entry, warnings: &mut Warnings) {
     let local = parts(&entry.matrix);
     if local.is_sheared && !entry.is_animated {
-        node.numbers("matrix", &columns(&entry.matrix));
+        node.set("matrix", numbers(&columns(&entry.matrix)));
         return;
     }
     if local.is_sheared {
@@ -119,13 +119,13 @@ fn add_transform(node: &mut Object, entry: &Entry, warnings: &mut Warnings) {
         warnings.add(format!("Frame \"{name}\": its matrix is sheared, which an animated node can't be."));
     }
     if local.translation != DVec3::ZERO {
-        node.numbers("translation", &local.translation.to_array());
+        node.set("translation", numbers(&local.translation.to_array()));
     }
     let rotation = local.rotation.to_array();
     if rotation[..3] != [0.0; 3] {
-        node.numbers("rotation", &rotation);
+        node.set("rotation", numbers(&rotation));
     }
     if local.scale != DVec3::ONE {
-        node.numbers("scale", &local.scale.to_array());
+        node.set("scale", numbers(&local.scale.to_array()));
     }
 }

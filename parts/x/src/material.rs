@@ -3,7 +3,7 @@
 //! DirectX multiplies the sum of lighting and emission by the texture in display values, so colours are sRGB. As in
 //! FBX, a texture replaces the colour: modelling programs leave a grey there that they don't show.
 
-use gaitway_glb::{Glb, Object, base_name, linear, percent_encoded, quoted, roughness_of_exponent, sort};
+use gaitway_glb::{Glb, Object, base_name, linear, number, numbers, percent_encoded, push, roughness_of_exponent};
 
 use crate::document::{Document, Names, text};
 
@@ -43,60 +43,60 @@ impl<'a> Materials<'a> {
     fn write_textures(&mut self, document: &Document, glb: &mut Glb) {
         let mut files: Vec<String> =
             document.all("TextureFilename").filter_map(|(index, _)| texture_file(document, index)).collect();
-        sort(&mut files, |a, b| a < b);
+        files.sort_unstable();
         files.dedup();
         for file in files {
-            let uri = quoted(&percent_encoded(&file));
-            let image = glb.images.push(&format!("{{\"name\":{},\"uri\":{uri}}}", quoted(&file)));
-            let texture = glb.textures.push(&format!("{{\"source\":{image}}}"));
+            let image = push(&mut glb.images, Object::new().with("name", &*file).with("uri", percent_encoded(&file)));
+            let texture = push(&mut glb.textures, Object::new().with("source", image));
             self.textures.push((file, texture));
         }
     }
 
-    fn texture(&self, document: &Document, material: usize) -> Option<String> {
+    fn texture(&self, document: &Document, material: usize) -> Option<Object> {
         let (index, _) = document.children(material, "TextureFilename").next()?;
         let file = texture_file(document, index)?;
         let at = self.textures.partition_point(|(other, _)| *other < file);
         let (_, texture) = self.textures.get(at)?;
-        Some(format!("{{\"index\":{texture}}}"))
+        Some(Object::new().with("index", *texture))
     }
 
     fn write_one(&self, document: &Document, index: usize, glb: &mut Glb) -> Result<usize, String> {
-        let mut numbers = document.numbers(index);
-        let [red, green, blue, alpha] = numbers.array("a colour")?;
-        let [exponent] = numbers.array("an exponent")?;
-        let specular: [f64; 3] = numbers.array("a specular colour")?;
-        let emission = numbers.array::<3>("an emissive colour")?.map(|value| f64::from(linear(value)));
+        let mut values = document.numbers(index);
+        let [red, green, blue, alpha] = values.array("a colour")?;
+        let [exponent] = values.array("an exponent")?;
+        let specular: [f64; 3] = values.array("a specular colour")?;
+        let emission = values.array::<3>("an emissive colour")?.map(|value| f64::from(linear(value)));
         let texture = self.texture(document, index);
         let mut surface = Object::new();
         let color = match &texture {
             Some(texture) => {
-                surface.raw("baseColorTexture", texture);
+                surface.set("baseColorTexture", texture.clone());
                 [1.0; 3]
             }
             None => [red, green, blue].map(|value| f64::from(linear(value))),
         };
         let alpha = alpha.clamp(0.0, 1.0);
-        surface.numbers("baseColorFactor", &[color[0], color[1], color[2], alpha]);
+        surface.set("baseColorFactor", numbers(&[color[0], color[1], color[2], alpha]));
         let shines = exponent > 0.0 && specular.iter().any(|&value| value > 0.0);
         let roughness = if shines { roughness_of_exponent(exponent) } else { 1.0 };
-        surface.number("metallicFactor", 0.0).number("roughnessFactor", roughness);
+        surface.set("metallicFactor", 0);
+        surface.set("roughnessFactor", number(roughness));
         let mut json = Object::new();
         let name = document.objects[index].name;
         if !name.is_empty() {
-            json.string("name", &text(name));
+            json.set("name", text(name));
         }
-        json.raw("pbrMetallicRoughness", &surface.end());
+        json.set("pbrMetallicRoughness", surface);
         if alpha < 1.0 {
-            json.string("alphaMode", "BLEND");
+            json.set("alphaMode", "BLEND");
         }
         if emission.iter().any(|&value| value > 0.0) {
-            json.numbers("emissiveFactor", &emission);
-            if let Some(texture) = &texture {
-                json.raw("emissiveTexture", texture);
+            json.set("emissiveFactor", numbers(&emission));
+            if let Some(texture) = texture {
+                json.set("emissiveTexture", texture);
             }
         }
-        Ok(glb.materials.push(&json.end()))
+        Ok(push(&mut glb.materials, json))
     }
 }
 

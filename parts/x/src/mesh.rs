@@ -2,7 +2,7 @@
 //!
 //! A face has a vertex and a normal at each corner. Corners that agree in both become one vertex, in the file's order.
 
-use gaitway_glb::{ARRAY_BUFFER, Glb, List, Object, Warnings, check_size, linear, sort};
+use gaitway_glb::{ARRAY_BUFFER, Glb, Object, Warnings, check_size, linear, push};
 use gaitway_polygon::Cutter;
 use glam::{DAffine3, DVec3};
 
@@ -199,21 +199,21 @@ impl Shape {
         for (at, (_, face)) in self.triangles.iter().enumerate() {
             order.push(u64::from(material(*face)) << 32 | at as u64);
         }
-        sort(&mut order, |a, b| a < b);
-        let mut primitives = List::default();
+        order.sort_unstable();
+        let mut primitives = Vec::new();
         for group in order.chunk_by(|a, b| a >> 32 == b >> 32) {
             let mut primitive = self.primitive(group, influences, glb)?;
             let material = of_list.get((group[0] >> 32) as usize).copied().flatten();
             if let Some(material) = material {
-                primitive.index("material", material);
+                primitive.set("material", material);
             }
-            primitives.push(&primitive.end());
+            push(&mut primitives, primitive);
         }
         if primitives.is_empty() {
             return Ok(None);
         }
-        let json = gaitway_glb::mesh(&text(document.objects[mesh].name), &primitives);
-        Ok(Some(glb.meshes.push(&json.end())))
+        let json = gaitway_glb::mesh(&text(document.objects[mesh].name), primitives);
+        Ok(Some(push(&mut glb.meshes, json)))
     }
 
     /// Returns the place of each face's material in the list. Faces beyond the end have the last one's.
@@ -231,7 +231,7 @@ impl Shape {
         let corners = group.iter().flat_map(|&entry| self.triangles[(entry & 0xffff_ffff) as usize].0);
         let of_corner: Vec<u64> = corners.map(|corner| self.key(corner)).collect();
         let mut vertices = of_corner.clone();
-        sort(&mut vertices, |a, b| a < b);
+        vertices.sort_unstable();
         vertices.dedup();
         let index = |key: &u64| vertices.partition_point(|other| other < key) as u32;
         let triangles: Vec<u32> = of_corner.iter().map(index).collect();
@@ -241,26 +241,23 @@ impl Shape {
         check_size(glb.len().saturating_add(ids.len().saturating_mul(VERTEX_BYTES + most * INFLUENCE_BYTES)))?;
         let mut attributes = Object::new();
         let positions = gathered(&ids, |&id| floats(mirrored(self.positions[id].to_array())));
-        attributes.index("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
+        attributes.set("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
         if !self.normals.is_empty() {
             let normals = gathered(&vertices, |key| floats(self.normals[(key & 0xffff_ffff) as usize]));
-            attributes.index("NORMAL", glb.floats(&normals, "VEC3", Some(ARRAY_BUFFER), false));
+            attributes.set("NORMAL", glb.floats(&normals, "VEC3", Some(ARRAY_BUFFER), false));
         }
         if !self.uvs.is_empty() {
             let uvs = gathered(&ids, |&id| self.uvs[id]);
-            attributes.index("TEXCOORD_0", glb.floats(&uvs, "VEC2", Some(ARRAY_BUFFER), false));
+            attributes.set("TEXCOORD_0", glb.floats(&uvs, "VEC2", Some(ARRAY_BUFFER), false));
         }
         if !self.colors.is_empty() {
             let colors = gathered(&ids, |&id| self.colors[id]);
-            attributes.index("COLOR_0", glb.floats(&colors, "VEC4", Some(ARRAY_BUFFER), false));
+            attributes.set("COLOR_0", glb.floats(&colors, "VEC4", Some(ARRAY_BUFFER), false));
         }
         if let Some(influences) = influences {
             glb.add_influences(&influences, &mut attributes);
         }
-        let mut primitive = Object::new();
-        primitive.raw("attributes", &attributes.end());
-        primitive.index("indices", glb.triangles(&triangles, ids.len()));
-        Ok(primitive)
+        Ok(Object::new().with("attributes", attributes).with("indices", glb.triangles(&triangles, ids.len())))
     }
 }
 
@@ -321,7 +318,7 @@ fn triangles(positions: &[DVec3], corners: &[u32], ends: &[u32], cutter: &mut Cu
 fn merged(vectors: &[DVec3]) -> Vec<u32> {
     let bits = |at: u32| vectors[at as usize].to_array().map(|value| (value as f32).to_bits());
     let mut order: Vec<u32> = (0..vectors.len() as u32).collect();
-    sort(&mut order, |&a, &b| (bits(a), a) < (bits(b), b));
+    order.sort_unstable_by_key(|&at| (bits(at), at));
     let mut merged = vec![0; vectors.len()];
     for equal in order.chunk_by(|&a, &b| bits(a) == bits(b)) {
         for &at in equal {

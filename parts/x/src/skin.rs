@@ -1,6 +1,6 @@
 //! Skins: which joints a vertex follows.
 
-use gaitway_glb::{Glb, MAX_INFLUENCES, Object, Warnings, indices, strongest};
+use gaitway_glb::{Glb, MAX_INFLUENCES, Object, Warnings, push, strongest};
 use glam::DAffine3;
 
 use crate::document::{Document, short};
@@ -86,8 +86,6 @@ impl Skin {
         }
         nodes.join(&joints);
         let bind = glb.floats(&matrices, "MAT4", None, false);
-        let mut json = Object::new();
-        json.index("inverseBindMatrices", bind).raw("joints", &indices(&joints));
-        glb.skins.push(&json.end())
+        push(&mut glb.skins, Object::new().with("inverseBindMatrices", bind).with("joints", joints))
     }
 }
