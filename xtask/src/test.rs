@@ -44,10 +44,18 @@ fn cargo_checks() -> anyhow::Result<()> {
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
+    test_original_text()?;
     process::run("cargo", &["test", "--workspace"])?;
     // The other tests run the programs, and one draws the page's pictures: `cargo test` doesn't build all of them. With `--tests`,
     // dependencies keep the features that the tests gave them, so nothing is compiled twice.
     process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
+}
+
+/// Builds and tests text without the crates in crates/epaint-text, where `tests/ui/text_widths.rs` then finds it built.
+fn test_original_text() -> anyhow::Result<()> {
+    let target = target_folder().join("tmp/original-text");
+    let manifest = "crates/epaint-text/original/Cargo.toml";
+    process::run("cargo", &["test", "--locked", "--manifest-path", manifest, "--target-dir", text(&target)?])
 }
 
 /// Returns the path of the command line.

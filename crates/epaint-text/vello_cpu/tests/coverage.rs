@@ -6,7 +6,7 @@ use skrifa::{FontRef, MetadataProvider};
 use vello_cpu::kurbo::{Affine, BezPath};
 use vello_cpu::{Pixmap, RenderContext, Resources};
 
-const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+const FONT: &[u8] = include_bytes!("../../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
 type Contour = Vec<(f64, f64)>;
 

@@ -1,9 +1,9 @@
 //! Reads glyphs for epaint 0.37.0, in place of `skrifa` 0.44.0 (see `[patch.crates-io]` in the workspace's Cargo.toml).
 //!
 //! `skrifa` scales every kind of OpenType font and hints it by the font's own program or by analysis of its outlines. This crate
-//! has the part of its interface that epaint and `crates/harfrust` use, over the same parser (`read-fonts`), and does what a static
-//! TrueType font needs: characters (`cmap`), metrics (`head`, `hhea`, `OS/2`, `hmtx`) and outlines (`glyf`), whose horizontal edges
-//! it aligns with pixel rows ([`outline`]).
+//! has the part of its interface that epaint and `harfrust` beside it use, over the same parser (`read-fonts`), and does what a
+//! static TrueType font needs: characters (`cmap`), metrics (`head`, `hhea`, `OS/2`, `hmtx`) and outlines (`glyf`), whose
+//! horizontal edges it aligns with pixel rows ([`outline`]).
 //!
 //! Left out, because the interface's fonts have nothing of the kind: PostScript outlines (`CFF`), variations, bitmaps and colour
 //! layers, hinting programs, and components placed by points instead of offsets.

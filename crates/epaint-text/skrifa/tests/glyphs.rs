@@ -55,7 +55,7 @@ impl ttf_parser::OutlineBuilder for Segments {
 }
 
 fn fonts() -> Vec<(PathBuf, Vec<u8>)> {
-    let folder = Path::new("../../assets/font");
+    let folder = Path::new("../../../assets/font");
     let fonts = ["Ubuntu-Light-derivative-Gaitway.ttf", "Ubuntu-Light-derivative-Gaitway-Latin.ttf"];
     fonts.map(|name| folder.join(name)).map(|path| (path.clone(), std::fs::read(path).unwrap())).into()
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use harfrust::{BufferFlags, GlyphBuffer, ShapeOptions, ShaperData, UnicodeBuffer};
 use skrifa::FontRef;
 
-const FONT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+const FONT: &[u8] = include_bytes!("../../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
 /// Read from the font's `GPOS` table with fontTools: what its lookups add up to. "Kï" and its like are listed one by one (format
 /// 1), the others belong to classes (format 2).

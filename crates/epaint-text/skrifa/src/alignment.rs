@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn heights_keep_their_order_and_move_by_less_than_a_row() {
-        let bytes = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+        let bytes = include_bytes!("../../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
         let font = FontRef::new(bytes).unwrap();
         let outlines = Outlines::new(&font).unwrap();
         let charmap = Charmap::new(&font);
