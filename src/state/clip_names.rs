@@ -95,6 +95,8 @@ pub fn settle_clips(state: &mut ViewerState, library: &mut Library) -> bool {
             copy.of = original.id().clone();
         }
     }
+    // Names come before what is called by them.
+    settle_keys(&mut state.edits.clips.names, model);
     let mut is_changed = library.edit_clips(&state.edits.clips);
     if let Some(model) = library.active() {
         settle_references(state, model);
@@ -117,9 +119,7 @@ fn settle_references(state: &mut ViewerState, model: &Model) {
         }
     }
     state.edits.layers.iter_mut().for_each(|over| settle(&mut over.clip));
-    let ClipEdits { names, changes, .. } = &mut state.edits.clips;
-    settle_keys(names, model);
-    settle_keys(changes, model);
+    settle_keys(&mut state.edits.clips.changes, model);
 }
 
 /// Finds a clip that is still only called by a name.

@@ -100,7 +100,8 @@ pub(super) fn check(edits: &mut ClipEdits) {
     edits.copies.truncate(ClipEdits::MAX_COPIES);
     let copies: Vec<_> = edits.copies.iter().map(|copy| copy.id).collect();
     let is_there = |clip: &ClipId| !matches!(clip, ClipId::Copy(copy) if !copies.contains(copy));
-    for name in edits.names.values_mut() {
+    // Other keys of the link call copies by their names, so those stay as they are.
+    for (_, name) in edits.names.iter_mut().filter(|(clip, _)| !matches!(clip, ClipId::Copy(_))) {
         *name = one_line(name);
     }
     edits.names.retain(|clip, name| !name.is_empty() && is_there(clip));

@@ -174,6 +174,7 @@ export interface State {
   channel: string;
   hidden: string;
   copy: string[];
+  rename: string[];
   change: string[];
   layers: string[];
   camera: string;

@@ -177,6 +177,17 @@ fn a_link_has_copies_and_says_what_they_lack() {
     assert_eq!(model(&again).titles()[3..], ["A", "B"]);
 }
 
+/// Names of copies in old links may be of any length, and the other keys have them, too.
+#[test]
+fn a_copy_with_a_long_name_is_found() {
+    let name = "part of a long recording ".repeat(5);
+    let mut editor = editor("sample:walker");
+    let partial = serde_json::json!({ "copy": [format!("{name}:Wave")], "clip": name, "mirror": [name] });
+    editor.apply_partial(&partial).expect("names of any length");
+    assert_eq!(title(&editor), Some(&*name));
+    assert!(model(&editor).clip_at(3).changed().is_some(), "it is mirrored");
+}
+
 /// A motion's clip, since all motions have clips of the same names.
 fn clip_of(editor: &Editor, source: &str, source_clip: usize) -> Option<ClipId> {
     let motion = editor.library().motions().iter().find(|motion| motion.source == source)?;
