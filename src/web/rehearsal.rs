@@ -1,8 +1,6 @@
 //! Opens and draws a simple character while the first model downloads. A browser compiles each function when it is first called, and
 //! a driver each shader when it is first drawn with: hundreds of milliseconds that would otherwise follow the last byte.
 
-use wasm_bindgen::prelude::*;
-
 use super::calls::with_app;
 use super::page::Page;
 use crate::app::RehearsalPart;
@@ -12,18 +10,6 @@ use crate::library::Library;
 use crate::render::next_turn;
 use crate::samples::rehearsal_files;
 use crate::state::from_link;
-
-/// How often a browser has to see a loader's loops before it optimizes them.
-const OPENINGS: usize = 12;
-
-/// Opens the character without drawing it: once a picture is on screen, so that the first file dropped onto it opens sooner.
-#[wasm_bindgen]
-pub async fn rehearse_opening() {
-    for _ in 0..OPENINGS {
-        open_character().await;
-        next_turn().await;
-    }
-}
 
 /// Lets the browser do something else after each part.
 ///

@@ -113,11 +113,5 @@ export async function frames(count) {
   for (let frame = 0; frame < count; frame++) await Promise.race([new Promise(requestAnimationFrame), new Promise((done) => setTimeout(done, 200))]);
 }
 
-/**
- * Runs work that nothing waits for when the browser is idle. Safari only has timers.
- * @param {() => void} work
- */
-export const whenIdle = (work) => ("requestIdleCallback" in window ? requestIdleCallback(work) : setTimeout(work, 500));
-
 /** @param {unknown} error */
 export const messageOf = (error) => (error instanceof Error ? error.message : String(error));

@@ -4,7 +4,7 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
-import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus, whenIdle } from "./dom.js";
+import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { followAsked, showMissing, showMissingImages, takeAsked } from "./following.js";
@@ -161,8 +161,6 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   // Not before it moves: decoding and uploading images would delay that.
   const images = frames(2).then(() => bindings.complete());
   awaitImages(bindings, images, aborted);
-  // Only a rehearsal: without it, files open a little later.
-  whenIdle(async () => session.app === bindings && (await bindings.rehearse_opening().catch(() => {})));
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);

@@ -97,7 +97,6 @@ export interface Bindings {
   complete_again(): Promise<string>;
   drawn(): Promise<void>;
   begin(): void;
-  rehearse_opening(): Promise<void>;
   destroy(): void;
   mirror_act(id: string, action: "focus" | "blur" | "click" | "more" | "less" | "set", value?: number | string): void;
   mirror_key(name: string, code: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
