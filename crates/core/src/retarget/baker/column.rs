@@ -2,7 +2,7 @@
 
 use glam::DQuat;
 
-use crate::anim::{Interpolation, Pose, Skeleton};
+use crate::anim::{Interpolation, Pose, Property, Skeleton};
 use crate::retarget::change::track::{Target, Track, rotation};
 use crate::retarget::keys::limits::{Limits, MAX_TURN, ROUNDING};
 use crate::retarget::keys::resample::{Resampled, fewest};
@@ -30,13 +30,19 @@ pub struct Column {
     pub limit: f64,
 }
 
+/// The properties of each joint that get new channels: a flag for each, by its discriminant.
+pub type Replaced = Vec<[bool; PROPERTIES.len()]>;
+
+/// All properties, by their discriminants.
+const PROPERTIES: [Property; 4] = [Property::Translation, Property::Rotation, Property::Scale, Property::MorphWeights];
+
 /// Returns a pose with the positions and rotations of its joints.
 pub fn world(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
     WorldPose::new(skeleton, locals_of(pose), DQuat::IDENTITY)
 }
 
-/// Returns the columns of the replaced joints, for which there is one flag per joint.
-pub fn columns(skeleton: &Skeleton, replaced: &[bool], limits: &Limits) -> Vec<Column> {
+/// Returns the columns of the replaced properties, in the order of joints.
+pub fn columns(skeleton: &Skeleton, replaced: &Replaced, limits: &Limits) -> Vec<Column> {
     let rest = world(skeleton, skeleton.rest());
     // Distance to the farthest joint below each.
     let mut reach = vec![0.0_f64; skeleton.len()];
@@ -48,19 +54,23 @@ pub fn columns(skeleton: &Skeleton, replaced: &[bool], limits: &Limits) -> Vec<C
     }
     let mut columns = Vec::new();
     let mut start = 0;
-    let mut push = |target, width, limit| {
-        columns.push(Column { target, start, width, limit });
-        start += width;
-    };
-    for joint in skeleton.joints().filter(|joint| replaced[joint.get()]) {
+    for joint in skeleton.joints() {
         let scale = rest.parent_frame(skeleton, joint).matrix3.determinant().abs().cbrt();
         let per_reach = limits.offset(reach[joint.get()]) / reach[joint.get()];
-        push(Target::Translation(joint), 3, limits.offset(0.0) / if scale > 0.0 { scale } else { 1.0 });
-        push(Target::Rotation(joint), 4, MAX_TURN.min(per_reach));
-        push(Target::Scale(joint), 3, MAX_WEIGHT_ERROR.min(per_reach));
-        let weights = skeleton.morph_range(joint).len();
-        if weights > 0 {
-            push(Target::Weights(joint), weights, MAX_WEIGHT_ERROR);
+        let is_replaced = |property: &Property| replaced[joint.get()][*property as usize];
+        for property in PROPERTIES.into_iter().filter(is_replaced) {
+            let (target, width, limit) = match property {
+                Property::Translation => {
+                    (Target::Translation(joint), 3, limits.offset(0.0) / if scale > 0.0 { scale } else { 1.0 })
+                }
+                Property::Rotation => (Target::Rotation(joint), 4, MAX_TURN.min(per_reach)),
+                Property::Scale => (Target::Scale(joint), 3, MAX_WEIGHT_ERROR.min(per_reach)),
+                Property::MorphWeights => (Target::Weights(joint), skeleton.morph_range(joint).len(), MAX_WEIGHT_ERROR),
+            };
+            if width > 0 {
+                columns.push(Column { target, start, width, limit });
+                start += width;
+            }
         }
     }
     columns

@@ -1,17 +1,17 @@
 //! Bakes a function of time into a clip: samples its poses until linear interpolation follows them, then keeps as few keys as hold
-//! every joint close. Layers are baked here; pins have a search of their own, and retargeting resamples single values with `keys`.
+//! every joint close. Layers and pins are baked here; retargeting resamples single values with `keys` instead.
 
 mod column;
 mod times;
 
 use glam::{DQuat, DVec3};
 
-use crate::anim::{Clip, JointIndex, Pose, PropertyTarget, SampleCursor, Skeleton};
+use crate::anim::{Clip, JointIndex, Pose, Property, PropertyTarget, SampleCursor, Skeleton};
 use crate::retarget::change::track::{Target, Track, Tracks};
 use crate::retarget::keys::limits::{BETWEEN_KEYS, BETWEEN_SAMPLES, Limits};
 use crate::retarget::keys::resample::{Curve, resample};
 use crate::retarget::pose::WorldPose;
-use column::{Column, MAX_WEIGHT_ERROR, Sample, Samples, columns, numbers, world};
+use column::{Column, MAX_WEIGHT_ERROR, Replaced, Sample, Samples, columns, numbers, world};
 use times::SampleTimes;
 
 pub use times::timelines;
@@ -20,23 +20,23 @@ pub use times::timelines;
 const CLOSER: f64 = 0.6;
 const MIN_SHARE: f64 = 1e-3;
 
-/// Collects the joints that a function of time changes in a clip and the times to sample, then bakes it.
+/// Collects what a function of time changes in a clip and when it has to be sampled, then bakes it.
 ///
-/// The result has the clip's name and duration, and the keys of all joints that aren't [replaced](Self::replace). Those that are
+/// The result has the clip's name and duration, and the keys of all channels that aren't [replaced](Self::replace). Those that are
 /// get as few as hold every joint within 0.05° and 0.1 mm per metre of height, and weights and scales within 0.001.
 #[derive(Debug)]
 pub struct Baker<'a> {
     skeleton: &'a Skeleton,
     clip: &'a Clip,
-    /// One flag per joint.
-    replaced: Vec<bool>,
+    replaced: Replaced,
     times: SampleTimes,
 }
 
 impl<'a> Baker<'a> {
     /// Starts from a clip, which is sampled at its keys.
     pub fn new(skeleton: &'a Skeleton, clip: &'a Clip) -> Self {
-        Self { skeleton, clip, replaced: vec![false; skeleton.len()], times: SampleTimes::of(clip) }
+        let replaced = vec![Default::default(); skeleton.len()];
+        Self { skeleton, clip, replaced, times: SampleTimes::of(clip) }
     }
 
     /// Returns the duration of the clip.
@@ -44,9 +44,14 @@ impl<'a> Baker<'a> {
         self.clip.duration_secs()
     }
 
+    /// Replaces the channel of a joint's property.
+    pub fn replace(&mut self, joint: JointIndex, property: Property) {
+        self.replaced[joint.get()][property as usize] = true;
+    }
+
     /// Replaces all channels of a joint.
-    pub fn replace(&mut self, joint: JointIndex) {
-        self.replaced[joint.get()] = true;
+    pub fn replace_all(&mut self, joint: JointIndex) {
+        self.replaced[joint.get()] = [true; 4];
     }
 
     /// Samples at these times as well. Where they don't suffice, more are added.
@@ -59,10 +64,15 @@ impl<'a> Baker<'a> {
         self.times.jumps.extend(times);
     }
 
+    /// Limits the time between two samples, for functions that may bend and straighten again between two keys.
+    pub fn sample_every(&mut self, max_step_secs: f32) {
+        self.times.max_step_secs = self.times.max_step_secs.min(max_step_secs);
+    }
+
     /// Bakes the function. `change` gets a time and the clip's pose there, and makes it the function's.
     pub fn bake(self, mut change: impl FnMut(f32, &mut Pose)) -> Clip {
         let Self { skeleton, clip, replaced, times } = self;
-        if !replaced.contains(&true) {
+        if !replaced.as_flattened().contains(&true) {
             return clip.clone();
         }
         let limits = Limits::new(skeleton);
@@ -80,7 +90,9 @@ impl<'a> Baker<'a> {
         let (times, jumps) = times.finish();
         let samples = resample(&times, &jumps, Curve { value, error, tolerance: BETWEEN_SAMPLES });
         let mut kept = Tracks::of(clip);
-        kept.tracks.retain(|track| joint_of(track.target).is_none_or(|joint| !replaced[joint.get()]));
+        kept.tracks.retain(|track| {
+            property_of(track.target).is_none_or(|(joint, property)| !replaced[joint.get()][property as usize])
+        });
         reduced(skeleton, clip.name(), &limits, &kept, &columns, &samples)
     }
 }
@@ -108,7 +120,7 @@ fn reduced(
         // The errors of a chain of joints add up, though seldom all in one direction.
         let is_off = is_off(skeleton, limits, &baked, samples);
         let is_loose = |(column, share): (&Column, f64)| {
-            share > MIN_SHARE && joint_of(column.target).is_some_and(|joint| is_off[joint.get()])
+            share > MIN_SHARE && property_of(column.target).is_some_and(|(joint, _)| is_off[joint.get()])
         };
         let loose: Vec<bool> = columns.iter().zip(shares.iter().copied()).map(is_loose).collect();
         if !loose.contains(&true) {
@@ -121,14 +133,15 @@ fn reduced(
     }
 }
 
-/// Returns the joint whose part of a pose a track animates.
-fn joint_of(target: Target) -> Option<JointIndex> {
+/// Returns what a track animates in a pose. The weight of a single morph target is one of its mesh's.
+fn property_of(target: Target) -> Option<(JointIndex, Property)> {
     match target {
-        Target::Translation(joint)
-        | Target::Rotation(joint)
-        | Target::Scale(joint)
-        | Target::Weights(joint)
-        | Target::Property(PropertyTarget::MorphWeight(joint, _)) => Some(joint),
+        Target::Translation(joint) => Some((joint, Property::Translation)),
+        Target::Rotation(joint) => Some((joint, Property::Rotation)),
+        Target::Scale(joint) => Some((joint, Property::Scale)),
+        Target::Weights(joint) | Target::Property(PropertyTarget::MorphWeight(joint, _)) => {
+            Some((joint, Property::MorphWeights))
+        }
         Target::Property(_) => None,
     }
 }

@@ -1,7 +1,7 @@
 //! Bakes a stack of layers into one clip.
 
 use super::{ClipLayer, ClipOverLayers, LayerBuffers};
-use crate::anim::{Clip, JointMask, Skeleton};
+use crate::anim::{Clip, JointIndex, JointMask, Pose, Skeleton};
 use crate::retarget::baker::{Baker, timelines};
 
 /// A layer with its clip and joints.
@@ -18,7 +18,14 @@ pub struct StackedLayer<'a> {
 /// Clips that repeat more often than this are sampled without regard to their keys.
 const MAX_REPEATS: f64 = 10_000.0;
 
-/// A layer while it is baked.
+/// A stack of layers while it is baked, alone or with other changes to the clip.
+#[derive(Debug)]
+pub struct BakedStack<'a> {
+    skeleton: &'a Skeleton,
+    layers: Vec<BakedLayer<'a>>,
+}
+
+#[derive(Debug)]
 struct BakedLayer<'a> {
     stacked: &'a StackedLayer<'a>,
     mask: JointMask,
@@ -27,24 +34,37 @@ struct BakedLayer<'a> {
     buffers: LayerBuffers,
 }
 
-/// Returns a clip with the layers in it, as long as the given one. Joints that no layer changes keep their keys; others get as
-/// few as hold every joint within 0.05° and 0.1 mm per metre of height.
+impl<'a> BakedStack<'a> {
+    /// Tells the baker what the layers change and when they are to be sampled.
+    pub fn new(skeleton: &'a Skeleton, layers: &'a [StackedLayer<'a>], baker: &mut Baker<'_>) -> Self {
+        let with_effect = layers.iter().filter(|stacked| stacked.layer.weight > 0.0);
+        let layers = with_effect.map(|stacked| {
+            let is_included = |joint: &JointIndex| stacked.included[joint.get()];
+            skeleton.joints().filter(is_included).for_each(|joint| baker.replace_all(joint));
+            BakedLayer {
+                stacked,
+                mask: JointMask::new(skeleton, &stacked.included),
+                last_secs: add_layer(baker, stacked),
+                buffers: LayerBuffers::default(),
+            }
+        });
+        Self { skeleton, layers: layers.collect() }
+    }
+
+    /// Changes the pose that the clip below has at a time.
+    pub fn apply(&mut self, time_secs: f32, pose: &mut Pose) {
+        for BakedLayer { stacked, mask, last_secs, buffers } in &mut self.layers {
+            let elapsed_secs = f64::from(time_secs).min(*last_secs);
+            stacked.layer.apply(self.skeleton, stacked.source, mask, elapsed_secs, buffers, pose);
+        }
+    }
+}
+
+/// Returns a clip with the layers in it, as long as the given one. Joints that no layer changes keep their keys.
 pub fn bake_stack(skeleton: &Skeleton, clip: &Clip, layers: &[StackedLayer<'_>]) -> Clip {
     let mut baker = Baker::new(skeleton, clip);
-    let with_effect = layers.iter().filter(|stacked| stacked.layer.weight > 0.0);
-    let add = |stacked| BakedLayer {
-        stacked,
-        mask: JointMask::new(skeleton, &stacked.included),
-        last_secs: add_layer(&mut baker, skeleton, stacked),
-        buffers: LayerBuffers::default(),
-    };
-    let mut layers: Vec<BakedLayer<'_>> = with_effect.map(add).collect();
-    baker.bake(|time_secs, pose| {
-        for BakedLayer { stacked, mask, last_secs, buffers } in &mut layers {
-            let elapsed_secs = f64::from(time_secs).min(*last_secs);
-            stacked.layer.apply(skeleton, stacked.source, mask, elapsed_secs, buffers, pose);
-        }
-    })
+    let mut stack = BakedStack::new(skeleton, layers, &mut baker);
+    baker.bake(|time_secs, pose| stack.apply(time_secs, pose))
 }
 
 /// More than what times of this size are rounded by.
@@ -65,11 +85,9 @@ fn first_time([mut from, mut to]: [f32; 2], is_after: impl Fn(f32) -> bool) -> O
     is_after(to).then_some(to)
 }
 
-/// Adds a layer's joints and keys, and returns how long it has run when it is sampled last: one that starts over at the very end
-/// would show its first frame there.
-fn add_layer(baker: &mut Baker<'_>, skeleton: &Skeleton, stacked: &StackedLayer<'_>) -> f64 {
-    let StackedLayer { layer, source, included } = stacked;
-    skeleton.joints().filter(|joint| included[joint.get()]).for_each(|joint| baker.replace(joint));
+/// Adds a layer's keys, and returns how long it has run when it is sampled last: one that starts over at the very end would show
+/// its first frame there.
+fn add_layer(baker: &mut Baker<'_>, StackedLayer { layer, source, .. }: &StackedLayer<'_>) -> f64 {
     let mut starts_over = add_rounds(baker, layer, source.clip, source.clip.duration_secs());
     for below in source.below.iter().filter(|below| !below.frozen) {
         starts_over |= add_rounds(baker, layer, &below.clip, below.duration_secs);
