@@ -83,6 +83,7 @@ class RetargetOptions(TypedDict, total=False):
     rest_model: _Rest | None
     rest_motion: _Rest | None
     unmapped: str | int | None
+    name: str | None
     mirror: bool
     trim: tuple[float, float] | None
     reverse: bool
