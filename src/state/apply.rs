@@ -1,6 +1,7 @@
 //! Applies commands to the view state.
 
 use std::f32::consts::{PI, TAU};
+use std::ops::RangeInclusive;
 
 use glam::Vec3;
 
@@ -11,8 +12,8 @@ use super::maps;
 use super::pins;
 use super::playhead::{active_clip, chosen_clip, clip_secs, crossfade_secs, play_range};
 use super::{
-    CameraChoice, Channel, ClipChoice, Command, Fade, Hidden, KeyLight, LayeredClip, LookTarget, OrbitCamera,
-    Selection, VertexChoice, ViewerState,
+    CameraChoice, CameraOptions, Channel, ClipChoice, Command, Display, Edits, Fade, Hidden, KeyLight, LayeredClip,
+    LookTarget, OrbitCamera, Playback, Selection, VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{ClipEdits, Library, Model, ModelClip, MotionId};
@@ -36,7 +37,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::Seek(time_secs) => seek(state, model, time_secs),
         Command::Advance(clock_secs) => advance_clock(state, library, clock_secs),
         Command::StepFrames(frames) => step(state, model, frames),
-        Command::SetSpeed(speed) => set_f64(&mut state.playback.speed, speed, 0.1, 4.0),
+        Command::SetSpeed(speed) => set_speed(state, speed),
         Command::SetLoopMode(mode) => set_loop_mode(state, model, mode),
         Command::SetRange(range) => set_range(state, model, range),
         Command::SetSkinning(mode) => state.display.skinning = mode,
@@ -62,13 +63,13 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::Pan { right, up } => pan(state, library, right, up),
         Command::Zoom { factor, right, up } => zoom(state, library, factor, right, up),
         Command::FrameAll => frame(state, library),
-        Command::SetFov(degrees) => set_f32(&mut state.camera_options.fov_degrees, degrees, 5.0, 120.0),
+        Command::SetFov(degrees) => set_fov(state, degrees),
         Command::SetFollow(follow) => state.camera_options.follow = follow,
-        Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
+        Command::SetTurntable(speed) => set_turntable(state, speed),
         Command::SetVariant(variant) => set_variant(state, model, variant),
         Command::SetHidden(hidden) => set_hidden(state, model, hidden),
         Command::SetUp(up) => state.edits.up = up,
-        Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
+        Command::SetExposure(stops) => set_exposure(state, stops),
         Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
         Command::SetEnvironment(degrees) => set_rotation(&mut state.display.environment_degrees, degrees),
         Command::SetLight(environment) => state.lighting.environment = environment,
@@ -133,11 +134,11 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     let finite = |fade: &Fade| fade.time_secs.is_finite() && fade.elapsed_secs.is_finite();
     state.playhead.fade = wanted.playhead.fade.filter(finite);
     state.playback.speed = default.playback.speed;
-    set_f64(&mut state.playback.speed, wanted.playback.speed, 0.1, 4.0);
+    set_speed(state, wanted.playback.speed);
     state.camera_options.fov_degrees = default.camera_options.fov_degrees;
-    set_f32(&mut state.camera_options.fov_degrees, wanted.camera_options.fov_degrees, 5.0, 120.0);
+    set_fov(state, wanted.camera_options.fov_degrees);
     state.display.exposure = default.display.exposure;
-    set_f32(&mut state.display.exposure, wanted.display.exposure, -10.0, 10.0);
+    set_exposure(state, wanted.display.exposure);
     state.display.environment_degrees = default.display.environment_degrees;
     set_rotation(&mut state.display.environment_degrees, wanted.display.environment_degrees);
     state.lighting.key = None;
@@ -169,7 +170,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     clips::check(&mut state.edits.clips);
     set_layers(state, None, wanted.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
-    set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
+    set_turntable(state, wanted.camera_options.turntable);
     state.camera = CameraChoice::Auto;
     set_camera(state, None, wanted.camera);
 }
@@ -206,9 +207,9 @@ fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
     };
     if wanted.strength.is_finite() && wanted.yaw_degrees.is_finite() && wanted.pitch_degrees.is_finite() {
         let mut key = wanted;
-        key.strength = wanted.strength.clamp(0.0, 10.0);
+        key.strength = clamped(wanted.strength, &KeyLight::STRENGTH);
         set_rotation(&mut key.yaw_degrees, wanted.yaw_degrees);
-        key.pitch_degrees = wanted.pitch_degrees.clamp(-90.0, 90.0);
+        key.pitch_degrees = clamped(wanted.pitch_degrees, &KeyLight::PITCH_DEGREES);
         state.lighting.key = Some(key);
     }
 }
@@ -271,16 +272,36 @@ fn set_source(state: &mut ViewerState, library: &Library, motion: &MotionId, tar
     }
 }
 
-fn set_f64(slot: &mut f64, value: f64, min: f64, max: f64) {
+fn set_speed(state: &mut ViewerState, speed: f64) {
+    set_f64(&mut state.playback.speed, speed, &Playback::SPEED);
+}
+
+fn set_fov(state: &mut ViewerState, degrees: f32) {
+    set_f32(&mut state.camera_options.fov_degrees, degrees, &CameraOptions::FOV_DEGREES);
+}
+
+fn set_turntable(state: &mut ViewerState, speed: f32) {
+    set_f32(&mut state.camera_options.turntable, speed, &CameraOptions::TURNTABLE);
+}
+
+fn set_exposure(state: &mut ViewerState, stops: f32) {
+    set_f32(&mut state.display.exposure, stops, &Display::EXPOSURE);
+}
+
+fn set_f64(slot: &mut f64, value: f64, range: &RangeInclusive<f64>) {
     if value.is_finite() {
-        *slot = value.clamp(min, max);
+        *slot = value.clamp(*range.start(), *range.end());
     }
 }
 
-fn set_f32(slot: &mut f32, value: f32, min: f32, max: f32) {
+fn set_f32(slot: &mut f32, value: f32, range: &RangeInclusive<f32>) {
     if value.is_finite() {
-        *slot = value.clamp(min, max);
+        *slot = clamped(value, range);
     }
+}
+
+fn clamped(value: f32, range: &RangeInclusive<f32>) -> f32 {
+    value.clamp(*range.start(), *range.end())
 }
 
 fn set_rotation(slot: &mut f32, degrees: f32) {
@@ -405,7 +426,7 @@ fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weigh
             state.edits.morph.remove(&index);
         }
         Some(weight) if exists && weight.is_finite() => {
-            state.edits.morph.insert(index, weight.clamp(-10.0, 10.0));
+            state.edits.morph.insert(index, clamped(weight, &Edits::MORPH_WEIGHT));
         }
         Some(_) => {}
     }
@@ -418,7 +439,7 @@ fn set_expression(state: &mut ViewerState, model: Option<&Model>, name: &str, we
             state.edits.expressions.remove(name);
         }
         Some(weight) if exists && weight.is_finite() => {
-            state.edits.expressions.insert(name.to_owned(), weight.clamp(0.0, 1.0));
+            state.edits.expressions.insert(name.to_owned(), clamped(weight, &Edits::EXPRESSION_WEIGHT));
         }
         Some(_) => {}
     }

@@ -28,7 +28,7 @@ pub enum Command {
     Advance(f64),
     /// Steps forwards (+1) or backwards (−1) by frames of `1 / frames_per_sec`, and pauses.
     StepFrames(i32),
-    /// Sets the playback speed, a factor from 0.1 to 4.
+    /// Sets the playback speed, a factor within [`Playback::SPEED`](super::Playback::SPEED).
     SetSpeed(f64),
     /// Sets what happens at the end of the range, keeping the current pose.
     SetLoopMode(LoopMode),
@@ -40,7 +40,7 @@ pub enum Command {
     SetMorph {
         /// Index into `Pose::morph_weights`.
         index: usize,
-        /// Clamped to ±10; `None` returns it to the clip.
+        /// Clamped to [`Edits::MORPH_WEIGHT`](super::Edits::MORPH_WEIGHT); `None` returns it to the clip.
         weight: Option<f32>,
     },
     /// Returns all morph weights to the clip.
@@ -49,7 +49,7 @@ pub enum Command {
     SetExpression {
         /// [`Expression::name`](crate::avatar::Expression::name).
         name: String,
-        /// Clamped to 0…1; `None` returns it to the clip.
+        /// Clamped to [`Edits::EXPRESSION_WEIGHT`](super::Edits::EXPRESSION_WEIGHT); `None` returns it to the clip.
         weight: Option<f32>,
     },
     /// Returns all expressions to the clip.
@@ -128,7 +128,7 @@ pub enum Command {
     },
     /// Frames everything, keeping the direction.
     FrameAll,
-    /// Sets the vertical field of view in degrees, 5 to 120.
+    /// Sets the vertical field of view, within [`CameraOptions::FOV_DEGREES`](super::CameraOptions::FOV_DEGREES).
     SetFov(f32),
     /// Sets whether the camera travels with the character's root.
     SetFollow(bool),
@@ -140,7 +140,7 @@ pub enum Command {
     SetHidden(Hidden),
     /// Sets which axis of the file points up.
     SetUp(UpAxis),
-    /// Sets the exposure in stops, −10 to 10.
+    /// Sets the exposure in stops, within [`Display::EXPOSURE`](super::Display::EXPOSURE).
     SetExposure(f32),
     /// Sets the tone mapping.
     SetToneMap(ToneMap),

@@ -1,5 +1,7 @@
 //! What lights the scene besides the lights of a file, and how radiance is tone-mapped for display.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 /// An environment that is generated, not loaded.
@@ -63,7 +65,7 @@ impl Default for EnvironmentChoice {
 /// A directional light besides the environment's. The lights of a file replace it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct KeyLight {
-    /// Illuminance on a surface that faces it, over π: a white one becomes as bright as this. 0 switches it off; 10 at most.
+    /// Illuminance on a surface that faces it, over π: a white one becomes as bright as this. 0 switches it off.
     pub strength: f32,
     /// Where it comes from, without light rotation: 0 is +Z, 90 is +X.
     pub yaw_degrees: f32,
@@ -74,4 +76,8 @@ pub struct KeyLight {
 impl KeyLight {
     /// The studio's own key light.
     pub const STUDIO: Self = Self { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
+    /// Range of the strength.
+    pub const STRENGTH: RangeInclusive<f32> = 0.0..=10.0;
+    /// Range of the pitch.
+    pub const PITCH_DEGREES: RangeInclusive<f32> = -90.0..=90.0;
 }

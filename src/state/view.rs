@@ -1,6 +1,7 @@
 //! The view state. Together with the library, it completely determines the image.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -202,6 +203,13 @@ pub struct Edits {
     pub up: UpAxis,
 }
 
+impl Edits {
+    /// Range of a morph weight that is set manually.
+    pub const MORPH_WEIGHT: RangeInclusive<f32> = -10.0..=10.0;
+    /// Range of an expression's weight.
+    pub const EXPRESSION_WEIGHT: RangeInclusive<f32> = 0.0..=1.0;
+}
+
 /// A clip over the active one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LayeredClip {
@@ -253,10 +261,15 @@ pub struct Selection {
 pub struct Playback {
     /// Whether clip time advances.
     pub playing: bool,
-    /// Clip seconds per second of the clock, 0.1 to 4.
+    /// Clip seconds per second of the clock, within [`Self::SPEED`].
     pub speed: f64,
     /// What happens at the end of the range.
     pub loop_mode: LoopMode,
+}
+
+impl Playback {
+    /// Range of the speed.
+    pub const SPEED: RangeInclusive<f64> = 0.1..=4.0;
 }
 
 impl Default for Playback {
@@ -279,7 +292,7 @@ pub struct Display {
     pub look_at: LookTarget,
     /// Whether an avatar's spring bones are simulated.
     pub springs: bool,
-    /// In stops: the image is multiplied by 2^exposure.
+    /// In stops, within [`Self::EXPOSURE`]: the image is multiplied by 2^exposure.
     pub exposure: f32,
     /// The tone mapping.
     pub tone_map: ToneMap,
@@ -287,6 +300,11 @@ pub struct Display {
     pub environment_degrees: f32,
     /// What is behind the scene.
     pub background: Background,
+}
+
+impl Display {
+    /// Range of the exposure, in stops.
+    pub const EXPOSURE: RangeInclusive<f32> = -10.0..=10.0;
 }
 
 impl Default for Display {
@@ -309,12 +327,19 @@ impl Default for Display {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CameraOptions {
-    /// Vertical field of view.
+    /// Vertical field of view, within [`Self::FOV_DEGREES`].
     pub fov_degrees: f32,
     /// The camera travels with the character's root.
     pub follow: bool,
-    /// Speed of the turntable in degrees per second of the clock.
+    /// Speed of the turntable in degrees per second of the clock, within [`Self::TURNTABLE`].
     pub turntable: f32,
+}
+
+impl CameraOptions {
+    /// Range of the vertical field of view.
+    pub const FOV_DEGREES: RangeInclusive<f32> = 5.0..=120.0;
+    /// Range of the turntable's speed.
+    pub const TURNTABLE: RangeInclusive<f32> = -360.0..=360.0;
 }
 
 impl Default for CameraOptions {

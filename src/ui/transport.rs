@@ -7,7 +7,7 @@ use super::scrub::{self, Scrub, Scrubbed};
 use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelClip;
-use crate::state::Command;
+use crate::state::{Command, Playback};
 use crate::ui::widgets::accessible;
 
 /// At most this share of the window's height is for tracks: a link may bring hundreds of layers. The others are scrolled to.
@@ -172,15 +172,13 @@ pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
     Some(Command::SetRange(Some(range)))
 }
 
-const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=4.0;
-
 fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut speed = shown.state.playback.speed;
     let palette = style::palette(ui);
     if ui
         .add(
             egui::DragValue::new(&mut speed)
-                .range(SPEEDS)
+                .range(Playback::SPEED)
                 .speed(0.01)
                 .fixed_decimals(2)
                 .suffix("×")
@@ -197,7 +195,7 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let slider = ui
         .scope(|ui| {
             controls::knob_style(ui);
-            ui.add(egui::Slider::new(&mut speed, SPEEDS).logarithmic(true).show_value(false))
+            ui.add(egui::Slider::new(&mut speed, Playback::SPEED).logarithmic(true).show_value(false))
         })
         .inner;
     accessible::describe_value(&slider, || speed_text(shown));
