@@ -7,10 +7,13 @@ use super::retarget::clip_named;
 use crate::anim::Clip;
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::retarget::{
-    Baking, Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking,
-};
+use crate::retarget::{Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking};
 use crate::state::{LayeredClip, read_layer, unknown_layers};
+
+/// Returns the warning about a loop with a seam, with its code.
+pub(super) fn loop_seam(why: &str) -> (&'static str, String) {
+    ("loop-seam", format!("the loop has a seam: {why}"))
+}
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]
@@ -80,12 +83,9 @@ impl LayerOptions {
         }
         let periods: Vec<f64> =
             stack.iter().filter_map(|stacked| stacked.layer.period_secs(stacked.source.clip)).collect();
-        let Baking { loops, seamless } = baking(&clip, &[], &periods, is_looped.then_some(1));
-        if !seamless {
-            let message = "the loop has a seam: the clip and its layers don't end together".to_owned();
-            warnings.push(("loop-seam", message));
-        }
-        let clip = if loops > 1 { bake_layers(asset, &clip, &[], &Baking { loops, seamless }) } else { clip };
+        let baking = baking(&clip, &[], &periods, is_looped.then_some(1));
+        warnings.extend(baking.seam().map(|why| loop_seam(&why)));
+        let clip = if baking.loops > 1 { bake_layers(asset, &clip, &[], &baking) } else { clip };
         Ok(bake_stack(&asset.skeleton, &clip, &stack))
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
+use super::layer::loop_seam;
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
@@ -231,14 +232,7 @@ fn with_layers(
         return clip;
     }
     let baking = baking(&clip, &layers, &[], loops);
-    if !baking.seamless {
-        let message = format!(
-            "the loop has a seam: {} loops of the retargeted clip don't end on a whole loop of the model's own clip on unmapped \
-             joints; try another number with --loops",
-            baking.loops
-        );
-        warnings.push(("loop-seam", message));
-    }
+    warnings.extend(baking.seam().map(|why| loop_seam(&format!("{why}; try another number with --loops"))));
     bake_layers(model, &clip, &layers, &baking)
 }
 

@@ -1,6 +1,8 @@
 //! Exports: the active joint map, the model with a retargeted clip, a clip alone. Images are up to the shell, which has the
 //! graphics device.
 
+use std::borrow::Cow;
+
 use glam::Vec3;
 
 use super::names::stem;
@@ -62,7 +64,7 @@ impl ExportedFile {
         Self { name, bytes, remark: None }
     }
 
-    fn with_remarks(self, remarks: &[&str]) -> Self {
+    fn with_remarks(self, remarks: &[Cow<'static, str>]) -> Self {
         Self { remark: (!remarks.is_empty()).then(|| remarks.join(" ")), ..self }
     }
 }
@@ -89,7 +91,7 @@ const NO_SUCH_CLIP: &str = "there is no such clip";
 /// A clip with its layers, what is set manually, and its pins baked in.
 struct BakedClip {
     clip: Clip,
-    remarks: Vec<&'static str>,
+    remarks: Vec<Cow<'static, str>>,
 }
 
 impl Editor {
@@ -167,7 +169,7 @@ impl Editor {
         let frames_per_sec = clip.frames_per_sec();
         let clip = &baked.clip;
         if format == ClipFormat::Glb {
-            baked.remarks.extend(about_properties(clip));
+            baked.remarks.extend(about_properties(clip).map(Cow::from));
         }
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = write_clip(model, &skeleton, clip, frames_per_sec, format).map_err(|error| error.to_string())?;
@@ -186,12 +188,12 @@ impl Editor {
             baked.clip = ChangedClip { clip: baked.clip, seam: None }.renamed();
         }
         let clips = [&baked.clip];
-        baked.remarks.extend(about_properties(clips[0]));
+        baked.remarks.extend(about_properties(clips[0]).map(Cow::from));
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
             Some(ModelFiles { set, name }) => write_model(set, name, &skeleton, &clips),
             None => {
-                baked.remarks.push("Skeleton and clip only: this model has no file to add a clip to.");
+                baked.remarks.push("Skeleton and clip only: this model has no file to add a clip to.".into());
                 write_motion(&model.asset, &skeleton, &clips)
             }
         };
@@ -205,19 +207,18 @@ impl Editor {
         let mut baked = BakedClip { clip: clip.clone(), remarks: Vec::new() };
         let is_active = active_clip(model, &self.state).is_some_and(|active| active.id() == source.id());
         let has_range = self.state.playhead.range.is_some() && is_active;
-        baked.remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it."));
+        baked.remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it.".into()));
         if !below.is_empty() || !over.is_empty() {
             let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
             let baking = baking(clip, below, &periods, None);
             let layered = bake_layers(&model.asset, clip, below, &baking);
             baked.clip = bake_stack(&model.asset.skeleton, &layered, &over);
-            let seam = "The loop has a seam: the lengths of the layered clips don't divide evenly.";
-            baked.remarks.extend((!baking.seamless).then_some(seam));
+            baked.remarks.extend(baking.seam().map(|why| format!("The loop has a seam: {why}.").into()));
         }
         if let Some(held) = clip_with_manual_values(model, &self.state, &baked.clip) {
             baked.clip = held;
             let has_poses = !self.state.edits.pose.is_empty();
-            baked.remarks.extend(has_poses.then_some("Manually posed joints hold their pose in it."));
+            baked.remarks.extend(has_poses.then_some("Manually posed joints hold their pose in it.".into()));
         }
         // Pins repeat with the clip, not with its layers.
         let (period_secs, eye) = (source.duration_secs(), looks_at_camera(&self.state).then(|| self.eye()));

@@ -79,6 +79,17 @@ pub struct Baking {
     pub seamless: bool,
 }
 
+impl Baking {
+    /// Returns why the loop has a seam, as part of a sentence; `None` if it has none.
+    pub fn seam(&self) -> Option<String> {
+        let loops = match self.loops {
+            1 => "the clip".to_owned(),
+            loops => format!("{loops} loops of the clip"),
+        };
+        (!self.seamless).then(|| format!("{loops} and its layers don't end together"))
+    }
+}
+
 /// Maximum time by which a layer that isn't stretched may miss the end.
 const MAX_GAP_SECS: f64 = 1e-3;
 
