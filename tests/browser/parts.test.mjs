@@ -84,17 +84,17 @@ AnimationSet Lift { Animation { { chest } AnimationKey { 2; 2; 0;3;0,1,0;;, 60;3
 const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
 
 /**
- * A module with the exports of a part.
+ * A module with the exports of a part. Its input lies at the beginning of its memory, so its output is far from there.
  * @param {string} body What it does when it runs.
  * @param {string} output What is found at its output.
  */
 function module(body, output = "") {
   const text = `(module
     (memory (export "memory") 1000)
-    (data (i32.const 0) "${output}")
+    (data (i32.const 60000000) "${output}")
     (func (export "input") (param i32) (result i32) (i32.const 0))
     (func (export "run") ${body})
-    (func (export "output") (result i32) (i32.const 0))
+    (func (export "output") (result i32) (i32.const 60000000))
     (func (export "output_length") (result i32) (i32.const ${output.length})))`;
   return Buffer.from(binaryen.parseText(text).emitBinary());
 }
