@@ -29,7 +29,7 @@ pub enum ClipEdit {
     Copy(Box<ClipChanges>),
     /// Removes it, if it is a copy. If it is active, the original plays.
     RemoveCopy,
-    /// Renames it, unless another clip has the name; an empty name restores the file's. Control characters are removed, and
+    /// Renames it, with a number if another clip has the name; an empty name restores the file's. Control characters are removed, and
     /// everything after [`ClipEdits::MAX_NAME_CHARS`].
     Rename(String),
 }
@@ -84,14 +84,16 @@ fn remove_copy(state: &mut ViewerState, model: &Model, copy: &ModelClip) {
 
 fn rename(state: &mut ViewerState, model: &Model, clip: &ModelClip, name: &str) {
     let names = &mut state.edits.clips.names;
-    let is_taken = model.clips().iter().any(|other| other.id() != clip.id() && other.title() == name);
+    let is_free = |name: &String| model.clips().iter().all(|other| other.id() == clip.id() || other.title() != name);
+    let numbered = (2..).map(|number: u32| format!("{name} ({number})"));
+    let free = std::iter::once(name.to_owned()).chain(numbered).find(is_free);
     let restores = name.is_empty() || (clip.is_renamed() && name == clip.unchanged().name());
     match (restores, clip.is_copy()) {
         // Copies have no other name.
         (true, true) => {}
         (true, false) => drop(names.remove(clip.id())),
-        (false, _) if is_taken || name == clip.title() => {}
-        (false, _) => drop(names.insert(clip.id().clone(), name.to_owned())),
+        (false, _) if name == clip.title() => {}
+        (false, _) => names.extend(free.map(|free| (clip.id().clone(), free))),
     }
 }
 

@@ -173,7 +173,7 @@ fn no_two_clips_get_the_same_name_and_an_empty_one_restores_the_files() {
         edit(editor, ClipId::Own(0), ClipEdit::Rename(name.to_owned()));
         title(editor).expect("plays").to_owned()
     };
-    assert_eq!(rename(&mut editor, "Wave"), "Walk", "another clip has the name");
+    assert_eq!(rename(&mut editor, "Wave"), "Wave (2)", "another clip has the name");
     assert_eq!(rename(&mut editor, "Stroll"), "Stroll");
     assert_eq!(rename(&mut editor, &"x".repeat(100)), "x".repeat(80));
     assert_eq!(rename(&mut editor, " \n"), "Walk");
