@@ -7,7 +7,7 @@ use crate::library::{BorrowError, ClipId, Library, Model, ModelId, Motion, Motio
 use crate::retarget::{JointMap, MapError};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
-    drop_edits_of_gone_clips, settle_clips, unknown_clip,
+    drop_orphaned_edits, resolve_clips, unknown_clip,
 };
 
 /// A retargeted clip, which plays on another model as well, with the time in it.
@@ -142,7 +142,7 @@ impl Editor {
         let model = self.library.active().map(|model| model.origin.clone());
         self.state.sources.motion = Contents::motion_sources(&motions, model.as_deref());
         self.library.set_motions(motions);
-        drop_edits_of_gone_clips(&mut self.state, &self.library);
+        drop_orphaned_edits(&mut self.state, &self.library);
     }
 
     /// Returns why motions that were just added don't fit. Unlike the command line's error, it doesn't explain how to write a
@@ -179,7 +179,7 @@ impl Editor {
             new.extend(errors.iter().filter(|error| !self.reported.contains(error)).cloned());
             self.reported = errors;
         }
-        self.needs_redraw |= settle_clips(&mut self.state, &mut self.library);
+        self.needs_redraw |= resolve_clips(&mut self.state, &mut self.library);
         new
     }
 

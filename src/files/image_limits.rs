@@ -1,12 +1,12 @@
-//! What the device that draws can hold of images.
+//! Limits that the graphics device sets for images.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::Waker;
 
 use gaitway_ktx2::Formats;
 
-/// Whoever creates the device and whoever opens files for it share one of these, since opening starts first. Without a device,
-/// as on the command line, images stay as large as they are.
+/// Shared by the code that creates the device and the code that opens files, which starts first. Without a device, as on the
+/// command line, images keep their size.
 #[derive(Debug, Clone, Default)]
 pub struct ImageLimits(Arc<Mutex<State>>);
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use glam::Vec3;
 
-use super::clip_names::settled;
+use super::clip_names::resolved;
 use super::clips;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
@@ -16,8 +16,11 @@ use super::{
     LookTarget, OrbitCamera, Playback, Selection, VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::{ClipEdits, Library, Model, ModelClip, MotionId};
+use crate::library::{Library, Model, ModelClip, MotionId};
 use crate::retarget::JointMap;
+
+/// Maximum length of a name that the user gives to a joint or a clip.
+pub const MAX_NAME_CHARS: usize = 80;
 
 /// Differences of times that rounding explains.
 const ROUNDING_SECS: f64 = 1e-9;
@@ -219,7 +222,7 @@ pub(super) fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: Cli
     let from = active(state, model);
     let time_secs = state.playhead.time_secs;
     state.playhead.clip = match (clip, model) {
-        (ClipChoice::Clip(clip), Some(model)) => ClipChoice::Clip(settled(model, clip)),
+        (ClipChoice::Clip(clip), Some(model)) => ClipChoice::Clip(resolved(model, clip)),
         (clip, _) => clip,
     };
     let fades = state.playback.playing && crossfade_secs(from, active(state, model)) > 0.0;
@@ -464,9 +467,9 @@ fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degree
     }
 }
 
-/// Returns a name without control characters and spaces around it, cut after [`ClipEdits::MAX_NAME_CHARS`].
+/// Returns a name without control characters and spaces around it, cut after [`MAX_NAME_CHARS`].
 pub fn one_line(name: &str) -> String {
-    let line: String = name.chars().filter(|char| !char.is_control()).take(ClipEdits::MAX_NAME_CHARS).collect();
+    let line: String = name.chars().filter(|char| !char.is_control()).take(MAX_NAME_CHARS).collect();
     line.trim().to_owned()
 }
 
@@ -497,7 +500,7 @@ fn set_channel(state: &mut ViewerState, channel: Channel) {
 fn set_layers(state: &mut ViewerState, model: Option<&Model>, layers: Vec<LayeredClip>) {
     let checked = |LayeredClip { clip, layer }| {
         let clip = match model {
-            Some(model) => settled(model, clip),
+            Some(model) => resolved(model, clip),
             None => clip,
         };
         LayeredClip { clip, layer: layer.clamped() }

@@ -1,7 +1,7 @@
 //! What an avatar adds to the pose of a clip: gaze, expressions, node constraints and spring bones, in this order.
 //!
 //! Gaze needs the camera, so `frame::evaluate` resolves it after the clip is sampled. Expressions become morph weights and
-//! properties: nothing after this knows of them.
+//! properties: later stages don't handle expressions.
 
 use std::collections::BTreeMap;
 
@@ -165,10 +165,8 @@ impl SpringsKey {
         range: TimeRange,
         repeats: bool,
     ) -> bool {
-        let is_same = |known: &Option<Clip>, clip: Option<&ModelClip>| match (known, clip) {
-            (Some(known), Some(clip)) => known.is_same(clip.clip()),
-            (known, clip) => known.is_none() && clip.is_none(),
-        };
+        let is_same =
+            |known: &Option<Clip>, clip: Option<&ModelClip>| Clip::are_same(known.as_ref(), clip.map(ModelClip::clip));
         let Edits { pose, pins, up, layers, .. } = &state.edits;
         (self.model, self.range, self.repeats, self.up) == (model.id, range, repeats, *up)
             && is_same(&self.clip, clip)

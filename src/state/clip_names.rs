@@ -18,7 +18,7 @@ fn clip_called<'a>(model: &'a Model, name: &str) -> Option<&'a ModelClip> {
     index.and_then(|index| model.clips().iter().nth(index)).or_else(by_title)
 }
 
-/// Finds a clip by its identity, or by what a link calls it: [`settle_clips`] replaces that by the identity.
+/// Finds a clip by its identity, or by what a link calls it: [`resolve_clips`] replaces that by the identity.
 pub fn look_up_clip<'a>(model: &'a Model, clip: &ClipId) -> Option<&'a ModelClip> {
     clip.name().map_or_else(|| model.clip(clip), |name| clip_called(model, name))
 }
@@ -58,11 +58,10 @@ fn link_clip_name(library: &Library, edits: &ClipEdits, id: &ClipId) -> Option<S
 }
 
 /// Returns a view that refers to clips as links do.
-pub(super) fn with_link_names(state: &ViewerState, library: &Library) -> ViewerState {
-    let mut state = state.clone();
-    let edits = state.edits.clips.clone();
-    let called = |id: &ClipId| link_clip_name(library, &edits, id).map(|name| ClipId::called(&name));
-    // What a clip of a map without pairs plays until the map has some again.
+pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerState {
+    let mut state = view.clone();
+    let called = |id: &ClipId| link_clip_name(library, &view.edits.clips, id).map(|name| ClipId::called(&name));
+    // A clip whose map has no pairs shows the rest pose until the map has some again.
     let plays =
         |clip: &ClipId| clip.name().is_some() || library.active().is_some_and(|model| model.clip(clip).is_some());
     let choice = |choice: &ClipChoice| match choice {
@@ -87,7 +86,7 @@ pub(super) fn with_link_names(state: &ViewerState, library: &Library) -> ViewerS
 
 /// Finds the clips of a view that are still only called by a name, and makes the active model's clips those that the view edits. What
 /// the model lacks keeps its name, since its file may be still to come. Returns whether the model's clips have changed.
-pub fn settle_clips(state: &mut ViewerState, library: &mut Library) -> bool {
+pub fn resolve_clips(state: &mut ViewerState, library: &mut Library) -> bool {
     let Some(model) = library.active() else { return false };
     for copy in &mut state.edits.clips.copies {
         let found = copy.of.name().and_then(|name| clip_called(model, name));
@@ -96,40 +95,40 @@ pub fn settle_clips(state: &mut ViewerState, library: &mut Library) -> bool {
         }
     }
     // Names come before what is called by them.
-    settle_keys(&mut state.edits.clips.names, model);
+    resolve_keys(&mut state.edits.clips.names, model);
     let mut is_changed = library.edit_clips(&state.edits.clips);
     if let Some(model) = library.active() {
-        settle_references(state, model);
+        resolve_references(state, model);
     }
     is_changed |= library.edit_clips(&state.edits.clips);
     is_changed
 }
 
 /// Finds the clips that a view refers to, once the model has its copies.
-fn settle_references(state: &mut ViewerState, model: &Model) {
-    let settle = |clip: &mut ClipId| {
+fn resolve_references(state: &mut ViewerState, model: &Model) {
+    let resolve = |clip: &mut ClipId| {
         if clip.name().is_some() {
-            *clip = settled(model, clip.clone());
+            *clip = resolved(model, clip.clone());
         }
     };
     let fade = state.playhead.fade.as_mut().map(|fade| &mut fade.clip);
     for choice in [Some(&mut state.playhead.clip), fade].into_iter().flatten() {
         if let ClipChoice::Clip(clip) = choice {
-            settle(clip);
+            resolve(clip);
         }
     }
-    state.edits.layers.iter_mut().for_each(|over| settle(&mut over.clip));
-    settle_keys(&mut state.edits.clips.changes, model);
+    state.edits.layers.iter_mut().for_each(|over| resolve(&mut over.clip));
+    resolve_keys(&mut state.edits.clips.changes, model);
 }
 
 /// Finds a clip that is still only called by a name.
-pub(super) fn settled(model: &Model, clip: ClipId) -> ClipId {
+pub(super) fn resolved(model: &Model, clip: ClipId) -> ClipId {
     let found = clip.name().and_then(|name| clip_called(model, name));
     found.map_or(clip, |found| found.id().clone())
 }
 
-fn settle_keys<T>(map: &mut BTreeMap<ClipId, T>, model: &Model) {
+fn resolve_keys<T>(map: &mut BTreeMap<ClipId, T>, model: &Model) {
     if map.keys().any(|clip| clip.name().is_some()) {
-        *map = std::mem::take(map).into_iter().map(|(clip, value)| (settled(model, clip), value)).collect();
+        *map = std::mem::take(map).into_iter().map(|(clip, value)| (resolved(model, clip), value)).collect();
     }
 }

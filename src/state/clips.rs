@@ -8,8 +8,8 @@ use crate::anim::{TimeRange, clip_time};
 use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip};
 use crate::retarget::ClipChanges;
 
-/// Drops edits and layers of clips that can't come back: those of motions that are gone.
-pub fn drop_edits_of_gone_clips(state: &mut ViewerState, library: &Library) {
+/// Drops edits and layers of clips whose motion was removed.
+pub fn drop_orphaned_edits(state: &mut ViewerState, library: &Library) {
     let is_there = |clip: &ClipId| clip.motion().is_none_or(|motion| library.motion(motion).is_some());
     state.edits.clips.retain(is_there);
     let copies = &state.edits.clips.copies;
@@ -30,7 +30,7 @@ pub enum ClipEdit {
     /// Removes it, if it is a copy. If it is active, the original plays.
     RemoveCopy,
     /// Renames it, with a number if another clip has the name; an empty name restores the file's. Control characters are removed, and
-    /// everything after [`ClipEdits::MAX_NAME_CHARS`].
+    /// everything after [`MAX_NAME_CHARS`](super::MAX_NAME_CHARS).
     Rename(String),
 }
 

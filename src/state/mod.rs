@@ -29,12 +29,12 @@ mod unknown;
 mod variant;
 mod view;
 
-pub use apply::{apply, one_line};
+pub use apply::{MAX_NAME_CHARS, apply, one_line};
 pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
-pub use clip_names::{look_up_clip, settle_clips};
-pub use clips::{ClipEdit, drop_edits_of_gone_clips};
+pub use clip_names::{look_up_clip, resolve_clips};
+pub use clips::{ClipEdit, drop_orphaned_edits};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use edited::Edited;

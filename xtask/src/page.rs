@@ -23,7 +23,7 @@ const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
 const FOR_THE_PAGE: [&str; 5] = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", "web"];
 
-/// Leaves the folders of whoever builds the page out of the places that panics tell: a crate's begin with its registry.
+/// Removes the builder's folders from panic locations: paths in dependencies begin with the registry's folder.
 fn without_folders() -> anyhow::Result<[String; 2]> {
     let cargo_home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let cargo_home = cargo_home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));

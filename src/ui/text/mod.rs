@@ -28,7 +28,7 @@ pub fn counted(what: &str, count: usize) -> String {
     format!("{what} ({})", grouped(count))
 }
 
-/// Returns what is said of a saved file.
+/// Returns the notice about a saved file.
 pub fn saved(name: &str, remark: Option<&str>) -> String {
     let remark = remark.map_or_else(String::new, |remark| format!(" {remark}"));
     format!("Saved {name}.{remark}")

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{RANKS, sources};
 
-/// The longest that ARCHITECTURE.md may be, in bytes: it is an overview, and decisions stand in the modules.
+/// Maximum size of ARCHITECTURE.md in bytes: it is an overview, and decisions are documented in the modules.
 const MAX_OVERVIEW_BYTES: usize = 10_000;
 
 /// The most files in `src` and `crates` that adding something may touch.

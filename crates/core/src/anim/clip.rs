@@ -221,6 +221,14 @@ impl Clip {
         Arc::ptr_eq(&self.shared, &other.shared)
     }
 
+    /// Whether both are clones of one clip, or both are missing.
+    pub fn are_same(a: Option<&Self>, b: Option<&Self>) -> bool {
+        match (a, b) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+
     /// Time of the last key of any channel, in seconds.
     pub fn duration_secs(&self) -> f32 {
         self.shared.duration_secs

@@ -2,7 +2,7 @@
 //! That is the only asynchronous part of loading, because the page has to download the decoder first.
 //!
 //! As long as [`next_preparation`] finds something, callers run the part that it names, and [`Preparation::finish`] puts the
-//! result in its place. So loading itself stays synchronous and knows of no part.
+//! result in its place. So loading itself stays synchronous and independent of parts.
 
 use gaitway_part::Answer;
 

@@ -151,8 +151,6 @@ pub struct ClipEdits {
 impl ClipEdits {
     /// The most copies of clips at once.
     pub const MAX_COPIES: usize = 100;
-    /// The most characters of a name.
-    pub const MAX_NAME_CHARS: usize = 80;
 
     /// Returns an identity that no copy has.
     pub fn new_copy_id(&self) -> CopyId {
@@ -202,7 +200,7 @@ pub struct ModelClip {
     borrowed: Option<Arc<BorrowedClip>>,
     /// What it is a copy of.
     copy_of: Option<ClipId>,
-    /// The name that the user gave it.
+    /// Whether the user named it.
     is_renamed: bool,
     changed: Option<(ClipChanges, ChangedClip)>,
     root: Option<JointIndex>,
@@ -339,15 +337,15 @@ impl Clips {
             let root = roots.get(index).copied().flatten();
             let untitled = match clip.name().trim() {
                 "" => format!("Clip {index}"),
-                name if !name.contains(MIXAMO_CLIP) => clip.name().to_owned(),
+                _ if is_named(clip) => clip.name().to_owned(),
                 _ => file_title(source, index, asset.clips.len()),
             };
             add(&mut clips, ClipId::Own(index), untitled, ModelClip::of(clip.clone(), root, None));
         }
         for borrowed in borrowed {
             let id = ClipId::Borrowed(borrowed.motion.clone(), borrowed.source_clip);
-            let named = is_named(&borrowed.clip).then(|| borrowed.clip.name().to_owned());
-            let untitled = named.unwrap_or_else(|| borrowed.file_title.clone());
+            let named = is_named(&borrowed.clip);
+            let untitled = if named { borrowed.clip.name() } else { &borrowed.file_title }.to_owned();
             let clip = ModelClip::of(borrowed.clip.clone(), borrowed.root, Some(borrowed.clone()));
             add(&mut clips, id, untitled, clip);
         }

@@ -45,7 +45,8 @@ pub struct Model {
     findings: OnceLock<Vec<Finding>>,
     rig: Rig,
     extent: Extent,
-    swept: Mutex<BTreeMap<SweptKey, Bounds>>,
+    /// With the clip that each was computed from.
+    swept: Mutex<BTreeMap<SweptKey, (Option<Clip>, Bounds)>>,
 }
 
 /// What a model derives from an asset whatever its images are: their decoding needn't be awaited for it.
@@ -165,14 +166,12 @@ impl Model {
 
     fn list_clips(&mut self, borrowed: &[Arc<BorrowedClip>], edits: ClipEdits) {
         let before = std::mem::take(&mut self.clips);
-        let keys: BTreeMap<ClipId, Clip> = before.iter().map(|clip| (clip.id().clone(), clip.clip().clone())).collect();
         let symmetry = || Symmetry::of(&self.asset, &self.recognized);
         self.clips = Clips::new(&self.source, &self.asset, self.rig.roots(), borrowed, edits, before, symmetry);
-        let (clips, swept) = (&self.clips, self.swept.get_mut());
-        let is_same =
-            |id: &ClipId| clips.get(id).is_some_and(|clip| keys.get(id).is_some_and(|key| key.is_same(clip.clip())));
-        if let Ok(swept) = swept {
-            swept.retain(|key, _| key.clip.as_ref().is_none_or(is_same));
+        let clips = &self.clips;
+        let now = |id: &ClipId| clips.get(id).map(ModelClip::clip);
+        if let Ok(swept) = self.swept.get_mut() {
+            swept.retain(|key, (clip, _)| Clip::are_same(clip.as_ref(), key.clip.as_ref().and_then(now)));
         }
     }
 
@@ -279,14 +278,14 @@ impl Model {
     /// World-space bounds of a whole clip (without one, of the rest pose) in a scene, cached. `in_place` removes the
     /// root's ground-plane travel.
     pub fn clip_bounds(&self, scene: Option<usize>, clip: Option<&ClipId>, in_place: bool) -> Bounds {
-        let (scene, clip) = (self.scene(scene), clip.cloned());
-        let key = SweptKey { scene, clip, in_place };
-        if let Some(bounds) = self.swept.lock().ok().and_then(|swept| swept.get(&key).copied()) {
+        let key = SweptKey { scene: self.scene(scene), clip: clip.cloned(), in_place };
+        if let Some(bounds) = self.swept.lock().ok().and_then(|swept| Some(swept.get(&key)?.1)) {
             return bounds;
         }
         let bounds = self.sweep(&key, &[]);
         if let Ok(mut swept) = self.swept.lock() {
-            swept.insert(key, bounds);
+            let swept_clip = clip.and_then(|clip| self.clip(clip)).map(|clip| clip.clip().clone());
+            swept.insert(key, (swept_clip, bounds));
         }
         bounds
     }

@@ -35,7 +35,7 @@ struct BakedLayer<'a> {
 }
 
 impl<'a> BakedStack<'a> {
-    /// Tells the baker what the layers change and when they are to be sampled.
+    /// Registers the channels that the layers replace and the times to sample.
     pub fn new(skeleton: &'a Skeleton, layers: &'a [StackedLayer<'a>], baker: &mut Baker<'_>) -> Self {
         let with_effect = layers.iter().filter(|stacked| stacked.layer.weight > 0.0);
         let layers = with_effect.map(|stacked| {
