@@ -10,7 +10,7 @@ use crate::editor::{ClipFormat, Export, write_clip};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
 use crate::formats::{LoadOptions, convert_named, load_named, write_model};
 use crate::library::Model;
-use crate::retarget::{ChangedClip, recognize};
+use crate::retarget::ChangedClip;
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
     let (bytes, extensions) = match &arguments.view {
@@ -55,15 +55,17 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
             return Err(failure.at("--unit"));
         }
         print_warnings(&name, &asset.warnings);
-        let changed = changed_clip(&name, &asset, arguments)?;
+        let extensions = model_extensions(&asset);
+        let model = Model::new(name.clone(), asset, Vec::new());
+        let changed = changed_clip(&model, arguments)?;
         let clip = if arguments.edits.name.is_some() { changed.clip } else { changed.renamed() };
         if !clip.properties().is_empty() {
             warn(&format!(
                 "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
             ));
         }
-        let bytes = write_model(&set, &name, &asset.skeleton, &[&clip])?;
-        return Ok((bytes, model_extensions(&asset)));
+        let bytes = write_model(&set, &name, &model.asset.skeleton, &[&clip])?;
+        return Ok((bytes, extensions));
     }
     if let Some(clip) = &arguments.clip {
         let failure = Failure::expected("a .bvh or .vrma for one clip", format!("clip {clip} of a .glb"));
@@ -80,17 +82,17 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
 
 /// Writes one clip with its skeleton.
 fn clip_alone(name: String, asset: Asset, arguments: &ConvertArguments, format: ClipFormat) -> Outcome<Vec<u8>> {
-    let clip = changed_clip(&name, &asset, arguments)?.clip;
     let model = Model::new(name, asset, Vec::new());
+    let clip = changed_clip(&model, arguments)?.clip;
     Ok(write_clip(&model, &model.asset.skeleton, &clip, clip.frames_per_sec(), format)?)
 }
 
 /// Returns the chosen clip with its changes, layers and pins, and prints its seam and warnings.
-fn changed_clip(name: &str, asset: &Asset, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
-    let clip = &asset.clips[choose_clip(name, asset, arguments.clip.as_deref())?];
+fn changed_clip(model: &Model, arguments: &ConvertArguments) -> Outcome<ChangedClip> {
+    let Model { asset, source, .. } = model;
+    let clip = &asset.clips[choose_clip(source, asset, arguments.clip.as_deref())?];
     let mut warnings = Vec::new();
-    let recognized = || recognize(asset);
-    let changed = arguments.edits.bake(asset, clip.clone(), &recognized, false, &mut warnings)?;
+    let changed = arguments.edits.bake(model, clip.clone(), false, &mut warnings)?;
     warnings.iter().for_each(|(_, message)| warn(message));
     if let Some(seam) = &changed.seam {
         print_error(&format!("seam: {seam}; blended"));

@@ -7,8 +7,8 @@ use super::failure::Outcome;
 use super::layer::LayerOptions;
 use super::pin::PinOptions;
 use crate::anim::Clip;
-use crate::asset::Asset;
-use crate::retarget::{ChangedClip, Recognized, Symmetry};
+use crate::library::{BakedTake, Model, Take};
+use crate::retarget::{ChangedClip, ClipOverLayers, Symmetry};
 use crate::state::one_line;
 
 #[derive(Debug, Args)]
@@ -35,26 +35,38 @@ impl EditOptions {
         self.name.is_none() && self.changes.changes().is_none() && self.layers.layers.is_empty() && self.pins.is_empty()
     }
 
-    /// Returns the clip with its changes, layers, pins and name; `recognized` is only called for those that need it. `is_looped` says that
-    /// the number of loops was given: none are added then to let the layers end together.
+    /// Returns the clip with its changes, layers, pins and name. `is_looped` says that the number of loops was given: none are added
+    /// then to let the layers end together.
     pub(super) fn bake(
         &self,
-        asset: &Asset,
+        model: &Model,
         clip: Clip,
-        recognized: &dyn Fn() -> Recognized,
         is_looped: bool,
         warnings: &mut Vec<(&'static str, String)>,
     ) -> Outcome<ChangedClip> {
-        let symmetry = || Symmetry::of(asset, &recognized());
-        let ChangedClip { clip, seam } = self.changes.change(asset, clip, symmetry, warnings)?;
-        // Layers may add loops; the times of pins are in the first one.
-        let period_secs = f64::from(clip.duration_secs());
-        let clip = self.layers.bake(asset, clip, recognized, is_looped, warnings)?;
-        let clip = self.pins.bake(asset, recognized, clip, period_secs)?;
+        let symmetry = || Symmetry::of(&model.asset, model.recognition());
+        let ChangedClip { clip, seam } = self.changes.change(&model.asset, clip, symmetry, warnings)?;
+        let (layers, pins) = (self.layers.layers(model, warnings)?, self.pins.pins_of_clip(model)?);
+        let played = ClipOverLayers { clip: &clip, below: &[] };
+        let take = Take { layers: &layers, pins: &pins, ..Take::of_clip(model, Some(played)) };
+        let clip = baked(&take, is_looped.then_some(1), "", warnings);
         let clip = match &self.name {
             Some(name) => clip.with_name(name.clone()),
             None => clip,
         };
         Ok(ChangedClip { clip, seam })
     }
+}
+
+/// Bakes a take, with a warning about a seam and `advice` after it.
+pub(super) fn baked(
+    take: &Take<'_>,
+    loops: Option<usize>,
+    advice: &str,
+    warnings: &mut Vec<(&'static str, String)>,
+) -> Clip {
+    let BakedTake { clip, baking, .. } = take.bake(loops, None);
+    let seam = baking.and_then(|baking| baking.seam());
+    warnings.extend(seam.map(|why| ("loop-seam", format!("the loop has a seam: {why}{advice}"))));
+    clip.into_owned()
 }

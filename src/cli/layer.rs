@@ -4,16 +4,10 @@ use clap::Args;
 
 use super::failure::{Failure, Outcome};
 use super::retarget::clip_named;
-use crate::anim::Clip;
 use crate::asset::Asset;
-use crate::library::Model;
-use crate::retarget::{Body, ClipLayer, ClipOverLayers, Recognized, StackedLayer, bake_layers, bake_stack, baking};
-use crate::state::{LayeredClip, read_layer, unknown_layers};
-
-/// Returns the warning about a loop with a seam, with its code.
-pub(super) fn loop_seam(why: &str) -> (&'static str, String) {
-    ("loop-seam", format!("the loop has a seam: {why}"))
-}
+use crate::library::{ClipId, LayeredClip, Model};
+use crate::retarget::ClipLayer;
+use crate::state::{read_layer, unknown_layers};
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]
@@ -54,38 +48,22 @@ fn check_joints(layers: &[LayeredClip], asset: &Asset) -> Outcome {
 }
 
 impl LayerOptions {
-    /// Bakes layers of the asset's own clips into a clip. Without layers, `recognized` isn't called. Loops are added until all
-    /// layers end together, unless `is_looped` says that their number was given.
-    pub(super) fn bake(
+    /// Returns the layers with their clips found among the model's.
+    pub(super) fn layers(
         &self,
-        asset: &Asset,
-        clip: Clip,
-        recognized: impl FnOnce() -> Recognized,
-        is_looped: bool,
+        model: &Model,
         warnings: &mut Vec<(&'static str, String)>,
-    ) -> Outcome<Clip> {
-        if self.layers.is_empty() {
-            return Ok(clip);
-        }
-        check_joints(&self.layers, asset)?;
-        let slots = recognized().humanoid();
-        let mut stack = Vec::new();
-        for LayeredClip { clip, layer } in &self.layers {
+    ) -> Outcome<Vec<LayeredClip>> {
+        check_joints(&self.layers, &model.asset)?;
+        let found = |LayeredClip { clip, layer }: &LayeredClip| {
             let name = clip.to_string();
-            let index = clip_named(asset, &name).map_err(|unknown| Failure::from(unknown).at("--layer"))?;
-            let included = layer.mask.included(&Body { asset, slots: &slots });
-            if !included.contains(&true) {
+            let index = clip_named(&model.asset, &name).map_err(|unknown| Failure::from(unknown).at("--layer"))?;
+            if !layer.mask.included(&model.body()).contains(&true) {
                 let message = format!("--layer: the file has none of the body parts that “{name}” is masked by");
                 warnings.push(("empty-mask", message));
             }
-            let source = ClipOverLayers { clip: &asset.clips[index], below: &[] };
-            stack.push(StackedLayer { layer, source, included });
-        }
-        let periods: Vec<f64> =
-            stack.iter().filter_map(|stacked| stacked.layer.period_secs(stacked.source.clip)).collect();
-        let baking = baking(&clip, &[], &periods, is_looped.then_some(1));
-        warnings.extend(baking.seam().map(|why| loop_seam(&why)));
-        let clip = if baking.loops > 1 { bake_layers(asset, &clip, &[], &baking) } else { clip };
-        Ok(bake_stack(&asset.skeleton, &clip, &stack))
+            Ok(LayeredClip { clip: ClipId::Own(index), layer: layer.clone() })
+        };
+        self.layers.iter().map(found).collect()
     }
 }

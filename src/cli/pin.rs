@@ -6,8 +6,8 @@ use clap::Args;
 use glam::Affine3A;
 
 use super::failure::{Failure, Outcome};
-use crate::anim::Clip;
 use crate::asset::{Asset, Slot};
+use crate::library::Model;
 use crate::retarget::{Pin, PinGoal, Pinning, Recognized};
 use crate::state::{NameKind, UnknownName, read_pin};
 
@@ -66,26 +66,14 @@ impl PinOptions {
         Ok(pins)
     }
 
-    /// Bakes the pins into a clip, if there are any. It repeats after `period_secs`, and so do the times of the pins. Without
-    /// pins, `recognized` isn't called.
-    pub(super) fn bake(
-        &self,
-        asset: &Asset,
-        recognized: impl FnOnce() -> Recognized,
-        clip: Clip,
-        period_secs: f64,
-    ) -> Outcome<Clip> {
-        if self.is_empty() {
-            return Ok(clip);
-        }
-        let body = &recognized();
-        let pins = &self.pins(asset, body)?;
+    /// Returns [`Self::pins`] for a clip in a file, where there is no camera.
+    pub(super) fn pins_of_clip(&self, model: &Model) -> Outcome<BTreeMap<usize, Pin>> {
+        let pins = self.pins(&model.asset, model.recognition())?;
         if pins.values().any(|pin| pin.goal == PinGoal::Camera) {
             let failure = Failure::expected("a point to look at", "the camera, which a file with a clip doesn't have");
             return Err(failure.at("--pin").with_hint("use look:X,Y,Z"));
         }
-        let pinning = Pinning { asset, body, pins, world_from_model: Affine3A::IDENTITY, eye: None };
-        Ok(pinning.bake(&clip, period_secs))
+        Ok(pins)
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::edit::baked;
 use super::failure::{Failure, Outcome};
-use super::layer::loop_seam;
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
@@ -14,10 +14,10 @@ use crate::asset::Asset;
 use crate::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use crate::files::{Disk, Opened};
 use crate::formats::write_model;
-use crate::library::{Model, Motion, clip_file_name, map_for, warning_documents, with_expressions};
+use crate::library::{Model, Motion, Take, clip_file_name, map_for, warning_documents, with_expressions};
 use crate::retarget::{
-    ChangedClip, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers,
-    baking, layer_clips,
+    ChangedClip, ClipOverLayers, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped,
+    layer_clips,
 };
 use crate::state::{NameKind, UnknownName};
 
@@ -88,10 +88,11 @@ pub(super) fn make(
     let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip);
     let name = clip_file_name(&motion.source, source_clip, &motion.asset);
     let clip = clip.with_name(name.unwrap_or_default());
-    let clip = with_layers(&model.asset, &resolved, clip, choices.loops.map(usize::from), &mut warnings);
-    let recognized = || model.recognition().clone();
-    let is_looped = choices.loops.is_some();
-    let ChangedClip { clip, seam } = choices.edits.bake(&model.asset, clip, &recognized, is_looped, &mut warnings)?;
+    let layers = layer_clips(&model.asset, &resolved);
+    let take = Take::of_clip(model, Some(ClipOverLayers { clip: &clip, below: &layers }));
+    let loops = choices.loops.map(usize::from);
+    let clip = baked(&take, loops, "; try another number with --loops", &mut warnings);
+    let ChangedClip { clip, seam } = choices.edits.bake(model, clip, loops.is_some(), &mut warnings)?;
     let mut document = document(&model.asset, motion, &resolved, &retargeted, &clip, &figures, &warnings);
     document["motion_rest"] = rest_document(pair.motion_rest());
     document["planting"] = json!(retargeted.planting);
@@ -217,23 +218,6 @@ pub(super) fn clip_named(asset: &Asset, requested: &str) -> Result<usize, Unknow
         let names = asset.clips.iter().map(|clip| clip.name().to_owned()).collect();
         UnknownName { kind: NameKind::Clip, name: requested.to_owned(), names }
     })
-}
-
-/// Returns the clip to write: with layers of the model's own clips on unmapped joints.
-fn with_layers(
-    model: &Asset,
-    map: &ResolvedMap,
-    clip: Clip,
-    loops: Option<usize>,
-    warnings: &mut Vec<(&'static str, String)>,
-) -> Clip {
-    let layers = layer_clips(model, map);
-    if layers.is_empty() && loops.is_none_or(|loops| loops == 1) {
-        return clip;
-    }
-    let baking = baking(&clip, &layers, &[], loops);
-    warnings.extend(baking.seam().map(|why| loop_seam(&format!("{why}; try another number with --loops"))));
-    bake_layers(model, &clip, &layers, &baking)
 }
 
 fn document(

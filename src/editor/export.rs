@@ -10,12 +10,9 @@ use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
-use crate::library::{ClipId, Model, ModelClip, MotionId};
-use crate::retarget::{ChangedClip, bake_layers, bake_stack, baking};
-use crate::state::{
-    ViewerState, active_clip, active_map, clip_with_manual_values, has_layers, has_manual_values, looks_at_camera,
-    pinned_clip, stacked_layers, written_skeleton,
-};
+use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
+use crate::retarget::ChangedClip;
+use crate::state::{ViewerState, active_clip, active_map, take_of, written_skeleton};
 
 /// Why a model without its images isn't written or recorded.
 pub(crate) const AWAITS_IMAGES: &str =
@@ -83,7 +80,7 @@ pub fn derived_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a Mod
 /// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or what is set manually, or
 /// pinned.
 fn is_derived(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
-    clip.is_derived() || has_layers(model, state) || has_manual_values(model, state) || !state.edits.pins.is_empty()
+    clip.is_derived() || take_of(model, Some(clip), state).is_more_than_clip()
 }
 
 const NO_SUCH_CLIP: &str = "there is no such clip";
@@ -203,30 +200,17 @@ impl Editor {
     }
 
     fn baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
-        let (clip, below, over) = (source.clip(), source.layers(), stacked_layers(model, &self.state));
-        let mut baked = BakedClip { clip: clip.clone(), remarks: Vec::new() };
+        let mut remarks = Vec::new();
         let is_active = active_clip(model, &self.state).is_some_and(|active| active.id() == source.id());
         let has_range = self.state.playhead.range.is_some() && is_active;
-        baked.remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it.".into()));
-        if !below.is_empty() || !over.is_empty() {
-            let periods: Vec<f64> = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip)).collect();
-            let baking = baking(clip, below, &periods, None);
-            let layered = bake_layers(&model.asset, clip, below, &baking);
-            baked.clip = bake_stack(&model.asset.skeleton, &layered, &over);
-            baked.remarks.extend(baking.seam().map(|why| format!("The loop has a seam: {why}.").into()));
-        }
-        if let Some(held) = clip_with_manual_values(model, &self.state, &baked.clip) {
-            baked.clip = held;
-            let has_poses = !self.state.edits.pose.is_empty();
-            baked.remarks.extend(has_poses.then_some("Manually posed joints hold their pose in it.".into()));
-        }
-        // Pins repeat with the clip, not with its layers.
-        let (period_secs, eye) = (source.duration_secs(), looks_at_camera(&self.state).then(|| self.eye()));
-        if let Some(pinned) = pinned_clip(model, &self.state, &baked.clip, period_secs, eye) {
-            baked.clip = pinned;
-        }
-        baked.clip = baked.clip.with_name(source.file_name().to_owned());
-        baked
+        remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it.".into()));
+        let take = take_of(model, Some(source), &self.state);
+        let eye = take.has_gaze_at_camera().then(|| self.eye());
+        let BakedTake { clip, baking, is_posed } = take.bake(None, eye);
+        let seam = baking.and_then(|baking| baking.seam());
+        remarks.extend(seam.map(|why| format!("The loop has a seam: {why}.").into()));
+        remarks.extend(is_posed.then_some("Manually posed joints hold their pose in it.".into()));
+        BakedClip { clip: clip.into_owned().with_name(source.file_name().to_owned()), remarks }
     }
 
     /// The camera's position in the current view.

@@ -150,7 +150,8 @@ impl Editor {
         let is_other_clip = (chooses_copy || matches!(command, Command::SetClip(_))) && self.automatic_view().is_some();
         self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
         let rematched = self.map_to_rematch(&command);
-        let view_before = if is_map_edit { self.automatic_view() } else { None };
+        let holds_view = is_map_edit || overrides_clip(&command);
+        let view_before = if holds_view { self.automatic_view() } else { None };
         let may_choose_clip = is_map_edit || chooses_copy || matches!(command, Command::SetClip(_));
         let followed = if may_choose_clip { self.followed_place() } else { None };
         self.notify_follow(&command);
@@ -170,9 +171,7 @@ impl Editor {
         if is_other_clip {
             self.suit_automatic_follow();
         }
-        if is_map_edit {
-            self.hold_view(view_before);
-        }
+        self.hold_view(view_before);
         self.follow_to_place(followed);
         if let Some((motion, before)) = rematched {
             self.notify_rematch(&motion, &before);
@@ -289,6 +288,20 @@ impl Editor {
 }
 
 const OTHER_FILES: &str = "something else was opened in the meantime";
+
+/// Whether the command sets what overrides the clip, often by a drag during which the view must not jump.
+fn overrides_clip(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::SetMorph { .. }
+            | Command::ClearMorphs
+            | Command::SetExpression { .. }
+            | Command::ClearExpressions
+            | Command::SetPose { .. }
+            | Command::ClearPose
+            | Command::SetPin { .. }
+    )
+}
 
 /// Whether the command changes what retargeted or changed clips depend on.
 fn affects_retargeting(command: &Command) -> bool {

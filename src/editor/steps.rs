@@ -48,7 +48,7 @@ impl Editor {
 
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
-        let before = self.before_step(self.history.would_undo_retargeting(&self.state));
+        let before = self.before_step(self.history.would_undo_motion(&self.state));
         let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, true);
@@ -58,7 +58,7 @@ impl Editor {
 
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
-        let before = self.before_step(self.history.would_redo_retargeting(&self.state));
+        let before = self.before_step(self.history.would_redo_motion(&self.state));
         let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
         if done {
             self.finish_step(before, false);
@@ -66,11 +66,11 @@ impl Editor {
         done
     }
 
-    fn before_step(&self, is_retargeting: bool) -> BeforeStep {
+    fn before_step(&self, is_motion: bool) -> BeforeStep {
         BeforeStep {
             state: self.state.clone(),
             names: self.loaded_names(),
-            view: if is_retargeting { self.automatic_view() } else { None },
+            view: if is_motion { self.automatic_view() } else { None },
         }
     }
 
@@ -102,7 +102,7 @@ impl Editor {
 struct BeforeStep {
     state: ViewerState,
     names: LoadedNames,
-    /// What the camera showed before a step of retargeting, unless the user has chosen the view.
+    /// What the camera showed before an edit of how the body moves, unless the user has chosen the view.
     view: Option<OrbitCamera>,
 }
 

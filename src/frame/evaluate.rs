@@ -5,32 +5,27 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
-use crate::anim::{
-    JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint, model_from_single_joint,
-};
+use crate::anim::{JointIndex, LoopMode, PropertyTarget, PropertyValues, model_from_joint, model_from_single_joint};
 use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
-use crate::library::{Library, Model, ModelClip, ModelId};
+use crate::library::{Library, LookTarget, Model, ModelId, Moment, Take, TakeSampler};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
+use crate::retarget::ClipOverLayers;
 use crate::state::{
-    COMPARED_SKINNING, Comparison, EnvironmentChoice, LayerSampler, LightSetup, LookTarget, PoseSampler, SourceOnStage,
-    ViewerState, active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, looks_at_camera,
-    panes, resolved_bounds, source_on_stage, world_from_model,
+    COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, SourceOnStage, ViewerState, active_clip, active_take,
+    active_variant, camera_eye, compared_rests, comparison, moment, panes, resolved_bounds, source_on_stage,
 };
 
 /// Buffers and lookups reused between frames.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    pub sampler: PoseSampler,
+    pub sampler: TakeSampler,
     /// How far the camera has followed the character.
     pub travel: Vec3,
-    first_pose: Pose,
-    first_cursor: SampleCursor,
-    first_layers: LayerSampler,
-    rest_pose: Pose,
-    rest_cursor: SampleCursor,
-    source_pose: Pose,
-    source_properties: PropertyValues,
-    source_cursor: SampleCursor,
+    /// Of the start of the clip.
+    first: TakeSampler,
+    /// One for each pane with another rest.
+    rests: Vec<TakeSampler>,
+    source: TakeSampler,
     pub model_scene: Scene,
     pub source_scene: Scene,
 }
@@ -80,23 +75,22 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.clip = None;
-        frame.scratch.sampler = PoseSampler::default();
+        frame.scratch.sampler = TakeSampler::default();
         frame.bounds = Bounds::EMPTY;
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
     };
-    let clip = active_clip(model, state);
-    frame.clip = clip.map(|clip| clip.id().clone());
-    frame.look.time_secs = clip.map_or(0.0, |clip| clip_secs(clip, state) as f32);
-    frame.scratch.sampler.sample_motion(model, state);
-    let follows = state.camera_options.follow;
-    let travel = if follows { travel(model, clip, state, &mut frame.scratch) } else { Vec3::ZERO };
+    let (take, moment) = (active_take(model, state), moment(model, state));
+    frame.clip = active_clip(model, state).map(|clip| clip.id().clone());
+    frame.look.time_secs = take.clip_secs(moment.elapsed_secs) as f32;
+    frame.scratch.sampler.sample_motion(&take, moment);
+    let travel = if state.camera_options.follow { travel(&take, &mut frame.scratch) } else { Vec3::ZERO };
     frame.scratch.travel = travel;
-    let needs_eye = state.display.look_at == LookTarget::Camera || looks_at_camera(state);
+    let needs_eye = take.look_at == LookTarget::Camera || take.has_gaze_at_camera();
     let eye = needs_eye.then(|| camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose)).flatten();
-    frame.scratch.sampler.apply_avatar(model, state, eye);
+    frame.scratch.sampler.apply_avatar(&take, moment.elapsed_secs, eye);
     let source = source_on_stage(library, state);
-    write_characters(library, model, state, source.as_ref(), frame);
+    write_characters(library, &take, (moment, eye), state, source.as_ref(), frame);
     frame.bounds = translated(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
@@ -110,20 +104,24 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
 /// The model once per pane, then the source.
 fn write_characters(
     library: &Library,
-    model: &Model,
+    take: &Take<'_>,
+    (moment, eye): (Moment<'_>, Option<Vec3>),
     state: &ViewerState,
     source: Option<&SourceOnStage>,
     frame: &mut Frame,
 ) {
+    let model = take.model;
     let Frame { characters, scratch, look, clip, comparison, panes, .. } = frame;
     let count = (panes[0] * panes[1]) as usize;
     characters.resize_with(count + usize::from(source.is_some()), Character::default);
     let properties = &scratch.sampler.properties;
     scratch.model_scene.update(model, state.sources.scene, properties, &state.edits.hidden.nodes);
     let skeleton = &model.asset.skeleton;
-    let time_secs = look.time_secs;
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
+    scratch
+        .rests
+        .resize_with(if matches!(comparison, Some(Comparison::Rests(_))) { count } else { 0 }, TakeSampler::default);
     for (pane, character) in characters.iter_mut().take(count).enumerate() {
         character.model = model.id;
         character.pane = comparison.is_some().then_some(pane as u32);
@@ -134,45 +132,40 @@ fn write_characters(
             Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
             _ => state.display.skinning,
         };
-        let pose = match (*comparison, &*clip) {
-            (Some(Comparison::Rests(active_rest)), Some(clip)) if pane > 0 => {
-                scratch.rest_pose.copy_from(&scratch.sampler.pose);
-                if let Some(clip) = library.clip_from_rest(clip, compared_rests(active_rest)[pane]) {
-                    clip.sample(skeleton, time_secs, &mut scratch.rest_cursor, &mut scratch.rest_pose);
-                }
-                &scratch.rest_pose
+        let pose = match (*comparison, &*clip, take.clip) {
+            (Some(Comparison::Rests(active_rest)), Some(clip), Some(over)) if pane > 0 => {
+                let other = library.clip_from_rest(clip, compared_rests(active_rest)[pane]).unwrap_or(over.clip);
+                let from_rest = Take { clip: Some(ClipOverLayers { clip: other, ..over }), ..*take };
+                let sampler = &mut scratch.rests[pane];
+                sampler.sample(&from_rest, moment, eye);
+                &sampler.pose
             }
             _ => &scratch.sampler.pose,
         };
         character.morph_weights.clone_from(&pose.morph_weights);
-        model_from_joint(skeleton, pose, world_from_model(state.edits.up), &mut character.world_from_joint);
+        model_from_joint(skeleton, pose, take.world_from_model, &mut character.world_from_joint);
         write_materials(&model.asset, properties, &mut character.materials);
         write_draws(model, chosen, &scratch.model_scene.joints, character);
     }
     if let (Some(source), Some(character)) = (source, characters.last_mut()) {
-        write_source(source, time_secs, scratch, character);
+        write_source(source, look.time_secs, scratch, character);
     }
 }
 
 /// The source plays its own clip at the same time, always with linear skinning.
 fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, character: &mut Character) {
-    let skeleton = &source.model.asset.skeleton;
-    scratch.source_pose.copy_from(skeleton.rest());
-    scratch.source_properties.clear();
-    if let Some(clip) = source.model.clip(&source.clip).map(ModelClip::clip) {
-        clip.sample(skeleton, time_secs, &mut scratch.source_cursor, &mut scratch.source_pose);
-        clip.sample_properties(time_secs, &mut scratch.source_cursor, &mut scratch.source_properties);
-    }
-    scratch.source_scene.update(source.model, None, &scratch.source_properties, &BTreeSet::new());
+    let take = Take { loop_mode: LoopMode::Once, ..source.take() };
+    scratch.source.sample_motion(&take, Moment { elapsed_secs: f64::from(time_secs), from: None });
+    let TakeSampler { pose, properties, .. } = &scratch.source;
+    scratch.source_scene.update(source.model, None, properties, &BTreeSet::new());
     character.model = source.model.id;
     character.skinning = SkinningMode::Linear;
     character.pane = None;
     character.variant = None;
     character.hidden_materials.clear();
-    character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
-    let pose = &scratch.source_pose;
-    model_from_joint(skeleton, pose, source.world_from_source, &mut character.world_from_joint);
-    write_materials(&source.model.asset, &scratch.source_properties, &mut character.materials);
+    character.morph_weights.clone_from(&pose.morph_weights);
+    model_from_joint(&source.model.asset.skeleton, pose, take.world_from_model, &mut character.world_from_joint);
+    write_materials(&source.model.asset, properties, &mut character.materials);
     write_draws(source.model, None, &scratch.source_scene.joints, character);
 }
 
@@ -254,23 +247,20 @@ fn heat_joint(model: &Model, instance: &MeshInstance, chosen: JointIndex) -> u32
 /// Returns the ground-plane travel of the active model's root since the start of its clip, which a following camera adds.
 pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     let Some(model) = library.active() else { return Vec3::ZERO };
-    let mut scratch = Scratch::default();
-    scratch.sampler.sample_motion(model, state);
-    travel(model, active_clip(model, state), state, &mut scratch)
+    let (take, mut scratch) = (active_take(model, state), Scratch::default());
+    scratch.sampler.sample_motion(&take, moment(model, state));
+    travel(&take, &mut scratch)
 }
 
 /// Returns [`travelled`] for the motion in the sampler.
-fn travel(model: &Model, clip: Option<&ModelClip>, state: &ViewerState, scratch: &mut Scratch) -> Vec3 {
-    let Some((clip, root)) = clip.and_then(|clip| Some((clip, clip.root()?))) else { return Vec3::ZERO };
-    let skeleton = &model.asset.skeleton;
-    scratch.first_pose.copy_from(skeleton.rest());
-    clip.clip().sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
-    scratch.first_layers.apply(model, state, 0.0, &mut scratch.first_pose);
+fn travel(take: &Take<'_>, scratch: &mut Scratch) -> Vec3 {
+    let Some(root) = take.root else { return Vec3::ZERO };
+    scratch.first.sample_motion(&take.whole(), Moment::default());
     let position = |pose| {
-        let world_from_root = world_from_model(state.edits.up) * model_from_single_joint(skeleton, pose, root);
-        Vec3::from(world_from_root.translation)
+        let model_from_root = model_from_single_joint(&take.model.asset.skeleton, pose, root);
+        Vec3::from((take.world_from_model * model_from_root).translation)
     };
-    let travel = (position(&scratch.sampler.pose) - position(&scratch.first_pose)) * Vec3::new(1.0, 0.0, 1.0);
+    let travel = (position(&scratch.sampler.pose) - position(&scratch.first.pose)) * Vec3::new(1.0, 0.0, 1.0);
     if travel.is_finite() { travel } else { Vec3::ZERO }
 }
 

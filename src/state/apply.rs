@@ -10,13 +10,14 @@ use super::clips;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
 use super::pins;
-use super::playhead::{active_clip, chosen_clip, clip_secs, crossfade_secs, play_range};
+use super::playhead::{active_clip, chosen_clip, clip_secs, play_range};
+use super::take::crossfade_secs;
 use super::{
-    CameraChoice, CameraOptions, Channel, ClipChoice, Command, Display, Edits, Fade, Hidden, KeyLight, LayeredClip,
-    LookTarget, OrbitCamera, Playback, Selection, VertexChoice, ViewerState,
+    CameraChoice, CameraOptions, Channel, ClipChoice, Command, Display, Edits, Fade, Hidden, KeyLight, OrbitCamera,
+    Playback, Selection, VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::{Library, Model, ModelClip, MotionId};
+use crate::library::{LayeredClip, Library, LookTarget, Model, ModelClip, MotionId};
 use crate::retarget::JointMap;
 
 /// Maximum length of a name that the user gives to a joint or a clip.

@@ -1,11 +1,11 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
 use super::{
-    Background, CameraChoice, Channel, ClipChoice, ClipEdit, EnvironmentChoice, Hidden, KeyLight, LayeredClip,
-    LookTarget, MapEdit, MotionMap, ToneMap, UpAxis, ViewerState,
+    Background, CameraChoice, Channel, ClipChoice, ClipEdit, EnvironmentChoice, Hidden, KeyLight, MapEdit, MotionMap,
+    ToneMap, UpAxis, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::{ClipId, MotionId};
+use crate::library::{ClipId, LayeredClip, LookTarget, MotionId};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Contacts, Feet, JointMap, Pin, RootOptions, Unmapped};
 
@@ -62,7 +62,7 @@ pub enum Command {
     SetPose {
         /// Index in the file.
         joint: usize,
-        /// See [`super::manual_rotation`].
+        /// See [`crate::library::manual_rotation`].
         degrees: Option<[f32; 3]>,
     },
     /// Returns all joints to the clip.

@@ -5,11 +5,11 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
 use super::comparison::{comparison, pane_aspect};
-use super::playhead::{active_clip, world_from_model};
+use super::playhead::world_from_model;
 use super::stage::source_on_stage;
-use super::{CameraChoice, OrbitCamera, ViewerState};
+use super::{CameraChoice, OrbitCamera, ViewerState, active_take};
 use crate::anim::{Pose, model_from_single_joint};
-use crate::library::{Library, Model, ModelClip};
+use crate::library::{Library, Model};
 use crate::mesh::Bounds;
 
 const AUTO_YAW_RADIANS: f32 = 0.44;
@@ -17,21 +17,15 @@ const AUTO_PITCH_RADIANS: f32 = 0.17;
 /// Margin around the framed bounds.
 const MARGIN: f32 = 1.08;
 
-/// Returns the world-space bounds of the active clip for the camera, the grid and the shadow: with the up axis applied, without
-/// root travel while the camera follows, and with the source if that is visible too. A unit box if there is nothing.
+/// Returns the world-space bounds of what plays for the camera, the grid and the shadow: without root travel while the camera follows,
+/// and with the source if that is visible too. A unit box if there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
-    let bounds = library.active().map_or(Bounds::EMPTY, |model| {
-        let bounds = model.clip_bounds(
-            state.sources.scene,
-            active_clip(model, state).map(ModelClip::id),
-            state.camera_options.follow,
-        );
-        bounds.transformed(&world_from_model(state.edits.up))
-    });
-    let source = source_on_stage(library, state).map_or(Bounds::EMPTY, |source| {
-        let bounds = source.model.clip_bounds(None, Some(&source.clip), state.camera_options.follow);
-        bounds.transformed(&source.world_from_source)
-    });
+    let follows = state.camera_options.follow;
+    let bounds = library
+        .active()
+        .map_or(Bounds::EMPTY, |model| library.bounds(&active_take(model, state), state.sources.scene, follows));
+    let source = source_on_stage(library, state);
+    let source = source.map_or(Bounds::EMPTY, |source| library.bounds(&source.take(), None, follows));
     let bounds = bounds.union(source);
     if bounds.is_empty() || !bounds.size().is_finite() {
         Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) }
@@ -83,12 +77,9 @@ fn shown_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let is_whole = nodes.is_empty() || source_on_stage(library, state).is_some();
     let Some(model) = library.active().filter(|_| !is_whole) else { return all };
     let hidden = nodes.iter().filter_map(|&node| model.asset.skeleton.joint_of_source(node));
-    let (clip, in_place) = (active_clip(model, state).map(ModelClip::id), state.camera_options.follow);
-    let shown = model.clip_bounds_without(state.sources.scene, clip, in_place, &hidden.collect::<Vec<_>>());
-    if shown.is_empty() || !shown.size().is_finite() {
-        return all;
-    }
-    shown.transformed(&world_from_model(state.edits.up))
+    let (scene, in_place) = (state.sources.scene, state.camera_options.follow);
+    let shown = active_take(model, state).bounds(scene, in_place, &hidden.collect::<Vec<_>>());
+    if shown.is_empty() || !shown.size().is_finite() { all } else { shown }
 }
 
 /// Fits everything that is shown into the viewport, keeping the current direction.

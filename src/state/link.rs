@@ -19,8 +19,8 @@ pub use self::pins::read_pin;
 pub use self::values::with_current_member;
 use self::values::*;
 use super::clip_names::with_link_names;
-use super::{LayeredClip, UnknownName, ViewerState};
-use crate::library::Library;
+use super::{UnknownName, ViewerState};
+use crate::library::{LayeredClip, Library};
 
 /// A part of a link, or of an object from a script, that is not understood or that can't be shown. All other parts still apply.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -1,7 +1,6 @@
 //! The view state, everything the user can set, as plain data, and the commands that change it. No UI, GPU or clock.
 
 mod apply;
-mod avatar;
 mod camera;
 mod channel;
 mod clip_names;
@@ -16,7 +15,6 @@ mod layers;
 mod lighting;
 mod link;
 mod loop_frames;
-mod manual;
 mod map_code;
 mod map_edit;
 mod maps;
@@ -25,12 +23,12 @@ mod pins;
 mod playhead;
 mod problems;
 mod stage;
+mod take;
 mod unknown;
 mod variant;
 mod view;
 
 pub use apply::{MAX_NAME_CHARS, apply, one_line};
-pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
 pub use clip_names::{look_up_clip, resolve_clips};
@@ -44,7 +42,7 @@ pub use framing::{
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
-pub use layers::{LayerSampler, has_layers, stacked_layers, unknown_layers};
+pub use layers::unknown_layers;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
 pub use link::{
@@ -52,17 +50,16 @@ pub use link::{
     link_without_missing, linked_files, most_similar_link, public_link, shown_files,
 };
 pub use loop_frames::LoopFrames;
-pub use manual::{clip_with_manual_values, has_manual_values, manual_degrees, manual_rotation};
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
-pub use pins::{looks_at_camera, pinned_clip, pinning};
-pub use playhead::{PoseSampler, active_clip, clip_secs, play_range, unknown_clip, world_from_model};
+pub use playhead::{active_clip, clip_secs, play_range, unknown_clip, world_from_model};
 pub use problems::view_problems;
 pub use stage::{SourceOnStage, source_on_stage};
+pub use take::{active_take, moment, take_of};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::active_variant;
 pub use view::{
-    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, LayeredClip, PageOptions, Playback, Playhead,
+    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
     RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

@@ -2,10 +2,10 @@
 
 use glam::{Affine3A, Quat, Vec3};
 
-use super::ViewerState;
 use super::framing::front_yaw_radians;
 use super::playhead::{active_clip, world_from_model};
-use crate::library::{BorrowedClip, ClipId, Library, Model};
+use super::{ViewerState, active_take};
+use crate::library::{BorrowedClip, ClipId, Library, Model, Take};
 use crate::mesh::Bounds;
 
 /// A motion's own skeleton, playing the original clip.
@@ -21,6 +21,17 @@ pub struct SourceOnStage<'a> {
     pub world_from_source: Affine3A,
 }
 
+impl<'a> SourceOnStage<'a> {
+    /// What it plays.
+    pub fn take(&self) -> Take<'a> {
+        source_take(self.model, &self.clip, self.world_from_source)
+    }
+}
+
+fn source_take<'a>(model: &'a Model, clip: &ClipId, world_from_model: Affine3A) -> Take<'a> {
+    Take { world_from_model, ..Take::new(model, model.clip(clip)) }
+}
+
 /// Returns the source on stage; `None` if the state hides it or the clip is not retargeted.
 pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<SourceOnStage<'a>> {
     let model = library.active().filter(|_| state.display.show.source)?;
@@ -30,8 +41,8 @@ pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<
     let clip = ClipId::Own(borrowed.source_clip);
     let in_place = world_from_model(state.edits.up) * borrowed.model_from_source;
     let bounds = [
-        model.clip_bounds(state.sources.scene, Some(active.id()), true).transformed(&world_from_model(state.edits.up)),
-        source.clip_bounds(None, Some(&clip), true).transformed(&in_place),
+        library.bounds(&active_take(model, state), state.sources.scene, true),
+        library.bounds(&source_take(source, &clip, in_place), None, true),
     ];
     let offset = if state.display.show.over { Vec3::ZERO } else { beside(bounds, front_yaw_radians(library, state)) };
     let world_from_source = Affine3A::from_translation(offset) * in_place;

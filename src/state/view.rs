@@ -5,11 +5,11 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, Channel, Hidden, Lighting, LookTarget, MotionMap, ToneMap};
+use super::{CameraChoice, Channel, Hidden, Lighting, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::{ClipEdits, ClipId};
+use crate::library::{ClipEdits, ClipId, LayeredClip, LookTarget};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipLayer, Contacts, Feet, Pin, RootOptions, Unmapped};
+use crate::retarget::{Contacts, Feet, Pin, RootOptions, Unmapped};
 
 /// Everything the user can set. The group a field is in says what happens to it:
 ///
@@ -183,7 +183,7 @@ pub struct Edits {
     /// Weights of expressions, 0 to 1, by [`Expression::name`](crate::avatar::Expression::name); they override the
     /// clip.
     pub expressions: BTreeMap<String, f32>,
-    /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::manual_rotation`]. They override
+    /// Joints posed manually, by index in the file: Euler angles in degrees, see [`crate::library::manual_rotation`]. They override
     /// the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
     /// Pinned joints, by index in the file. They override the clip and manual poses.
@@ -208,15 +208,12 @@ impl Edits {
     pub const MORPH_WEIGHT: RangeInclusive<f32> = -10.0..=10.0;
     /// Range of an expression's weight.
     pub const EXPRESSION_WEIGHT: RangeInclusive<f32> = 0.0..=1.0;
-}
 
-/// A clip over the active one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LayeredClip {
-    /// Which clip.
-    pub clip: ClipId,
-    /// How it changes the pose below it.
-    pub layer: ClipLayer,
+    /// Whether the same overrides the clip.
+    pub(super) fn overrides_like(&self, other: &Self) -> bool {
+        let Self { morph, expressions, pose, pins, .. } = self;
+        (morph, expressions, pose, pins) == (&other.morph, &other.expressions, &other.pose, &other.pins)
+    }
 }
 
 /// What the viewport explains about the model.

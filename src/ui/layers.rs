@@ -8,9 +8,9 @@ use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text, tracks};
 use crate::asset::Slot;
-use crate::library::{Model, ModelClip};
+use crate::library::{LayeredClip, Model, ModelClip};
 use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use crate::state::{Command, LayeredClip, title};
+use crate::state::{Command, title};
 
 const WEIGHT: SliderSettings =
     SliderSettings { range: (0.0, 1.0), default: 1.0, decimals: 2, suffix: "", logarithmic: false };

@@ -196,7 +196,9 @@ fn complementary_masks_make_up_the_whole() {
 fn a_scale_of_zero_has_no_ratio() {
     let skeleton = skeleton();
     let mut reference = skeleton.rest().clone();
-    reference.set_scale(JointIndex(0), Vec3::ZERO);
-    let sum = added(skeleton.rest(), skeleton.rest(), &reference, 0.5, &all(&skeleton));
-    assert_eq!(sum.local(JointIndex(0)).scale, Vec3::ONE);
+    for zero in [0.0, 1e-12, -1e-12] {
+        reference.set_scale(JointIndex(0), Vec3::splat(zero));
+        let sum = added(skeleton.rest(), skeleton.rest(), &reference, 0.5, &all(&skeleton));
+        assert_eq!(sum.local(JointIndex(0)).scale, Vec3::ONE);
+    }
 }

@@ -225,7 +225,7 @@ const KEPT_IN: [(&str, &[&str]); 2] = [
         &["retarget/", "files/", "editor/contents.rs", "editor/maps.rs", "state/link/values.rs", "state/map_code.rs"],
     ),
     // A pose is sampled once, into the frame; everything else reads it there.
-    ("PoseSampler", &["state/mod.rs", "state/playhead.rs", "frame/"]),
+    ("TakeSampler", &["library/mod.rs", "library/take/", "frame/"]),
 ];
 
 #[test]

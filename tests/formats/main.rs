@@ -38,6 +38,8 @@ mod build_gltf;
 mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
+#[path = "../support/model_files.rs"]
+mod model_files;
 #[path = "../support/numpy.rs"]
 mod numpy;
 #[path = "../support/random.rs"]

@@ -5,7 +5,8 @@ use gaitway::formats::load;
 use glam::{Affine3A, DAffine3, DQuat, DVec3, DVec4};
 
 use crate::data_folder::data_folder;
-use crate::sweep::{GLTF, file_set, models_under};
+use crate::model_files::models_under;
+use crate::sweep::{GLTF, file_set};
 
 /// Relative to the model's size.
 const TOLERANCE: f64 = 1e-5;

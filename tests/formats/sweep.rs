@@ -1,12 +1,13 @@
 //! Every real file: valid ones load, others are rejected with a reason, and nothing panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use gaitway::asset::Asset;
 use gaitway::formats::{FileSet, LoadError, load, missing_files, prepare};
 
 use crate::data_folder::data_folder;
+use crate::model_files::models_under;
 
 /// A model with the files that it refers to, as a user would drop them, ready to be loaded.
 pub fn file_set(path: &Path) -> FileSet {
@@ -25,19 +26,6 @@ fn prepared(path: &Path) -> Result<FileSet, LoadError> {
     }
     prepare(&mut files)?;
     Ok(files)
-}
-
-pub fn models_under(folder: &Path, extensions: &[&str], out: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> =
-        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            models_under(&path, extensions, out);
-        } else if path.extension().is_some_and(|extension| extensions.iter().any(|wanted| extension == *wanted)) {
-            out.push(path);
-        }
-    }
 }
 
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];

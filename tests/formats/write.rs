@@ -12,7 +12,8 @@ use crate::behaviour::PNG;
 use crate::build_gltf::{Build, F32, floats, glb, one};
 use crate::bvh::TWO_JOINTS;
 use crate::data_folder::data_folder;
-use crate::sweep::{GLTF, file_set, models_under};
+use crate::model_files::models_under;
+use crate::sweep::{GLTF, file_set};
 
 /// Returns JSON and binary chunk of a GLB, after checking the container.
 pub fn chunks_of(file: &[u8]) -> (String, &[u8]) {

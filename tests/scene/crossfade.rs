@@ -3,10 +3,10 @@
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
-use gaitway::state::{ClipChoice, Command, Playback, Playhead, PoseSampler, ViewerState, apply};
+use gaitway::state::{ClipChoice, Command, Playback, Playhead, ViewerState, apply};
 
 use crate::by_place::ByPlace;
-use crate::data::walker;
+use crate::data::{sampled, walker};
 
 /// The walker with its own clips retargeted to itself and a crossfade of 0.4 s.
 fn walker_with_crossfade() -> Library {
@@ -20,9 +20,7 @@ fn walker_with_crossfade() -> Library {
 }
 
 fn pose(library: &Library, state: &ViewerState) -> gaitway::anim::Pose {
-    let mut sampler = PoseSampler::default();
-    sampler.sample(library.active().expect("a model"), state);
-    sampler.pose
+    sampled(library.active().expect("a model"), state).pose
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, AssetParts, MeshInstance};
 use gaitway::files::open_paths;
-use gaitway::library::{Library, Model};
+use gaitway::library::{Library, Model, TakeSampler};
 use gaitway::mesh::{Geometry, Mesh};
 use gaitway::samples;
+use gaitway::state::{ViewerState, active_take, moment};
 use glam::Vec3;
 
 use crate::data_folder::data_folder;
@@ -47,4 +48,11 @@ pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
 pub fn open(path: &str) -> Option<Library> {
     let path = data_folder()?.join(path);
     Some(library_of(open_paths(std::slice::from_ref(&path)).unwrap_or_else(|error| panic!("{path:?}: {error}")).model))
+}
+
+/// Samples the pose of a view, without a camera.
+pub fn sampled(model: &Model, state: &ViewerState) -> TakeSampler {
+    let mut sampler = TakeSampler::default();
+    sampler.sample(&active_take(model, state), moment(model, state), None);
+    sampler
 }

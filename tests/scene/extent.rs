@@ -2,7 +2,7 @@
 
 use gaitway::asset::SceneJoints;
 use gaitway::frame::{Frame, evaluate, pose_document};
-use gaitway::library::{ClipId, Library};
+use gaitway::library::{ClipId, Library, Take};
 use gaitway::mesh::{Bounds, SkinningMode};
 use gaitway::state::{ClipChoice, Display, Playhead, ViewerState};
 use glam::Vec3;
@@ -10,7 +10,7 @@ use glam::Vec3;
 use crate::data::{open, walker};
 
 /// The exact bounds of what the reference implementation draws.
-fn exact(library: &Library, state: &ViewerState) -> Bounds {
+pub fn exact(library: &Library, state: &ViewerState) -> Bounds {
     let document = pose_document(library, state);
     let meshes = document["meshes"].as_array().expect("meshes");
     let numbers = meshes.iter().flat_map(|mesh| mesh["positions"].as_array().expect("positions"));
@@ -21,7 +21,7 @@ fn exact(library: &Library, state: &ViewerState) -> Bounds {
 fn check(library: &Library, clip: usize) {
     let model = library.active().expect("a model");
     let duration_secs = f64::from(model.asset.clips[clip].duration_secs());
-    let whole = model.clip_bounds(None, Some(&ClipId::Own(clip)), false);
+    let whole = Take::new(model, model.clip(&ClipId::Own(clip))).bounds(None, false, &[]);
     let mut union = Bounds::EMPTY;
     // The times that the bounds are computed from.
     for sample in 0..=24 {

@@ -3,13 +3,13 @@
 use gaitway::anim::{Pose, SampleCursor};
 use gaitway::editor::{ClipFormat, Event, Export};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{ClipId, Library};
+use gaitway::library::{ClipId, LayeredClip, Library};
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use gaitway::state::{Command, History, LayeredClip, PoseSampler, ViewerState, apply, from_object};
+use gaitway::state::{Command, History, ViewerState, apply, from_object};
 use serde_json::json;
 
 use crate::allocation::allocations_while_playing;
-use crate::data::walker;
+use crate::data::{sampled, walker};
 use crate::editor::editor;
 use crate::history::undo;
 use crate::texts::with_keys;
@@ -200,14 +200,13 @@ fn the_exported_clip_has_the_layers() {
     let mut files = gaitway::formats::FileSet::default();
     files.insert("walk.glb", file.bytes);
     let baked = gaitway::formats::load(&files).expect("a good file");
-    let mut sampler = PoseSampler::default();
     for step in 0..20 {
         let time_secs = 1.0667 * f64::from(step) / 20.0;
         editor.apply(Command::Seek(time_secs));
-        sampler.sample(editor.library().active().expect("a model"), editor.state());
+        let shown = sampled(editor.library().active().expect("a model"), editor.state()).pose;
         let mut pose = baked.skeleton.rest().clone();
         baked.clips[0].sample(&baked.skeleton, time_secs as f32, &mut SampleCursor::default(), &mut pose);
-        for (found, expected) in pose.locals().zip(sampler.pose.locals()) {
+        for (found, expected) in pose.locals().zip(shown.locals()) {
             let turn = (found.rotation * expected.rotation.conjugate()).xyz().length();
             assert!(2.0 * turn.asin().to_degrees() < 0.05, "{found:?} {expected:?}");
             assert!(found.translation.abs_diff_eq(expected.translation, 2e-4), "{found:?} {expected:?}");

@@ -1,6 +1,6 @@
 //! The text form of a view: every state round-trips.
 
-use gaitway::library::{ClipCopy, ClipId, CopyId};
+use gaitway::library::{ClipCopy, ClipId, CopyId, LayeredClip, LookTarget};
 use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway::anim::{LoopMode, TimeRange};
@@ -11,9 +11,9 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LayeredClip,
-    LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show,
-    Sources, ToneMap, UpAxis, VertexChoice, ViewerState, from_link,
+    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
+    MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources, ToneMap, UpAxis,
+    VertexChoice, ViewerState, from_link,
 };
 use glam::Vec3;
 

@@ -1,7 +1,7 @@
 //! Properties of all links: old ones keep their meaning, every state round-trips, and any text becomes a stable link of
 //! its valid parts.
 
-use gaitway::library::{ClipCopy, ClipEdits, ClipId, CopyId};
+use gaitway::library::{ClipCopy, ClipEdits, ClipId, CopyId, LayeredClip, LookTarget};
 use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway::anim::{LoopMode, TimeRange};
@@ -11,9 +11,9 @@ use gaitway::retarget::{
     Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LayeredClip,
-    LightSetup, LinkError, LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis,
-    VertexChoice, ViewerState, from_link,
+    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
+    LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState,
+    from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;

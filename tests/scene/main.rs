@@ -40,6 +40,8 @@ mod link_properties;
 mod loop_frames;
 mod manual_pose;
 mod map_edits;
+#[path = "../support/model_files.rs"]
+mod model_files;
 mod motion;
 mod pins;
 mod pointers;
@@ -53,6 +55,7 @@ mod sets;
 mod skeletons;
 mod stage;
 mod state;
+mod takes;
 mod texts;
 mod variants;
 mod view_problems;

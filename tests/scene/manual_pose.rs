@@ -3,15 +3,14 @@
 use gaitway::anim::JointIndex;
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{ClipId, Library};
+use gaitway::library::{ClipId, Library, manual_degrees, manual_rotation};
 use gaitway::retarget::{Pin, PinGoal};
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
-    manual_degrees, manual_rotation,
+    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, ViewerState, apply,
 };
 use glam::{EulerRot, Quat, Vec3};
 
-use crate::data::walker;
+use crate::data::{sampled, walker};
 use crate::history::undo;
 use crate::pins::{check_written, exported};
 
@@ -23,9 +22,7 @@ const HAND: usize = 9;
 
 fn local_rotation(library: &Library, state: &ViewerState, joint: usize) -> Quat {
     let model = library.active().expect("a model");
-    let mut sampler = PoseSampler::default();
-    sampler.sample(model, state);
-    sampler.pose.local(model.asset.skeleton.joint_of_source(joint).expect("a joint")).rotation
+    sampled(model, state).pose.local(model.asset.skeleton.joint_of_source(joint).expect("a joint")).rotation
 }
 
 fn rest_rotation(library: &Library, joint: usize) -> Quat {

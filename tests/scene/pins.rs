@@ -4,11 +4,10 @@ use gaitway::anim::JointIndex;
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{ClipId, Library, Model};
+use gaitway::library::{ClipId, LayeredClip, Library, Model};
 use gaitway::retarget::{ClipLayer, Pin, PinGoal, PinTimes};
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, History, LayeredClip, OrbitCamera, Playhead, UpAxis, ViewerState, apply,
-    from_link,
+    CameraChoice, ClipChoice, Command, History, OrbitCamera, Playhead, UpAxis, ViewerState, apply, from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;

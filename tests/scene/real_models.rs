@@ -2,7 +2,7 @@
 
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
-use gaitway::library::{ClipId, Library, inspect};
+use gaitway::library::{ClipId, Library, Take, inspect};
 use gaitway::state::{ClipChoice, Playhead, ViewerState, active_clip, front_yaw_radians};
 
 use crate::by_place::ByPlace;
@@ -132,8 +132,8 @@ fn following_keeps_a_runner_in_view() {
     let Some(library) = open("cosc422/mannequin_run.glb") else { return };
     let model = library.active().expect("a model");
     assert!(model.clip_at(0).root().is_some());
-    let in_place = model.clip_bounds(None, Some(&ClipId::Own(0)), true).size();
-    let whole = model.clip_bounds(None, Some(&ClipId::Own(0)), false).size();
+    let take = Take::new(model, model.clip(&ClipId::Own(0)));
+    let [in_place, whole] = [true, false].map(|in_place| take.bounds(None, in_place, &[]).size());
     assert!(in_place.max_element() < 0.9 * whole.max_element(), "{in_place} {whole}");
 }
 

@@ -7,14 +7,13 @@ use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialPrope
 use gaitway::asset::{Asset, AssetParts, Image, MeshInstance, Panorama, Warning};
 use gaitway::avatar::{Avatar, Expression, LookAt, LookAtKind, Override, RangeMaps, SpringJoint, Springs};
 use gaitway::editor::{ValidatorGroup, ValidatorReport};
-use gaitway::library::{Environment, ImageData, Library, Model, ModelId};
+use gaitway::library::{Environment, ImageData, Library, LookTarget, Model, ModelId};
 use gaitway::mesh::{
     AlphaMode, Geometry, Lobes, Material, Mesh, Sampler, SkinningMode, Texture, TextureRef, UvTransform,
 };
 use gaitway::samples;
 use gaitway::state::{
-    Background, CameraChoice, Channel, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, LookTarget, Show,
-    ToneMap, UpAxis,
+    Background, CameraChoice, Channel, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, Show, ToneMap, UpAxis,
 };
 use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;

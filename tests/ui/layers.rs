@@ -3,9 +3,9 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::editor::Export;
-use gaitway::library::ClipId;
+use gaitway::library::{ClipId, LayeredClip};
 use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use gaitway::state::{Command, LayeredClip};
+use gaitway::state::Command;
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips_named, motion_bench, press, sample_bench};

@@ -3,9 +3,9 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::library::ClipId;
+use gaitway::library::{ClipId, LayeredClip};
 use gaitway::retarget::ClipLayer;
-use gaitway::state::{Command, LayeredClip};
+use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 
 use crate::bench::{

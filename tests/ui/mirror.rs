@@ -1,6 +1,6 @@
 //! The panels' mirror: what it lists, when it is built, and what the user does with it.
 
-use gaitway::library::ClipId;
+use gaitway::library::{ClipId, LayeredClip};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -12,7 +12,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::mirror::{Mirror, entries};
 use gaitway::retarget::ClipLayer;
-use gaitway::state::{Command, Hidden, LayeredClip};
+use gaitway::state::{Command, Hidden};
 use gaitway::ui::{Sheet, Tab, Toast, text};
 use serde_json::Value;
 

@@ -3,8 +3,8 @@
 
 use super::changes::{clip_text, read_clip};
 use super::values::finite;
+use crate::library::LayeredClip;
 use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use crate::state::LayeredClip;
 
 pub(super) const EXPECTED: &str = "a clip and its settings: Wave:weight:0.5,speed:2,start:0.3,additive,mask:left-arm:12; \
                                    parts are hips, torso, head, left-arm, right-arm, left-leg and right-leg";

@@ -10,13 +10,14 @@ use serde_json::Value;
 use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
+use crate::library::LookTarget;
 use crate::mesh::SkinningMode;
 use crate::retarget::{ClipRef, Contacts, Feet, JointMapFile, PathOrigin, RootOptions, RootPart, Unmapped};
 use crate::state::{
     Background, CameraChoice, Channel, ClipChoice, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
     VertexChoice,
 };
-use crate::state::{EnvironmentChoice, KeyLight, LightSetup, LookTarget, ToneMap, ViewerState, map_code};
+use crate::state::{EnvironmentChoice, KeyLight, LightSetup, ToneMap, ViewerState, map_code};
 
 const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
 

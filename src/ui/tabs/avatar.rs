@@ -5,8 +5,8 @@ use glam::Vec3;
 
 use super::facts::fact;
 use crate::avatar::Avatar;
-use crate::library::Model;
-use crate::state::{Command, LookTarget, title};
+use crate::library::{LookTarget, Model};
+use crate::state::{Command, title};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 

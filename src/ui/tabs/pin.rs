@@ -8,7 +8,7 @@ use crate::anim::{JointIndex, TimeRange};
 use crate::asset::Slot;
 use crate::library::Model;
 use crate::retarget::{Pin, PinGoal, PinTimes};
-use crate::state::{Command, pinning, play_range, title};
+use crate::state::{Command, active_take, play_range, title};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, ou
     let skeleton = &model.asset.skeleton;
     let number = skeleton.source_index(joint);
     let before = shown.state.edits.pins.get(&number).copied();
-    let allows = |goal| pinning(model, shown.state, None).allows(number, goal);
+    let allows = |goal| active_take(model, shown.state).pinning(None).allows(number, goal);
     let is_head = model.recognition().slot(joint) == Some(Slot::Head);
     let Some(character) = shown.frame.characters.first() else { return };
     let world_from = |joint: JointIndex| character.world_from_joint[joint.get()];

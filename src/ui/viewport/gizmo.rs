@@ -6,7 +6,8 @@ use glam::{Quat, Vec3};
 use super::canvas::Canvas;
 use super::panes::{pane_at, to_screen};
 use crate::anim::Transform;
-use crate::state::{Command, manual_degrees};
+use crate::library::manual_degrees;
+use crate::state::Command;
 use crate::ui::{Output, Shown, UiState, style};
 
 const RADIUS_POINTS: f32 = 72.0;

@@ -1,8 +1,8 @@
 //! Metadata, real files, and files with invalid values.
 
 use gaitway::formats::load;
-use gaitway::library::{Model, Motion, inspect};
-use gaitway::state::{Command, LookTarget, ViewerState, apply};
+use gaitway::library::{LookTarget, Model, Motion, inspect};
+use gaitway::state::{Command, ViewerState, apply};
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 

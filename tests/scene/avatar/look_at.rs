@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use gaitway::library::Motion;
-use gaitway::state::{CameraChoice, Command, LookTarget, OrbitCamera, ViewerState, apply};
+use gaitway::library::{LookTarget, Motion};
+use gaitway::state::{CameraChoice, Command, OrbitCamera, ViewerState, apply};
 use glam::{Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 

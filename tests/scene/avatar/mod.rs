@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model};
-use gaitway::state::{LookTarget, ViewerState};
+use gaitway::library::{Library, LookTarget, Model};
+use gaitway::state::ViewerState;
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 

@@ -6,8 +6,8 @@ use gaitway::anim::{ClipBuilder, Interpolation, Keys};
 use gaitway::asset::Asset;
 use gaitway::editor::{Contents, Editor, Event};
 use gaitway::files::{Role, read_paths};
-use gaitway::library::Model;
-use gaitway::retarget::{Feet, RootOptions, RootPart};
+use gaitway::library::{ClipId, LayeredClip, Model};
+use gaitway::retarget::{ClipLayer, Feet, LayerMode, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, active_clip, from_link, resolve_camera,
@@ -93,6 +93,36 @@ fn runner_from(x: f32, metres: f32) -> Contents {
     parts.clips = vec![clip.build()];
     let model = Model::new("runner.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());
     Contents { models: vec![model.into()], ..Contents::default() }
+}
+
+#[test]
+fn a_joint_that_is_dragged_never_moves_the_camera() {
+    const UPPER_ARM: usize = 7;
+    let mut editor = editor("sample:walker");
+    let (before, state) = (view(&editor), editor.state().clone());
+    for turn_degrees in [40.0, 80.0] {
+        editor.apply(Command::SetPose { joint: UPPER_ARM, degrees: Some([0.0, 0.0, turn_degrees]) });
+        assert_eq!(view(&editor), before);
+    }
+    let automatic = ViewerState { camera: CameraChoice::Auto, ..editor.state().clone() };
+    assert_ne!(resolve_camera(editor.library(), &automatic, 1.6), before, "it would have moved");
+    editor.undo();
+    assert_eq!((view(&editor), editor.state()), (before, &state));
+    editor.redo();
+    assert_eq!(view(&editor), before);
+}
+
+#[test]
+fn a_layer_is_framed_like_a_clip() {
+    let mut editor = editor("sample:pilot");
+    editor.open(runner(4.0), None, &mut any).expect("fits");
+    let near = view(&editor);
+    let layer = ClipLayer { mode: LayerMode::AdditiveToRest, ..ClipLayer::default() };
+    editor.apply(Command::SetLayers(vec![LayeredClip { clip: ClipId::Own(0), layer }]));
+    let far = view(&editor);
+    assert!(far.distance > 1.3 * near.distance, "{} {}", near.distance, far.distance);
+    editor.undo();
+    assert_eq!((view(&editor), editor.state().camera), (near, CameraChoice::Auto));
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use gaitway::anim::TimeRange;
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{ClipEdits, ClipId, Model, ModelClip};
+use gaitway::library::{ClipEdits, ClipId, LayeredClip, Model, ModelClip};
 use gaitway::retarget::{ClipChanges, ClipLayer, JointMap};
-use gaitway::state::{ClipChoice, ClipEdit, Command, Edits, LayeredClip, active_clip, active_map, from_link, to_link};
+use gaitway::state::{ClipChoice, ClipEdit, Command, Edits, active_clip, active_map, from_link, to_link};
 
 use super::{editor, open_motion, title};
 use crate::by_place::{ByPlace, motion_at};

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{ClipId, Model};
+use gaitway::library::{ClipId, LayeredClip, Model};
 use gaitway::retarget::{ClipChanges, ClipLayer, JointMap};
-use gaitway::state::{ClipChoice, ClipEdit, Command, LayeredClip, from_link, to_link};
+use gaitway::state::{ClipChoice, ClipEdit, Command, from_link, to_link};
 
 use super::{editor, motions, open_motion, title};
 use crate::by_place::{ByPlace, motion_at};

@@ -13,7 +13,7 @@ use gaitway::frame::{Frame, evaluate, travelled};
 use gaitway::library::{Library, Model, Motion, inspect};
 use gaitway::retarget::{JointMap, propose};
 use gaitway::samples;
-use gaitway::state::{CameraChoice, ClipChoice, Command, Fade, Playhead, PoseSampler, ViewerState};
+use gaitway::state::{CameraChoice, ClipChoice, Command, Fade, Playhead, ViewerState};
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ use self::shown::shown;
 use crate::allocation::allocations_while_playing;
 use crate::build_gltf::{Build, warnings};
 use crate::by_place::ByPlace;
-use crate::data::{library_of, open};
+use crate::data::{library_of, open, sampled};
 use crate::data_folder::data_folder;
 
 /// Compares every animated property with the file's keys at these times, and returns the pointers that aren't shown.
@@ -314,9 +314,7 @@ fn retargeted_clips_have_no_properties_and_crossfades_switch_halfway() {
         let clip = |index: usize| ClipChoice::Clip(model.id_at(index));
         let fade = Some(Fade { clip: clip(from), time_secs: 0.0, elapsed_secs });
         let playhead = Playhead { clip: clip(to), fade, ..Playhead::default() };
-        let mut sampler = PoseSampler::default();
-        sampler.sample(model, &ViewerState { playhead, ..ViewerState::default() });
-        sampler.properties.get(BASE_COLOR) == Some(RED)
+        sampled(model, &ViewerState { playhead, ..ViewerState::default() }).properties.get(BASE_COLOR) == Some(RED)
     };
     for (elapsed_secs, is_old) in [(0.0, true), (0.19, true), (0.21, false), (0.4, false)] {
         assert_eq!(is_red(0, borrowed, elapsed_secs), is_old, "{elapsed_secs}");

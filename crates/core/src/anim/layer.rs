@@ -95,8 +95,9 @@ impl Transformx4 {
     }
 
     fn plus(&self, value: &Self, reference: &Self, weight: f32) -> Self {
-        let ratio =
-            |value: Vec4, reference: Vec4| Vec4::select(reference.cmpeq(Vec4::ZERO), Vec4::ONE, value / reference);
+        // Some exporters write a scale of zero as 1e-12.
+        let is_zero = |scale: Vec4| scale.abs().cmplt(Vec4::splat(1e-6));
+        let ratio = |value: Vec4, reference| Vec4::select(is_zero(reference), Vec4::ONE, value / reference);
         let translation = |own: Vec4, value: Vec4, reference: Vec4| own + (value - reference) * weight;
         let scale = |own: Vec4, value, reference| own * (Vec4::ONE + (ratio(value, reference) - Vec4::ONE) * weight);
         let turn = value.rotation.normalized().times(&reference.rotation.normalized().conjugate());

@@ -9,6 +9,7 @@ mod lints;
 mod model;
 mod motion;
 mod rig;
+mod take;
 
 pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expressions};
 pub use clips::{ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, clip_file_name};
@@ -18,11 +19,15 @@ pub use lints::joint_of_place;
 pub use model::{Derived, Finding, Model, ModelId};
 pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
+pub use take::{
+    BakedTake, Held, LayeredClip, LookTarget, Moment, Outgoing, Take, TakeSampler, manual_degrees, manual_rotation,
+};
 
 use std::sync::{Arc, OnceLock};
 
 use crate::anim::Clip;
 use crate::asset::Panorama;
+use crate::mesh::Bounds;
 use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
 
 /// The active model and the files it borrows from.
@@ -88,6 +93,7 @@ pub struct Library {
     borrow_errors: Vec<BorrowError>,
     /// The most recent last.
     environments: Vec<Environment>,
+    bounds: take::BoundsCache,
     next_id: u64,
 }
 
@@ -328,6 +334,11 @@ impl Library {
         let model = self.active()?;
         let borrowed = model.clip(clip)?.borrowed()?;
         borrowed.measured(model.body(), self.motion(&borrowed.motion)?.body())
+    }
+
+    /// World-space bounds of a take in a scene, with nothing hidden, cached. `in_place` removes the root's ground-plane travel.
+    pub fn bounds(&self, take: &Take<'_>, scene: Option<usize>, in_place: bool) -> Bounds {
+        self.bounds.get(take, scene, in_place)
     }
 
     /// Errors of the last [`Library::borrow_each`].

@@ -3,8 +3,7 @@
 //! A changed clip takes the place of its original, so that the player, exporters and panels need to know nothing of changes.
 //! An empty stage is a model, too, with one node and no surfaces, so that nothing else has to do without one.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Vec3};
 
@@ -14,7 +13,7 @@ use super::clips::{ClipEdits, ClipId, Clips, ModelClip};
 use super::extent::Extent;
 use super::lints::{joint_of_place, lint};
 use super::rig::Rig;
-use crate::anim::{Clip, Joint, JointIndex, PropertyValues, SampleCursor, Skeleton, model_from_joint};
+use crate::anim::{Joint, JointIndex, Skeleton};
 use crate::asset::{Asset, AssetParts, Humanoid, MeshInstance, SceneJoints, Warning};
 use crate::mesh::{Bounds, Mesh};
 use crate::retarget::{Body, Recognized, Symmetry, recognize};
@@ -45,8 +44,6 @@ pub struct Model {
     findings: OnceLock<Vec<Finding>>,
     rig: Rig,
     extent: Extent,
-    /// With the clip that each was computed from.
-    swept: Mutex<BTreeMap<SweptKey, (Option<Clip>, Bounds)>>,
 }
 
 /// What a model derives from an asset whatever its images are: their decoding needn't be awaited for it.
@@ -75,19 +72,7 @@ pub struct Finding {
     pub joint: Option<JointIndex>,
 }
 
-/// Key of cached clip bounds.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct SweptKey {
-    scene: Option<usize>,
-    clip: Option<ClipId>,
-    /// Without the root's ground-plane travel.
-    in_place: bool,
-}
-
 impl Model {
-    /// Poses sampled to find a clip's bounds.
-    const SWEEP_SAMPLES: usize = 24;
-
     /// Wraps an asset. `images` has one entry per image of the asset. The origin is the source until the caller sets
     /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
@@ -119,7 +104,6 @@ impl Model {
             findings: OnceLock::new(),
             rig,
             extent,
-            swept: Mutex::default(),
         };
         model.list_clips(&[], ClipEdits::default());
         model
@@ -168,11 +152,6 @@ impl Model {
         let before = std::mem::take(&mut self.clips);
         let symmetry = || Symmetry::of(&self.asset, &self.recognized);
         self.clips = Clips::new(&self.source, &self.asset, self.rig.roots(), borrowed, edits, before, symmetry);
-        let clips = &self.clips;
-        let now = |id: &ClipId| clips.get(id).map(ModelClip::clip);
-        if let Ok(swept) = self.swept.get_mut() {
-            swept.retain(|key, (clip, _)| Clip::are_same(clip.as_ref(), key.clip.as_ref().and_then(now)));
-        }
     }
 
     /// The reader's warnings, then the lints, which are computed on first use.
@@ -273,72 +252,5 @@ impl Model {
     /// Approximate center of a mesh instance in a pose, for sorting.
     pub fn instance_center(&self, instance: usize, world_from_joint: &[Affine3A]) -> Vec3 {
         self.extent.instance_center(&self.asset, instance, world_from_joint)
-    }
-
-    /// World-space bounds of a whole clip (without one, of the rest pose) in a scene, cached. `in_place` removes the
-    /// root's ground-plane travel.
-    pub fn clip_bounds(&self, scene: Option<usize>, clip: Option<&ClipId>, in_place: bool) -> Bounds {
-        let key = SweptKey { scene: self.scene(scene), clip: clip.cloned(), in_place };
-        if let Some(bounds) = self.swept.lock().ok().and_then(|swept| Some(swept.get(&key)?.1)) {
-            return bounds;
-        }
-        let bounds = self.sweep(&key, &[]);
-        if let Ok(mut swept) = self.swept.lock() {
-            let swept_clip = clip.and_then(|clip| self.clip(clip)).map(|clip| clip.clip().clone());
-            swept.insert(key, (swept_clip, bounds));
-        }
-        bounds
-    }
-
-    /// Returns [`Self::clip_bounds`] without the meshes on these joints and their descendants. Not cached.
-    pub fn clip_bounds_without(
-        &self,
-        scene: Option<usize>,
-        clip: Option<&ClipId>,
-        in_place: bool,
-        hidden: &[JointIndex],
-    ) -> Bounds {
-        self.sweep(&SweptKey { scene: self.scene(scene), clip: clip.cloned(), in_place }, hidden)
-    }
-
-    fn sweep(&self, key: &SweptKey, hidden: &[JointIndex]) -> Bounds {
-        let skeleton = &self.asset.skeleton;
-        let (mut scene, mut values) = (SceneJoints::new(&self.asset, key.scene), PropertyValues::default());
-        scene.hide(hidden.iter().copied());
-        scene.show(&self.asset, &values);
-        let mut pose = skeleton.rest().clone();
-        let mut world_from_joint = Vec::with_capacity(skeleton.len());
-        let Some(played) = key.clip.as_ref().and_then(|clip| self.clip(clip)) else {
-            if key.scene == self.asset.default_scene && hidden.is_empty() {
-                return self.rest_bounds();
-            }
-            model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
-            return self.pose_bounds(&world_from_joint, &pose.morph_weights, &scene);
-        };
-        let (clip, root) = (played.clip(), played.root().filter(|_| key.in_place));
-        let mut start = None;
-        let mut cursor = SampleCursor::default();
-        let mut bounds = Bounds::EMPTY;
-        for sample in 0..=Self::SWEEP_SAMPLES {
-            let time_secs = clip.duration_secs() * sample as f32 / Self::SWEEP_SAMPLES as f32;
-            pose.copy_from(skeleton.rest());
-            clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
-            model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
-            clip.sample_properties(time_secs, &mut cursor, &mut values);
-            scene.show(&self.asset, &values);
-            let mut at_time = self.pose_bounds(&world_from_joint, &pose.morph_weights, &scene);
-            if let Some(root) = root {
-                let position = Vec3::from(world_from_joint[root.get()].translation);
-                let travel = (position - *start.get_or_insert(position)) * Vec3::new(1.0, 0.0, 1.0);
-                if travel.is_finite() && !at_time.is_empty() {
-                    at_time = Bounds { min: at_time.min - travel, max: at_time.max - travel };
-                }
-            }
-            bounds = bounds.union(at_time);
-            if clip.duration_secs() <= 0.0 {
-                break;
-            }
-        }
-        bounds
     }
 }

@@ -1,0 +1,50 @@
+//! A take as one ordinary clip, for files.
+
+use std::borrow::Cow;
+
+use glam::Vec3;
+
+use super::Take;
+use crate::anim::{Clip, ClipBuilder};
+use crate::retarget::{Baking, ClipOverLayers, bake_layers, bake_stack};
+
+/// A clip with everything that is laid over it.
+#[derive(Debug)]
+pub struct BakedTake<'a> {
+    /// The clip: the take's own where nothing is laid over it.
+    pub clip: Cow<'a, Clip>,
+    /// How layers were brought to end together; `None` without layers.
+    pub baking: Option<Baking>,
+    /// Whether joints are held in it.
+    pub is_posed: bool,
+}
+
+impl<'a> Take<'a> {
+    /// Bakes the whole clip, with what plays below it, layers, held values and pins; the avatar is up to whoever plays it. `loops` is
+    /// how many loops of the clip to write; without it, as few as let the layers end with it. The rest pose is a clip without keys.
+    /// `eye` is the camera's position in world space, which pinned gazes at the camera keep.
+    pub fn bake(&self, loops: Option<usize>, eye: Option<Vec3>) -> BakedTake<'a> {
+        let (skeleton, over) = (&self.model.asset.skeleton, self.stacked());
+        let clip = match self.clip {
+            Some(ClipOverLayers { clip, .. }) => Cow::Borrowed(clip),
+            None => Cow::Owned(ClipBuilder::new("", skeleton).build()),
+        };
+        let below = self.clip.map_or(&[][..], |over| over.below);
+        let period_secs = f64::from(clip.duration_secs());
+        let mut baked = BakedTake { clip, baking: None, is_posed: !self.held.rotations.is_empty() };
+        if !below.is_empty() || !over.is_empty() || loops.is_some_and(|loops| loops > 1) {
+            let baking = self.baking(&over, loops);
+            let layered = bake_layers(&self.model.asset, &baked.clip, below, &baking);
+            baked.clip = Cow::Owned(if over.is_empty() { layered } else { bake_stack(skeleton, &layered, &over) });
+            baked.baking = Some(baking);
+        }
+        if let Some(held) = self.held.hold(self.model, &baked.clip) {
+            baked.clip = Cow::Owned(held);
+        }
+        if !self.pins.is_empty() {
+            // Pins repeat with the clip, not with its layers.
+            baked.clip = Cow::Owned(self.pinning(eye).bake(&baked.clip, period_secs));
+        }
+        baked
+    }
+}
