@@ -15,6 +15,7 @@ mod open;
 mod reduced_motion;
 mod steps;
 mod suit;
+mod transact;
 mod validation;
 
 pub use clip_file::{ClipFormat, write_clip};
@@ -33,10 +34,11 @@ use serde_json::Value;
 
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
-    ClipChoice, ClipEdit, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState,
-    from_object, looks_past, view_problems,
+    ClipChoice, Command, DEFAULT_ASPECT, EnvironmentChoice, History, LinkError, OrbitCamera, ViewerState, from_object,
+    looks_past, view_problems,
 };
 use open::Shelved;
+use transact::Change;
 
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
 pub type Admit<'a> = &'a mut dyn FnMut(&crate::library::Model) -> Result<(), String>;
@@ -135,44 +137,32 @@ impl Editor {
     /// Applies a command, keeping the camera where the user expects it. Ignores a replacement state whose files are not the
     /// loaded ones: something else was opened after it was requested.
     pub fn apply(&mut self, command: Command) {
-        if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
-            return;
+        match command {
+            Command::Replace(view) if self.has_files_of(&view) => {
+                let problems = self.transact(Change::View, |editor| editor.set_view(*view.clone()));
+                self.settle_view(&view, problems);
+            }
+            Command::Replace(_) => {}
+            // Nothing follows from time, which must not cost a copy of the state in every frame.
+            Command::Advance(_) => {
+                self.needs_redraw = true;
+                let command = self.prepare_camera(command);
+                self.record(command);
+            }
+            command => self.edit(command),
         }
-        let view = if let Command::Replace(view) = &command { Some(view.clone()) } else { None };
-        let command = self.command_with_reduced_motion(command);
-        self.is_changed |= !matches!(command, Command::Advance(_));
-        self.needs_redraw = true;
-        let affects_retargeting = affects_retargeting(&command);
-        let chooses_copy = matches!(command, Command::EditClip { edit: ClipEdit::Copy(_) | ClipEdit::RemoveCopy, .. });
-        // A whole view chooses its clip itself.
-        let is_map_edit = affects_retargeting && !chooses_copy && !matches!(command, Command::Replace(_));
-        let reframes = matches!(command, Command::SetUp(_));
-        let is_other_clip = (chooses_copy || matches!(command, Command::SetClip(_))) && self.automatic_view().is_some();
-        self.suits_follow &= !matches!(command, Command::SetFollow(_) | Command::Replace(_));
+    }
+
+    fn edit(&mut self, command: Command) {
+        self.suits_follow &= !matches!(command, Command::SetFollow(_));
         let rematched = self.map_to_rematch(&command);
-        let holds_view = is_map_edit || overrides_clip(&command);
-        let view_before = if holds_view { self.automatic_view() } else { None };
-        let may_choose_clip = is_map_edit || chooses_copy || matches!(command, Command::SetClip(_));
-        let followed = if may_choose_clip { self.followed_place() } else { None };
         self.notify_follow(&command);
         self.tell_source(&command);
-        let command = self.prepare_camera(command);
-        self.record(command);
-        if reframes {
-            self.apply(Command::FrameAll);
-        }
-        if affects_retargeting {
-            let problems = self.retarget();
-            match view {
-                Some(view) => self.settle_view(&view, problems),
-                None => self.report(problems),
-            }
-        }
-        if is_other_clip {
-            self.suit_automatic_follow();
-        }
-        self.hold_view(view_before);
-        self.follow_to_place(followed);
+        let problems = self.transact(Change::Edit, |editor| {
+            let command = editor.prepare_camera(command);
+            editor.record(command);
+        });
+        self.report(problems);
         if let Some((motion, before)) = rematched {
             self.notify_rematch(&motion, &before);
         }
@@ -195,9 +185,7 @@ impl Editor {
         self.suits_follow &= partial.get("follow").is_none();
         state.retarget.feet_are_automatic &= partial.get("feet").is_none();
         let view = state.clone();
-        self.record(Command::Replace(Box::new(state)));
-        let problems = self.retarget();
-        (self.needs_redraw, self.is_changed) = (true, true);
+        let problems = self.transact(Change::View, |editor| editor.record(Command::Replace(Box::new(state))));
         if problems.is_empty() {
             let mut unusable = view_problems(&view, self.library.active());
             unusable.retain(|problem| partial.get(problem.key()).is_some());
@@ -288,33 +276,3 @@ impl Editor {
 }
 
 const OTHER_FILES: &str = "something else was opened in the meantime";
-
-/// Whether the command sets what overrides the clip, often by a drag during which the view must not jump.
-fn overrides_clip(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::SetMorph { .. }
-            | Command::ClearMorphs
-            | Command::SetExpression { .. }
-            | Command::ClearExpressions
-            | Command::SetPose { .. }
-            | Command::ClearPose
-            | Command::SetPin { .. }
-    )
-}
-
-/// Whether the command changes what retargeted or changed clips depend on.
-fn affects_retargeting(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::Replace(_)
-            | Command::SetMap { .. }
-            | Command::SetSource { .. }
-            | Command::EditMap { .. }
-            | Command::SetUnmapped(_)
-            | Command::SetRoot(_)
-            | Command::SetFeet(_)
-            | Command::SetContacts(_)
-            | Command::EditClip { .. }
-    )
-}

@@ -1,6 +1,7 @@
 //! Opening and removing motions, and retargeting their clips to the active model. Operations that fail change nothing; those
 //! that succeed can be undone.
 
+use super::transact::Change;
 use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
 use crate::asset::Warning;
 use crate::library::{BorrowError, ClipId, Library, Model, ModelId, Motion, MotionId, names_checksum};
@@ -109,8 +110,7 @@ impl Editor {
         let mut all: Vec<Motion> = self.others(&motions).cloned().collect();
         all.extend(motions);
         self.state.retarget.map.extend(maps);
-        self.set_motions(all);
-        self.retarget()
+        self.transact(Change::View, |editor| editor.set_motions(all))
     }
 
     /// Returns the first clip of motions that were added last.
@@ -285,9 +285,7 @@ impl Editor {
         if motions.is_empty() {
             self.state.retarget = RetargetEdits::default();
         }
-        self.set_motions(motions);
-        self.retarget();
-        (self.needs_redraw, self.is_changed) = (true, true);
+        self.transact(Change::View, |editor| editor.set_motions(motions));
     }
 
     /// Removes a motion and all others from the same archive.
@@ -339,7 +337,6 @@ impl Editor {
         self.remember(before);
         self.report(problems);
         self.events.push(Event::MapStarted);
-        (self.needs_redraw, self.is_changed) = (true, true);
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use super::motions::{Playing, without_still};
 use super::names::is_obj;
+use super::transact::Change;
 use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::asset::{Asset, Warning};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion, MotionId};
@@ -187,13 +188,18 @@ impl Editor {
             self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map, is_by_hand && !keeps_view)
         } else {
-            self.library.set_motions(motions);
-            match view.clone() {
-                Some(view) => self.set_view(view),
-                None => self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view),
+            let problems = self.transact(Change::View, |editor| {
+                editor.library.set_motions(motions);
+                match view.clone() {
+                    Some(view) => editor.set_view(view),
+                    None => editor.state = editor.view_of_opened_model(origin, keeps_motions, keeps_view),
+                }
+                editor.state.retarget.map.extend(map);
+            });
+            match view {
+                Some(view) => self.settle_view(&view, problems),
+                None => self.report(problems),
             }
-            self.state.retarget.map.extend(map);
-            self.finish_view(view.as_ref());
             None
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
@@ -215,7 +221,7 @@ impl Editor {
     }
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
-    fn set_view(&mut self, view: ViewerState) {
+    pub(super) fn set_view(&mut self, view: ViewerState) {
         let mut view = self.view_with_reduced_motion(view);
         view.retarget.feet_are_automatic = false;
         (self.held_camera, self.suits_follow) = (None, false);
@@ -388,20 +394,13 @@ impl Editor {
             self.events.extend([Event::ViewOpened, Event::ModelOpened]);
         }
         self.remember(before);
-        self.set_view(view.clone());
-        self.state.retarget.map.extend(map);
-        self.library.set_motions(motions);
-        self.finish_view(Some(&view));
+        let problems = self.transact(Change::View, |editor| {
+            editor.set_view(view.clone());
+            editor.state.retarget.map.extend(map);
+            editor.library.set_motions(motions);
+        });
+        self.settle_view(&view, problems);
         Ok(())
-    }
-
-    /// Retargets the motions that were loaded with a model, and reports what can't be shown of a link's view.
-    fn finish_view(&mut self, view: Option<&ViewerState>) {
-        let problems = self.retarget();
-        match view {
-            Some(view) => self.settle_view(view, problems),
-            None => self.report(problems),
-        }
     }
 
     /// Completes a model that was opened before its images had arrived, if it is still loaded. Neither the view nor the history
@@ -447,10 +446,11 @@ impl Editor {
         let old = std::mem::take(&mut self.state);
         // Where an orbit camera's target is depends on it.
         let follow = if is_first_time { &old } else { &view }.camera_options.follow;
-        self.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
-        self.state.camera_options.follow = follow;
-        self.library.set_motions(motions);
-        self.retarget();
+        self.transact(Change::View, |editor| {
+            editor.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
+            editor.state.camera_options.follow = follow;
+            editor.library.set_motions(motions);
+        });
         let dropped = self.drop_incompatible_motions();
         let mut about_clip = None;
         match playing {
@@ -466,7 +466,6 @@ impl Editor {
             self.notify(sentences.join(" "));
         }
         self.suit_automatic_follow();
-        (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
     }
 
@@ -507,7 +506,6 @@ impl Editor {
         let mut model = Model::new(motion.source.clone(), motion.asset.clone(), images);
         (model.origin, model.is_own) = (motion.origin.clone(), motion.is_own);
         let companions = Companions { motions: Some(Vec::new()), map: None, view: None, is_by_hand: true };
-        (self.needs_redraw, self.is_changed) = (true, true);
         self.open_models(vec![model.into()], companions, admit)
     }
 }

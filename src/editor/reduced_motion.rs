@@ -2,7 +2,7 @@
 //! never written to links.
 
 use super::{Admit, Contents, Editor};
-use crate::state::{Command, SavedMotion, ViewerState};
+use crate::state::{SavedMotion, ViewerState};
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ReducedMotion {
@@ -51,21 +51,6 @@ impl Editor {
             (self.state.camera_options.turntable, self.reduced_motion.saved.turntable) = (turns, None);
         }
         Ok(())
-    }
-
-    /// Applies the preference to the view of a command that replaces the state.
-    pub(super) fn command_with_reduced_motion(&mut self, command: Command) -> Command {
-        match command {
-            Command::Replace(view) => {
-                let view = self.view_with_reduced_motion(*view);
-                self.held_camera = None;
-                // Set before the command is recorded, so that it doesn't count as the user's own change.
-                let calm = (view.playback.playing, view.camera_options.turntable);
-                (self.state.playback.playing, self.state.camera_options.turntable) = calm;
-                Command::Replace(Box::new(view))
-            }
-            command => command,
-        }
     }
 
     pub(super) fn moving_parts(&self) -> (bool, f32) {

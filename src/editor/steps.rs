@@ -1,9 +1,10 @@
 //! Undo and redo. A notice says when that activates, lists or closes another model, or removes or restores a motion: the user
 //! may have opened it long ago.
 
+use super::transact::Change;
 use super::{Editor, Event, short_name};
 use crate::library::ModelId;
-use crate::state::{Edited, OrbitCamera, ViewerState};
+use crate::state::{Edited, History};
 
 impl Editor {
     /// Returns whether there is a step to undo.
@@ -48,45 +49,37 @@ impl Editor {
 
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
-        let before = self.before_step(self.history.would_undo_motion(&self.state));
-        let done = self.history.undo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
-        if done {
-            self.finish_step(before, true);
-        }
-        done
+        self.step(true)
     }
 
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
-        let before = self.before_step(self.history.would_redo_motion(&self.state));
-        let done = self.history.redo(&mut self.state, &mut self.reduced_motion.saved, &mut self.library);
-        if done {
-            self.finish_step(before, false);
-        }
-        done
+        self.step(false)
     }
 
-    fn before_step(&self, is_motion: bool) -> BeforeStep {
-        BeforeStep {
-            state: self.state.clone(),
-            names: self.loaded_names(),
-            view: if is_motion { self.automatic_view() } else { None },
-        }
-    }
-
-    fn finish_step(&mut self, before: BeforeStep, is_undo: bool) {
-        let BeforeStep { state, names: before, view } = before;
-        (self.needs_redraw, self.is_changed) = (true, true);
-        let after = self.loaded_names();
-        let notice = step_notice(&before, &after, if is_undo { "Redo" } else { "Undo" });
-        let edited = if notice.is_none() { Edited::between(&state, &self.state) } else { None };
-        self.events.push(Event::Stepped { is_undo, edited });
-        let problems = self.retarget();
+    fn step(&mut self, is_undo: bool) -> bool {
+        let is_edit = match is_undo {
+            true if self.can_undo() => self.history.would_undo_edit(),
+            false if self.can_redo() => self.history.would_redo_edit(),
+            _ => return false,
+        };
+        // A step that opened or removed something restores its own clip and view.
+        let kind = if is_edit { Change::Edit } else { Change::View };
+        let (before, names) = (self.state.clone(), self.loaded_names());
+        let mut edited = None;
+        let problems = self.transact(kind, |editor| {
+            let Self { history, state, reduced_motion, library, .. } = &mut *editor;
+            let step = if is_undo { History::undo } else { History::redo };
+            step(history, state, &mut reduced_motion.saved, library);
+            edited = Edited::between(&before, state);
+        });
+        let notice = step_notice(&names, &self.loaded_names(), if is_undo { "Redo" } else { "Undo" });
+        self.events.push(Event::Stepped { is_undo, edited: edited.filter(|_| notice.is_none()) });
         self.report(problems);
         if let Some(text) = notice {
             self.notify(text);
         }
-        self.hold_view(view);
+        true
     }
 
     fn loaded_names(&self) -> LoadedNames {
@@ -96,14 +89,6 @@ impl Editor {
             motions: self.library.motions().iter().map(|motion| short_name(&motion.source)).collect(),
         }
     }
-}
-
-/// What a step may change. A step that opened or removed something restores its own clip and view.
-struct BeforeStep {
-    state: ViewerState,
-    names: LoadedNames,
-    /// What the camera showed before an edit of how the body moves, unless the user has chosen the view.
-    view: Option<OrbitCamera>,
 }
 
 struct LoadedNames {

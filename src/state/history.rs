@@ -139,14 +139,14 @@ impl History {
         self.future.last().is_some_and(|step| step.is_of_retargeting(state))
     }
 
-    /// Whether the last step edited how the body moves in a clip: by retargeting, changes, or what overrides the clip.
-    pub fn would_undo_motion(&self, state: &ViewerState) -> bool {
-        self.past.last().is_some_and(|step| step.is_of_motion(state))
+    /// Whether the last step changed nothing but edits.
+    pub fn would_undo_edit(&self) -> bool {
+        matches!(self.past.last(), Some(Step::Edits(_)))
     }
 
     /// Whether the last undone step did.
-    pub fn would_redo_motion(&self, state: &ViewerState) -> bool {
-        self.future.last().is_some_and(|step| step.is_of_motion(state))
+    pub fn would_redo_edit(&self) -> bool {
+        matches!(self.future.last(), Some(Step::Edits(_)))
     }
 
     /// Whether the editor made the last step, not the user.
@@ -183,14 +183,6 @@ impl Step {
             if before.retarget != state.retarget
                 || before.edits.clips != state.edits.clips
                 || before.edits.layers != state.edits.layers)
-    }
-
-    /// Whether taking the step changes nothing but edits, and among them some of how the body moves. Layers choose clips.
-    fn is_of_motion(&self, state: &ViewerState) -> bool {
-        matches!(self, Self::Edits(before)
-            if before.retarget != state.retarget
-                || before.edits.clips != state.edits.clips
-                || !before.edits.overrides_like(&state.edits))
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.

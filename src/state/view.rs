@@ -210,7 +210,7 @@ impl Edits {
     pub const EXPRESSION_WEIGHT: RangeInclusive<f32> = 0.0..=1.0;
 
     /// Whether the same overrides the clip.
-    pub(super) fn overrides_like(&self, other: &Self) -> bool {
+    pub fn overrides_like(&self, other: &Self) -> bool {
         let Self { morph, expressions, pose, pins, .. } = self;
         (morph, expressions, pose, pins) == (&other.morph, &other.expressions, &other.pose, &other.pins)
     }

@@ -1,0 +1,62 @@
+//! Changes of the view, and what the editor does about them: whatever changes it, what has changed decides what follows.
+
+use glam::Vec3;
+
+use super::Editor;
+use crate::library::ClipId;
+use crate::state::{Command, OrbitCamera, ViewerState};
+
+/// What a change is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    /// An edit of what is shown: the camera stays where the user expects it.
+    Edit,
+    /// Another view, or other files: they come with a clip and a camera of their own.
+    View,
+}
+
+/// What is compared with the view after a change.
+struct Before {
+    state: ViewerState,
+    /// What the viewport shows if the camera is automatic.
+    view: Option<OrbitCamera>,
+    /// See [`Editor::followed_place`].
+    place: Option<(Option<ClipId>, Vec3)>,
+}
+
+impl Editor {
+    /// Makes a change and reacts to what differs after it. Returns the problems of retargeting.
+    pub(super) fn transact(&mut self, kind: Change, change: impl FnOnce(&mut Self)) -> Vec<String> {
+        let before = match kind {
+            Change::Edit => {
+                Some(Before { state: self.state.clone(), view: self.automatic_view(), place: self.followed_place() })
+            }
+            Change::View => None,
+        };
+        change(self);
+        (self.needs_redraw, self.is_changed) = (true, true);
+        match before {
+            Some(before) => self.react(before),
+            None => self.retarget(),
+        }
+    }
+
+    fn react(&mut self, Before { state: before, view, place }: Before) -> Vec<String> {
+        let (old, new) = (&before.edits, &self.state.edits);
+        let is_retargeted = before.retarget != self.state.retarget || old.clips != new.clips;
+        let is_moved = is_retargeted || !old.overrides_like(new);
+        let has_turned = old.up != new.up;
+        let has_chosen_clip = before.playhead.clip != self.state.playhead.clip;
+        let problems = if is_retargeted { self.retarget() } else { Vec::new() };
+        if has_turned {
+            self.apply(Command::FrameAll);
+        }
+        if has_chosen_clip && view.is_some() {
+            self.suit_automatic_follow();
+        } else if is_moved {
+            self.hold_view(view);
+        }
+        self.follow_to_place(place);
+        problems
+    }
+}
