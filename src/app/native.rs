@@ -155,7 +155,7 @@ impl Host for Window {
     }
 
     fn state_changed(&self, state: &ViewerState, _: &Library) {
-        let title = match state.sources.model.first() {
+        let title = match state.character.sources.model.first() {
             Some(model) => format!("{model} – Gaitway"),
             None => "Gaitway".to_owned(),
         };

@@ -378,7 +378,7 @@ impl App {
         /// Pauses (a hidden page, a long load) are skipped, not caught up.
         const MAX_STEP_SECS: f32 = 0.25;
         let state = self.editor.state();
-        let has_motion = self.shown().is_animated() || state.playhead.fade.is_some();
+        let has_motion = self.shown().is_animated() || state.character.playhead.fade.is_some();
         let is_moving = (state.playback.playing && has_motion) || state.is_turning();
         if !self.has_begun || !is_moving || self.panels.holds_time || self.recording.is_some() {
             return;

@@ -12,7 +12,7 @@ use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Held, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, view_problems};
+use crate::state::{CharacterView, ClipChoice, Command, Sources, ViewerState, from_link, view_problems};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
@@ -138,14 +138,18 @@ pub(super) fn apply_link(
     let (view, errors) = from_link(fragment);
     errors.iter().for_each(|error| warn(&error.to_string()));
     let now = editor.state().clone();
-    let keeps_motions = arguments.motion.is_some() || view.sources.motion.is_empty();
-    let motion = if keeps_motions { now.sources.motion } else { view.sources.motion };
-    let retarget = if arguments.map.is_some() { now.retarget } else { view.retarget };
-    let sources = Sources { model: now.sources.model, motion, ..view.sources };
+    let keeps_motions = arguments.motion.is_some() || view.character.sources.motion.is_empty();
+    let motion = if keeps_motions { now.character.sources.motion } else { view.character.sources.motion };
+    let retarget = if arguments.map.is_some() { now.character.retarget } else { view.character.retarget };
+    let sources = Sources { model: now.character.sources.model, motion, ..view.character.sources };
     let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
     let (mut contents, view) = {
         let held = Held { motions: &held, environments: editor.library().environments() };
-        disk.open_view(ViewerState { sources, retarget, ..view }, false, held)?
+        disk.open_view(
+            ViewerState { character: CharacterView { sources, retarget, ..view.character }, ..view },
+            false,
+            held,
+        )?
     };
     std::mem::take(&mut contents.problems).iter().for_each(|problem| warn(problem));
     if keeps_motions {

@@ -202,7 +202,7 @@ impl Editor {
     fn baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
         let mut remarks = Vec::new();
         let is_active = active_clip(model, &self.state).is_some_and(|active| active.id() == source.id());
-        let has_range = self.state.playhead.range.is_some() && is_active;
+        let has_range = self.state.character.playhead.range.is_some() && is_active;
         remarks.extend(has_range.then_some("The file has the whole clip; “Trim to range” cuts it.".into()));
         let take = take_of(model, Some(source), &self.state);
         let eye = take.has_gaze_at_camera().then(|| self.eye());

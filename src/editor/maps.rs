@@ -30,7 +30,7 @@ pub enum MapProblem {
 /// Reconciles the maps of a view with the loaded files. Returns one map per pair of skeletons (the view's where it fits, else
 /// the proposal) and the maps that are still to be read, and says which maps are not used.
 pub fn reconciled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, Vec<MapProblem>) {
-    let held = &state.retarget.map;
+    let held = &state.character.retarget.map;
     let Some(model) = library.active().filter(|_| !library.motions().is_empty()) else {
         return (held.clone(), Vec::new());
     };

@@ -183,7 +183,7 @@ impl Editor {
         let before = self.state.clone();
         // What it says is no longer chosen automatically.
         self.suits_follow &= partial.get("follow").is_none();
-        state.retarget.feet_are_automatic &= partial.get("feet").is_none();
+        state.character.retarget.feet_are_automatic &= partial.get("feet").is_none();
         let view = state.clone();
         let problems = self.transact(Change::View, |editor| editor.record(Command::Replace(Box::new(state))));
         if problems.is_empty() {
@@ -222,7 +222,7 @@ impl Editor {
 
     /// Whether the state names the loaded files. Replacing the state loads none.
     fn has_files_of(&self, state: &ViewerState) -> bool {
-        let (new, now) = (&state.sources, &self.state.sources);
+        let (new, now) = (&state.character.sources, &self.state.character.sources);
         new.model == now.model && new.motion == now.motion
     }
 
@@ -232,7 +232,7 @@ impl Editor {
         let AboutLink { mut errors, is_partial } = std::mem::take(&mut self.about_link);
         if is_partial {
             if self.is_clip_unknown() {
-                self.state.playhead.clip = ClipChoice::First;
+                self.state.character.playhead.clip = ClipChoice::First;
             }
             return self.tell(&errors, Vec::new());
         }

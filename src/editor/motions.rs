@@ -109,7 +109,7 @@ impl Editor {
     ) -> Vec<String> {
         let mut all: Vec<Motion> = self.others(&motions).cloned().collect();
         all.extend(motions);
-        self.state.retarget.map.extend(maps);
+        self.state.character.retarget.map.extend(maps);
         self.transact(Change::View, |editor| editor.set_motions(all))
     }
 
@@ -140,7 +140,7 @@ impl Editor {
 
     fn set_motions(&mut self, motions: Vec<Motion>) {
         let model = self.library.active().map(|model| model.origin.clone());
-        self.state.sources.motion = Contents::motion_sources(&motions, model.as_deref());
+        self.state.character.sources.motion = Contents::motion_sources(&motions, model.as_deref());
         self.library.set_motions(motions);
         drop_orphaned_edits(&mut self.state, &self.library);
     }
@@ -167,7 +167,7 @@ impl Editor {
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(|problem| self.map_problem(problem)).collect();
-        if maps != self.state.retarget.map {
+        if maps != self.state.character.retarget.map {
             self.record(Command::ReconcileMaps(maps));
             self.is_changed = true;
         }
@@ -208,7 +208,7 @@ impl Editor {
     pub(super) fn retargeted_clip(&self) -> Option<Playing> {
         let clip = active_clip(self.library.active()?, &self.state)?;
         let clip = clip.id().motion().map(|_| clip.id().clone())?;
-        Some(Playing { clip, time_secs: self.state.playhead.time_secs })
+        Some(Playing { clip, time_secs: self.state.character.playhead.time_secs })
     }
 
     /// Whether the model lacks the clip that the state asks for.
@@ -257,7 +257,7 @@ impl Editor {
     pub(super) fn keep_retargeted(&mut self, playing: &Playing) -> bool {
         let is_there = self.has_clip(&playing.clip);
         if is_there {
-            self.state.playhead.clip = ClipChoice::Clip(playing.clip.clone());
+            self.state.character.playhead.clip = ClipChoice::Clip(playing.clip.clone());
         }
         is_there
     }
@@ -283,7 +283,7 @@ impl Editor {
     /// Removes all motions but these.
     fn keep_motions(&mut self, motions: Vec<Motion>) {
         if motions.is_empty() {
-            self.state.retarget = RetargetEdits::default();
+            self.state.character.retarget = RetargetEdits::default();
         }
         self.transact(Change::View, |editor| editor.set_motions(motions));
     }
@@ -325,7 +325,7 @@ impl Editor {
         for motion in &refused {
             let checksum = names_checksum(&model.asset, &motion.asset);
             let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::with_proposed_options() });
-            if !self.state.retarget.map.contains(&map) && !maps.contains(&map) {
+            if !self.state.character.retarget.map.contains(&map) && !maps.contains(&map) {
                 maps.push(map);
             }
         }

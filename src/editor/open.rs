@@ -13,7 +13,8 @@ use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, 
 use crate::asset::{Asset, Warning};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion, MotionId};
 use crate::state::{
-    ClipChoice, Command, Edits, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
+    CharacterView, ClipChoice, Command, Edits, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources,
+    ViewerState, apply,
 };
 
 /// Data kept with a loaded model.
@@ -151,7 +152,7 @@ impl Editor {
         if keeps_motions {
             self.check_room(&motions)?;
         }
-        let named = view.as_ref().and_then(|view| view.sources.model.first());
+        let named = view.as_ref().and_then(|view| view.character.sources.model.first());
         let at = models.iter().position(|opened| Some(&opened.model.origin) == named).unwrap_or(0);
         models.swap(0, at);
         let mut models = models.into_iter();
@@ -188,18 +189,7 @@ impl Editor {
             self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map, is_by_hand && !keeps_view)
         } else {
-            let problems = self.transact(Change::View, |editor| {
-                editor.library.set_motions(motions);
-                match view.clone() {
-                    Some(view) => editor.set_view(view),
-                    None => editor.state = editor.view_of_opened_model(origin, keeps_motions, keeps_view),
-                }
-                editor.state.retarget.map.extend(map);
-            });
-            match view {
-                Some(view) => self.settle_view(&view, problems),
-                None => self.report(problems),
-            }
+            self.show_with(motions, map, view, (origin, keeps_view));
             None
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
@@ -207,6 +197,28 @@ impl Editor {
         let opened = Opened { name, is_new, others, evicted, lacks_joints, about_images, about_motions, about_feet };
         self.announce(&opened, was_loaded && !is_view, has_step);
         Ok(())
+    }
+
+    /// Shows an opened model with these motions alone, in `view` if there is one.
+    fn show_with(
+        &mut self,
+        motions: Vec<Motion>,
+        map: Option<MotionMap>,
+        view: Option<ViewerState>,
+        (origin, keeps_view): (String, bool),
+    ) {
+        let problems = self.transact(Change::View, |editor| {
+            editor.library.set_motions(motions);
+            match view.clone() {
+                Some(view) => editor.set_view(view),
+                None => editor.state = editor.view_of_opened_model(origin, false, keeps_view),
+            }
+            editor.state.character.retarget.map.extend(map);
+        });
+        match view {
+            Some(view) => self.settle_view(&view, problems),
+            None => self.report(problems),
+        }
     }
 
     /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet. `has_step`:
@@ -223,7 +235,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     pub(super) fn set_view(&mut self, view: ViewerState) {
         let mut view = self.view_with_reduced_motion(view);
-        view.retarget.feet_are_automatic = false;
+        view.character.retarget.feet_are_automatic = false;
         (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
@@ -233,14 +245,17 @@ impl Editor {
         let old = std::mem::take(&mut self.state);
         // Without motions, a map is what is left of a link whose files never came.
         let keeps_maps = keeps_motions && (keeps_view || !self.library.motions().is_empty());
-        let retarget = if keeps_maps { old.retarget.clone() } else { RetargetEdits::default() };
+        let retarget = if keeps_maps { old.character.retarget.clone() } else { RetargetEdits::default() };
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         let sources = Sources { model: vec![origin], motion, scene: None };
         if keeps_view {
-            let sources = Sources { scene: old.sources.scene, ..sources };
-            return ViewerState { sources, retarget, ..old };
+            let sources = Sources { scene: old.character.sources.scene, ..sources };
+            return ViewerState { character: CharacterView { sources, retarget, ..old.character }, ..old };
         }
-        old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
+        old.for_model(ViewerState {
+            character: CharacterView { sources, retarget, ..CharacterView::default() },
+            ..ViewerState::default()
+        })
     }
 
     /// Keeps the loaded motions that fit the new model and adds the new ones. Plays the first new clip, otherwise the one that the
@@ -255,7 +270,7 @@ impl Editor {
     ) -> Option<String> {
         let has_map_for_loaded = new.is_empty() && map.is_some();
         if has_map_for_loaded {
-            self.state.retarget.map.extend(map.take());
+            self.state.character.retarget.map.extend(map.take());
         }
         let problems = self.retarget();
         if has_map_for_loaded {
@@ -354,7 +369,9 @@ impl Editor {
     fn evict(&mut self) -> Vec<String> {
         let is_edited = |id| {
             let view = self.shelf.get(&id).and_then(|shelved: &Shelved| shelved.last_view.as_ref());
-            view.is_some_and(|view| view.state.edits != Edits::default() || !view.state.retarget.map.is_empty())
+            view.is_some_and(|view| {
+                view.state.character.edits != Edits::default() || !view.state.character.retarget.map.is_empty()
+            })
         };
         let evicted = self.library.trim(is_edited);
         let library: &Library = &self.library;
@@ -365,12 +382,12 @@ impl Editor {
 
     /// Whether a view's models are loaded, active or not.
     pub fn holds(&self, view: &ViewerState) -> bool {
-        view.sources.model == self.state.sources.model || self.find_loaded(view).is_some()
+        view.character.sources.model == self.state.character.sources.model || self.find_loaded(view).is_some()
     }
 
     /// Returns the model that a view shows if all that it lists are loaded.
     fn find_loaded(&self, view: &ViewerState) -> Option<ModelId> {
-        let mut known = view.sources.model.iter().map(|name| {
+        let mut known = view.character.sources.model.iter().map(|name| {
             let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
             Some(known.id)
         });
@@ -387,7 +404,7 @@ impl Editor {
         admit: Admit<'_>,
     ) -> Result<(), String> {
         let before = self.snapshot();
-        if view.sources.model != self.state.sources.model {
+        if view.character.sources.model != self.state.character.sources.model {
             let id = self.find_loaded(&view).ok_or(OTHER_FILES)?;
             self.library.show(id);
             self.admit(&before, admit)?;
@@ -396,7 +413,7 @@ impl Editor {
         self.remember(before);
         let problems = self.transact(Change::View, |editor| {
             editor.set_view(view.clone());
-            editor.state.retarget.map.extend(map);
+            editor.state.character.retarget.map.extend(map);
             editor.library.set_motions(motions);
         });
         self.settle_view(&view, problems);
@@ -447,7 +464,10 @@ impl Editor {
         // Where an orbit camera's target is depends on it.
         let follow = if is_first_time { &old } else { &view }.camera_options.follow;
         self.transact(Change::View, |editor| {
-            editor.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
+            editor.state = old.for_model(ViewerState {
+                character: CharacterView { sources: Sources { motion, ..view.character.sources }, ..view.character },
+                ..view
+            });
             editor.state.camera_options.follow = follow;
             editor.library.set_motions(motions);
         });

@@ -36,20 +36,20 @@ impl Editor {
     /// Holds the feet on the ground if the first clip of one of the last `motions` motions slides, hovers or sinks in more than is
     /// acceptable, in a step of its own. Returns what to tell the user about it.
     pub(super) fn suit_feet(&mut self, motions: usize) -> Option<&'static str> {
-        if self.state.retarget.feet.is_some() || !self.needs_feet_held(motions) {
+        if self.state.character.retarget.feet.is_some() || !self.needs_feet_held(motions) {
             return None;
         }
         self.end_gesture();
         self.apply(Command::SetFeet(Some(Feet::Plant)));
         self.end_gesture();
-        self.state.retarget.feet_are_automatic = true;
+        self.state.character.retarget.feet_are_automatic = true;
         Some("The feet would slide, hover or sink in, so they are held on the ground. Undo turns this off.")
     }
 
     fn needs_feet_held(&self, motions: usize) -> bool {
         let Some(model) = self.library.active() else { return false };
         let is_off = |clip: &ModelClip| {
-            let contacts = self.state.retarget.contacts.unwrap_or_default();
+            let contacts = self.state.character.retarget.contacts.unwrap_or_default();
             let verdicts = Verdicts::new(self.library.figures(clip.id())?, model.size_metres(), contacts);
             let feet = [verdicts.foot_slide, verdicts.foot_hover, verdicts.sole_penetration];
             Some(feet.contains(&Some(Verdict::NeedsReview)))

@@ -42,11 +42,11 @@ impl Editor {
     }
 
     fn react(&mut self, Before { state: before, view, place }: Before) -> Vec<String> {
-        let (old, new) = (&before.edits, &self.state.edits);
-        let is_retargeted = before.retarget != self.state.retarget || old.clips != new.clips;
+        let (old, new) = (&before.character.edits, &self.state.character.edits);
+        let is_retargeted = before.character.retarget != self.state.character.retarget || old.clips != new.clips;
         let is_moved = is_retargeted || !old.overrides_like(new);
         let has_turned = old.up != new.up;
-        let has_chosen_clip = before.playhead.clip != self.state.playhead.clip;
+        let has_chosen_clip = before.character.playhead.clip != self.state.character.playhead.clip;
         let problems = if is_retargeted { self.retarget() } else { Vec::new() };
         if has_turned {
             self.apply(Command::FrameAll);

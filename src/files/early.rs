@@ -26,9 +26,9 @@ pub struct EarlyWatch<'a> {
 impl<'a> EarlyWatch<'a> {
     /// Returns a watch that calls `show` at most once; `None` if a view's model isn't all that it downloads.
     pub fn of(view: &ViewerState, show: &'a dyn Fn(Model)) -> Option<Self> {
-        let [model] = &view.sources.model[..] else { return None };
-        let is_all = view.sources.motion.is_empty()
-            && !view.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)))
+        let [model] = &view.character.sources.model[..] else { return None };
+        let is_all = view.character.sources.motion.is_empty()
+            && !view.character.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)))
             && !matches!(view.lighting.environment, EnvironmentChoice::File(_));
         // A sample may consist of several files, and an archive does.
         let is_file = !model.starts_with("sample:") && container_of(model) == model;

@@ -11,7 +11,7 @@ use super::{OpenError, Role, read_map};
 use crate::editor::{Contents, container_of};
 use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
+use crate::state::{CharacterView, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
 /// Loaded files that need not be opened again, identified by their origin.
 #[derive(Debug, Clone, Copy, Default)]
@@ -43,12 +43,12 @@ pub(super) async fn open_view<S: Source>(
     held: Held<'_>,
     progress: Progress<'_>,
 ) -> Result<(Contents, ViewerState), OpenError> {
-    if let Some(awaited) = view.sources.model.iter().find(|model| with_model && is_to_bring(model)) {
+    if let Some(awaited) = view.character.sources.model.iter().find(|model| with_model && is_to_bring(model)) {
         let models = vec![Model::placeholder(awaited).into()];
         return Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view));
     }
-    let Sources { model: mut models, motion: motions, scene } = view.sources;
-    let RetargetEdits { map: maps, .. } = view.retarget;
+    let Sources { model: mut models, motion: motions, scene } = view.character.sources;
+    let RetargetEdits { map: maps, .. } = view.character.retarget;
     let map_files = maps.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
     let light = match &view.lighting.environment {
         EnvironmentChoice::File(origin) if !held.environments.iter().any(|held| held.origin == *origin) => Some(origin),
@@ -96,8 +96,8 @@ pub(super) async fn open_view<S: Source>(
         read_maps.extend(read_map_of(source, map, &mut contents, progress).await);
     }
     let sources = Sources { model: models, motion: motions, scene };
-    let retarget = RetargetEdits { map: read_maps, ..view.retarget };
-    Ok((contents, ViewerState { sources, retarget, ..view }))
+    let retarget = RetargetEdits { map: read_maps, ..view.character.retarget };
+    Ok((contents, ViewerState { character: CharacterView { sources, retarget, ..view.character }, ..view }))
 }
 
 /// Opens a motion of a view, with a joint map beside it. A failure becomes a problem of the contents.

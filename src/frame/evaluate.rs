@@ -115,7 +115,7 @@ fn write_characters(
     let count = (panes[0] * panes[1]) as usize;
     characters.resize_with(count + usize::from(source.is_some()), Character::default);
     let properties = &scratch.sampler.properties;
-    scratch.model_scene.update(model, state.sources.scene, properties, &state.edits.hidden.nodes);
+    scratch.model_scene.update(model, state.character.sources.scene, properties, &state.character.edits.hidden.nodes);
     let skeleton = &model.asset.skeleton;
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
@@ -127,7 +127,7 @@ fn write_characters(
         character.pane = comparison.is_some().then_some(pane as u32);
         character.variant = active_variant(model, state);
         character.hidden_materials.clear();
-        character.hidden_materials.extend(&state.edits.hidden.materials);
+        character.hidden_materials.extend(&state.character.edits.hidden.materials);
         character.skinning = match comparison {
             Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
             _ => state.display.skinning,

@@ -23,7 +23,7 @@ const AXES: [(Vec3, Vec4); 3] = [
 
 /// Expects the frame's bounds.
 pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame) {
-    let rest = model.rest_bounds().transformed(&crate::state::world_from_model(state.edits.up));
+    let rest = model.rest_bounds().transformed(&crate::state::world_from_model(state.character.edits.up));
     let rest = if rest.is_empty() { frame.bounds } else { rest };
     // Soles are rarely exactly at zero; a model that almost stands on zero is treated as if it did.
     let height = if rest.min.y.abs() <= 0.04 * rest.diagonal() { 0.0 } else { rest.min.y };

@@ -46,13 +46,13 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetRange(range) => set_range(state, model, range),
         Command::SetSkinning(mode) => state.display.skinning = mode,
         Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
-        Command::ClearMorphs => state.edits.morph.clear(),
+        Command::ClearMorphs => state.character.edits.morph.clear(),
         Command::SetExpression { name, weight } => set_expression(state, model, &name, weight),
-        Command::ClearExpressions => state.edits.expressions.clear(),
+        Command::ClearExpressions => state.character.edits.expressions.clear(),
         Command::SetLookAt(target) => set_look_at(state, target),
         Command::SetSprings(on) => state.display.springs = on,
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
-        Command::ClearPose => state.edits.pose.clear(),
+        Command::ClearPose => state.character.edits.pose.clear(),
         Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::EditClip { clip, edit } => clips::edit_clip(state, model, &clip, edit),
@@ -72,7 +72,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetTurntable(speed) => set_turntable(state, speed),
         Command::SetVariant(variant) => set_variant(state, model, variant),
         Command::SetHidden(hidden) => set_hidden(state, model, hidden),
-        Command::SetUp(up) => state.edits.up = up,
+        Command::SetUp(up) => state.character.edits.up = up,
         Command::SetExposure(stops) => set_exposure(state, stops),
         Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
         Command::SetEnvironment(degrees) => set_rotation(&mut state.display.environment_degrees, degrees),
@@ -83,11 +83,11 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetMap { motion, map } => set_map(state, library, &motion, map.map(|map| *map)),
         Command::SetSource { motion, target, source } => set_source(state, library, &motion, target, source),
         Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, &motion, edit),
-        Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
-        Command::SetRoot(root) => state.retarget.root = root,
-        Command::SetFeet(feet) => state.retarget.set_feet(feet),
-        Command::SetContacts(contacts) => state.retarget.contacts = contacts,
-        Command::ReconcileMaps(maps) => state.retarget.map = maps,
+        Command::SetUnmapped(unmapped) => state.character.retarget.unmapped = unmapped,
+        Command::SetRoot(root) => state.character.retarget.root = root,
+        Command::SetFeet(feet) => state.character.retarget.set_feet(feet),
+        Command::SetContacts(contacts) => state.character.retarget.contacts = contacts,
+        Command::ReconcileMaps(maps) => state.character.retarget.map = maps,
     }
 }
 
@@ -107,22 +107,22 @@ pub(super) fn checked(view: &ViewerState) -> ViewerState {
 pub(super) fn checked_for(view: &ViewerState, model: &Model) -> ViewerState {
     let mut state = view.clone();
     let has_joint = |joint: &usize| model.asset.skeleton.joint_of_source(*joint).is_some();
-    state.edits.names.retain(|joint, _| has_joint(joint));
-    state.edits.pose.retain(|joint, _| has_joint(joint));
-    state.edits.layers.iter_mut().for_each(|over| over.layer.mask.joints.retain(has_joint));
-    state.edits.hidden.retain_known(&model.asset);
-    state.edits.morph.clear();
-    for (&index, &weight) in &view.edits.morph {
+    state.character.edits.names.retain(|joint, _| has_joint(joint));
+    state.character.edits.pose.retain(|joint, _| has_joint(joint));
+    state.character.edits.layers.iter_mut().for_each(|over| over.layer.mask.joints.retain(has_joint));
+    state.character.edits.hidden.retain_known(&model.asset);
+    state.character.edits.morph.clear();
+    for (&index, &weight) in &view.character.edits.morph {
         set_morph(&mut state, Some(model), index, Some(weight));
     }
-    state.edits.pins.clear();
-    for (&joint, &pin) in &view.edits.pins {
+    state.character.edits.pins.clear();
+    for (&joint, &pin) in &view.character.edits.pins {
         pins::set_pin(&mut state, Some(model), joint, Some(pin));
     }
-    (state.selection, state.sources.scene, state.camera) = (Selection::default(), None, CameraChoice::Auto);
+    (state.selection, state.character.sources.scene, state.camera) = (Selection::default(), None, CameraChoice::Auto);
     select_joint(&mut state, Some(model), view.selection.joint);
     select_vertex(&mut state, Some(model), view.selection.vertex);
-    set_scene(&mut state, Some(model), view.sources.scene);
+    set_scene(&mut state, Some(model), view.character.sources.scene);
     set_camera(&mut state, Some(model), view.camera);
     state
 }
@@ -133,10 +133,10 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     let default = ViewerState::default();
     let wanted = new.clone();
     *state = new;
-    state.playhead.time_secs = default.playhead.time_secs;
-    seek(state, None, wanted.playhead.time_secs);
+    state.character.playhead.time_secs = default.character.playhead.time_secs;
+    seek(state, None, wanted.character.playhead.time_secs);
     let finite = |fade: &Fade| fade.time_secs.is_finite() && fade.elapsed_secs.is_finite();
-    state.playhead.fade = wanted.playhead.fade.filter(finite);
+    state.character.playhead.fade = wanted.character.playhead.fade.filter(finite);
     state.playback.speed = default.playback.speed;
     set_speed(state, wanted.playback.speed);
     state.camera_options.fov_degrees = default.camera_options.fov_degrees;
@@ -147,32 +147,32 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     set_rotation(&mut state.display.environment_degrees, wanted.display.environment_degrees);
     state.lighting.key = None;
     set_key_light(state, wanted.lighting.key);
-    state.playhead.range = None;
-    set_range(state, None, wanted.playhead.range);
-    state.edits.morph.clear();
-    for (index, weight) in wanted.edits.morph {
+    state.character.playhead.range = None;
+    set_range(state, None, wanted.character.playhead.range);
+    state.character.edits.morph.clear();
+    for (index, weight) in wanted.character.edits.morph {
         set_morph(state, None, index, Some(weight));
     }
-    state.edits.expressions.clear();
-    for (name, weight) in wanted.edits.expressions {
+    state.character.edits.expressions.clear();
+    for (name, weight) in wanted.character.edits.expressions {
         set_expression(state, None, &name, Some(weight));
     }
     state.display.look_at = LookTarget::Off;
     set_look_at(state, wanted.display.look_at);
-    state.edits.pose.clear();
-    for (joint, degrees) in wanted.edits.pose {
+    state.character.edits.pose.clear();
+    for (joint, degrees) in wanted.character.edits.pose {
         set_pose(state, None, joint, Some(degrees));
     }
-    state.edits.pins.clear();
-    for (joint, pin) in wanted.edits.pins {
+    state.character.edits.pins.clear();
+    for (joint, pin) in wanted.character.edits.pins {
         pins::set_pin(state, None, joint, Some(pin));
     }
-    state.edits.names.clear();
-    for (joint, name) in wanted.edits.names {
+    state.character.edits.names.clear();
+    for (joint, name) in wanted.character.edits.names {
         rename(state, None, joint, &name);
     }
-    clips::check(&mut state.edits.clips);
-    set_layers(state, None, wanted.edits.layers);
+    clips::check(&mut state.character.edits.clips);
+    set_layers(state, None, wanted.character.edits.layers);
     state.camera_options.turntable = default.camera_options.turntable;
     set_turntable(state, wanted.camera_options.turntable);
     state.camera = CameraChoice::Auto;
@@ -186,14 +186,14 @@ fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<&'a Model
 fn set_scene(state: &mut ViewerState, model: Option<&Model>, scene: Option<usize>) {
     let exists = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
     if scene.is_none_or(exists) {
-        state.sources.scene = scene;
+        state.character.sources.scene = scene;
     }
 }
 
 fn set_variant(state: &mut ViewerState, model: Option<&Model>, variant: Option<String>) {
     let exists = |name: &String| model.is_none_or(|model| model.asset.variants.contains(name));
     if variant.as_ref().is_none_or(exists) {
-        state.edits.variant = variant;
+        state.character.edits.variant = variant;
     }
 }
 
@@ -201,7 +201,7 @@ fn set_hidden(state: &mut ViewerState, model: Option<&Model>, mut hidden: Hidden
     if let Some(model) = model {
         hidden.retain_known(&model.asset);
     }
-    state.edits.hidden = hidden;
+    state.character.edits.hidden = hidden;
 }
 
 fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
@@ -221,22 +221,22 @@ fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
 /// Starts a clip from its beginning, with a crossfade if the current one is playing.
 pub(super) fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: ClipChoice) {
     let from = active(state, model);
-    let time_secs = state.playhead.time_secs;
-    state.playhead.clip = match (clip, model) {
+    let time_secs = state.character.playhead.time_secs;
+    state.character.playhead.clip = match (clip, model) {
         (ClipChoice::Clip(clip), Some(model)) => ClipChoice::Clip(resolved(model, clip)),
         (clip, _) => clip,
     };
     let fades = state.playback.playing && crossfade_secs(from, active(state, model)) > 0.0;
     let clip = from.map_or(ClipChoice::RestPose, |from| ClipChoice::Clip(from.id().clone()));
-    state.playhead.fade = fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 });
-    state.playhead.time_secs = 0.0;
-    state.playhead.range = None;
+    state.character.playhead.fade = fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 });
+    state.character.playhead.time_secs = 0.0;
+    state.character.playhead.range = None;
 }
 
 /// Keeps the current pose: the new mode would fold a playhead beyond the range differently.
 fn set_loop_mode(state: &mut ViewerState, model: Option<&Model>, mode: LoopMode) {
     if let Some(clip) = active(state, model) {
-        state.playhead.time_secs = clip_secs(clip, state);
+        state.character.playhead.time_secs = clip_secs(clip, state);
     }
     state.playback.loop_mode = mode;
 }
@@ -322,8 +322,8 @@ fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
         && let Some(clip) = active(state, model)
     {
         let range = play_range(clip, state);
-        if state.playhead.time_secs >= range.end_secs {
-            state.playhead.time_secs = range.start_secs;
+        if state.character.playhead.time_secs >= range.end_secs {
+            state.character.playhead.time_secs = range.start_secs;
         }
     }
 }
@@ -332,7 +332,7 @@ fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
     if time_secs.is_finite() {
         let duration_secs = |model| active_clip(model, state).map_or(0.0, ModelClip::duration_secs);
         let end = model.map_or(f64::INFINITY, duration_secs);
-        state.playhead.time_secs = time_secs.clamp(0.0, end);
+        state.character.playhead.time_secs = time_secs.clamp(0.0, end);
     }
 }
 
@@ -345,38 +345,38 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     let Some(clip) = active(state, model) else { return };
     let range = play_range(clip, state);
     let length = range.length_secs();
-    state.playhead.time_secs = whole_microseconds(state.playhead.time_secs + secs);
+    state.character.playhead.time_secs = whole_microseconds(state.character.playhead.time_secs + secs);
     match state.playback.loop_mode {
-        LoopMode::Once if state.playhead.time_secs >= range.end_secs => {
-            state.playhead.time_secs = range.end_secs;
+        LoopMode::Once if state.character.playhead.time_secs >= range.end_secs => {
+            state.character.playhead.time_secs = range.end_secs;
             // The last pose is the clip's own.
-            state.playhead.fade = None;
+            state.character.playhead.fade = None;
             state.playback.playing = false;
         }
         // Whole loops are subtracted to keep the playhead small, however long it runs. Not with layers: they loop with
         // durations of their own and would jump.
-        _ if !clip.layers().is_empty() || !state.edits.layers.is_empty() => {}
-        LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
-            state.playhead.time_secs =
-                range.start_secs + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(length));
+        _ if !clip.layers().is_empty() || !state.character.edits.layers.is_empty() => {}
+        LoopMode::Loop if length > 0.0 && state.character.playhead.time_secs > range.end_secs => {
+            state.character.playhead.time_secs = range.start_secs
+                + whole_microseconds((state.character.playhead.time_secs - range.start_secs).rem_euclid(length));
         }
-        LoopMode::PingPong if length > 0.0 && state.playhead.time_secs > range.start_secs + 2.0 * length => {
-            state.playhead.time_secs = range.start_secs
-                + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(2.0 * length));
+        LoopMode::PingPong if length > 0.0 && state.character.playhead.time_secs > range.start_secs + 2.0 * length => {
+            state.character.playhead.time_secs = range.start_secs
+                + whole_microseconds((state.character.playhead.time_secs - range.start_secs).rem_euclid(2.0 * length));
         }
         _ => {}
     }
     if length <= 0.0 {
-        state.playhead.time_secs = range.start_secs;
+        state.character.playhead.time_secs = range.start_secs;
     }
 }
 
 /// Advances the crossfade, also one into the rest pose, which has no time of its own.
 fn advance_fade(state: &mut ViewerState, model: Option<&Model>, secs: f64) {
-    let (Some(model), Some(mut fade)) = (model, state.playhead.fade.take()) else { return };
+    let (Some(model), Some(mut fade)) = (model, state.character.playhead.fade.take()) else { return };
     fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
     let length_secs = crossfade_secs(chosen_clip(model, &fade.clip), active_clip(model, state));
-    state.playhead.fade = (fade.elapsed_secs < length_secs).then_some(fade);
+    state.character.playhead.fade = (fade.elapsed_secs < length_secs).then_some(fade);
 }
 
 /// Keeps the running playhead short in links. Times that are set are not rounded, so that they hit keys exactly.
@@ -392,18 +392,19 @@ fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
     let stepped = ((clip_secs(clip, state) * rate).round() + f64::from(frames)) / rate;
     // Half a frame of tolerance: rounding may put the last frame slightly past the end.
     let tolerance = 0.5 / rate;
-    state.playhead.time_secs = if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + tolerance {
-        range.start_secs
-    } else if state.playback.loop_mode == LoopMode::Loop && stepped < range.start_secs - tolerance {
-        range.end_secs
-    } else {
-        stepped.clamp(range.start_secs, range.end_secs)
-    };
+    state.character.playhead.time_secs =
+        if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + tolerance {
+            range.start_secs
+        } else if state.playback.loop_mode == LoopMode::Loop && stepped < range.start_secs - tolerance {
+            range.end_secs
+        } else {
+            stepped.clamp(range.start_secs, range.end_secs)
+        };
 }
 
 fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeRange>) {
     let Some(range) = range else {
-        state.playhead.range = None;
+        state.character.playhead.range = None;
         return;
     };
     if !range.start_secs.is_finite() || !range.end_secs.is_finite() {
@@ -420,17 +421,17 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
         end_secs = (start_secs + frame_secs).min(end);
         start_secs = start_secs.min((end_secs - frame_secs).max(0.0));
     }
-    state.playhead.range = Some(TimeRange { start_secs, end_secs });
+    state.character.playhead.range = Some(TimeRange { start_secs, end_secs });
 }
 
 fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weight: Option<f32>) {
     let exists = model.is_none_or(|model| index < model.asset.skeleton.rest().morph_weights.len());
     match weight {
         None => {
-            state.edits.morph.remove(&index);
+            state.character.edits.morph.remove(&index);
         }
         Some(weight) if exists && weight.is_finite() => {
-            state.edits.morph.insert(index, clamped(weight, &Edits::MORPH_WEIGHT));
+            state.character.edits.morph.insert(index, clamped(weight, &Edits::MORPH_WEIGHT));
         }
         Some(_) => {}
     }
@@ -440,10 +441,10 @@ fn set_expression(state: &mut ViewerState, model: Option<&Model>, name: &str, we
     let exists = model.is_none_or(|model| model.asset.avatar.expression(name).is_some());
     match weight {
         None => {
-            state.edits.expressions.remove(name);
+            state.character.edits.expressions.remove(name);
         }
         Some(weight) if exists && weight.is_finite() => {
-            state.edits.expressions.insert(name.to_owned(), clamped(weight, &Edits::EXPRESSION_WEIGHT));
+            state.character.edits.expressions.insert(name.to_owned(), clamped(weight, &Edits::EXPRESSION_WEIGHT));
         }
         Some(_) => {}
     }
@@ -459,10 +460,10 @@ fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degree
     let exists = model.is_none_or(|model| model.asset.skeleton.joint_of_source(joint).is_some());
     match degrees {
         None => {
-            state.edits.pose.remove(&joint);
+            state.character.edits.pose.remove(&joint);
         }
         Some(degrees) if exists && degrees.iter().all(|angle| angle.is_finite()) => {
-            state.edits.pose.insert(joint, degrees.map(wrap_degrees));
+            state.character.edits.pose.insert(joint, degrees.map(wrap_degrees));
         }
         Some(_) => {}
     }
@@ -484,10 +485,10 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
     match in_file {
         Some(None) => {}
         _ if name.is_empty() || in_file == Some(Some(name.as_str())) => {
-            state.edits.names.remove(&joint);
+            state.character.edits.names.remove(&joint);
         }
         _ => {
-            state.edits.names.insert(joint, name.clone());
+            state.character.edits.names.insert(joint, name.clone());
         }
     }
 }
@@ -506,7 +507,7 @@ fn set_layers(state: &mut ViewerState, model: Option<&Model>, layers: Vec<Layere
         };
         LayeredClip { clip, layer: layer.clamped() }
     };
-    state.edits.layers = layers.into_iter().map(checked).collect();
+    state.character.edits.layers = layers.into_iter().map(checked).collect();
 }
 
 /// Wraps an angle to −180°…180°.

@@ -60,7 +60,8 @@ fn link_clip_name(library: &Library, edits: &ClipEdits, id: &ClipId) -> Option<S
 /// Returns a view that refers to clips as links do.
 pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerState {
     let mut state = view.clone();
-    let called = |id: &ClipId| link_clip_name(library, &view.edits.clips, id).map(|name| ClipId::called(&name));
+    let called =
+        |id: &ClipId| link_clip_name(library, &view.character.edits.clips, id).map(|name| ClipId::called(&name));
     // A clip whose map has no pairs shows the rest pose until the map has some again.
     let plays =
         |clip: &ClipId| clip.name().is_some() || library.active().is_some_and(|model| model.clip(clip).is_some());
@@ -68,12 +69,12 @@ pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerSt
         ClipChoice::Clip(clip) => called(clip).filter(|_| plays(clip)).map_or(ClipChoice::RestPose, ClipChoice::Clip),
         other => other.clone(),
     };
-    state.playhead.clip = choice(&state.playhead.clip);
-    if let Some(fade) = &mut state.playhead.fade {
+    state.character.playhead.clip = choice(&state.character.playhead.clip);
+    if let Some(fade) = &mut state.character.playhead.fade {
         fade.clip = choice(&fade.clip);
     }
-    state.edits.layers.retain_mut(|over| called(&over.clip).map(|name| over.clip = name).is_some());
-    let clips = &mut state.edits.clips;
+    state.character.edits.layers.retain_mut(|over| called(&over.clip).map(|name| over.clip = name).is_some());
+    let clips = &mut state.character.edits.clips;
     clips.copies.retain_mut(|copy| called(&copy.of).map(|name| copy.of = name).is_some());
     let changes = std::mem::take(&mut clips.changes).into_iter();
     clips.changes = changes.filter_map(|(clip, changes)| Some((called(&clip)?, changes))).collect();
@@ -88,19 +89,19 @@ pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerSt
 /// the model lacks keeps its name, since its file may be still to come. Returns whether the model's clips have changed.
 pub fn resolve_clips(state: &mut ViewerState, library: &mut Library) -> bool {
     let Some(model) = library.active() else { return false };
-    for copy in &mut state.edits.clips.copies {
+    for copy in &mut state.character.edits.clips.copies {
         let found = copy.of.name().and_then(|name| clip_called(model, name));
         if let Some(original) = found.filter(|clip| !clip.is_copy()) {
             copy.of = original.id().clone();
         }
     }
     // Names come before what is called by them.
-    resolve_keys(&mut state.edits.clips.names, model);
-    let mut is_changed = library.edit_clips(&state.edits.clips);
+    resolve_keys(&mut state.character.edits.clips.names, model);
+    let mut is_changed = library.edit_clips(&state.character.edits.clips);
     if let Some(model) = library.active() {
         resolve_references(state, model);
     }
-    is_changed |= library.edit_clips(&state.edits.clips);
+    is_changed |= library.edit_clips(&state.character.edits.clips);
     is_changed
 }
 
@@ -111,14 +112,14 @@ fn resolve_references(state: &mut ViewerState, model: &Model) {
             *clip = resolved(model, clip.clone());
         }
     };
-    let fade = state.playhead.fade.as_mut().map(|fade| &mut fade.clip);
-    for choice in [Some(&mut state.playhead.clip), fade].into_iter().flatten() {
+    let fade = state.character.playhead.fade.as_mut().map(|fade| &mut fade.clip);
+    for choice in [Some(&mut state.character.playhead.clip), fade].into_iter().flatten() {
         if let ClipChoice::Clip(clip) = choice {
             resolve(clip);
         }
     }
-    state.edits.layers.iter_mut().for_each(|over| resolve(&mut over.clip));
-    resolve_keys(&mut state.edits.clips.changes, model);
+    state.character.edits.layers.iter_mut().for_each(|over| resolve(&mut over.clip));
+    resolve_keys(&mut state.character.edits.clips.changes, model);
 }
 
 /// Finds a clip that is still only called by a name.

@@ -11,9 +11,9 @@ use crate::retarget::ClipChanges;
 /// Drops edits and layers of clips whose motion was removed.
 pub fn drop_orphaned_edits(state: &mut ViewerState, library: &Library) {
     let is_there = |clip: &ClipId| clip.motion().is_none_or(|motion| library.motion(motion).is_some());
-    state.edits.clips.retain(is_there);
-    let copies = &state.edits.clips.copies;
-    state.edits.layers.retain(|over| match &over.clip {
+    state.character.edits.clips.retain(is_there);
+    let copies = &state.character.edits.clips.copies;
+    state.character.edits.layers.retain(|over| match &over.clip {
         ClipId::Copy(id) => copies.iter().any(|copy| copy.id == *id),
         clip => is_there(clip),
     });
@@ -47,15 +47,15 @@ pub(super) fn edit_clip(state: &mut ViewerState, model: Option<&Model>, clip: &C
 
 fn set_changes(state: &mut ViewerState, model: &Model, clip: &ModelClip, changes: ClipChanges) {
     if is_active(model, state, clip) {
-        let before = state.edits.clips.changes_of(clip.id());
+        let before = state.character.edits.clips.changes_of(clip.id());
         follow_changes(state, clip, &before, &changes);
     }
-    state.edits.clips.set_changes(clip.id().clone(), changes);
+    state.character.edits.clips.set_changes(clip.id().clone(), changes);
 }
 
 fn copy_clip(state: &mut ViewerState, model: &Model, clip: &ModelClip, changes: ClipChanges) {
     let Some(original) = model.clip(clip.original_id()) else { return };
-    let edits = &mut state.edits.clips;
+    let edits = &mut state.character.edits.clips;
     if edits.copies.len() == ClipEdits::MAX_COPIES {
         return;
     }
@@ -78,12 +78,12 @@ fn remove_copy(state: &mut ViewerState, model: &Model, copy: &ModelClip) {
     if is_active(model, state, copy) {
         set_clip(state, Some(model), ClipChoice::Clip(copy.original_id().clone()));
     }
-    state.edits.layers.retain(|over| over.clip != *copy.id());
-    state.edits.clips.remove_copy(copy.id());
+    state.character.edits.layers.retain(|over| over.clip != *copy.id());
+    state.character.edits.clips.remove_copy(copy.id());
 }
 
 fn rename(state: &mut ViewerState, model: &Model, clip: &ModelClip, name: &str) {
-    let names = &mut state.edits.clips.names;
+    let names = &mut state.character.edits.clips.names;
     let is_free = |name: &String| model.clips().iter().all(|other| other.id() == clip.id() || other.title() != name);
     let numbered = (2..).map(|number: u32| format!("{name} ({number})"));
     let free = std::iter::once(name.to_owned()).chain(numbered).find(is_free);
@@ -119,7 +119,7 @@ fn is_active(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
 /// Keeps the pose and the range of the active clip, whose times stretch and turn round. A trimmed clip starts over.
 fn follow_changes(state: &mut ViewerState, clip: &ModelClip, before: &ClipChanges, changes: &ClipChanges) {
     let mode = state.playback.loop_mode;
-    let Playhead { range, time_secs, .. } = &mut state.playhead;
+    let Playhead { range, time_secs, .. } = &mut state.character.playhead;
     if changes.trim != before.trim {
         (*range, *time_secs) = (None, 0.0);
         return;
@@ -146,30 +146,30 @@ fn follow_changes(state: &mut ViewerState, clip: &ModelClip, before: &ClipChange
 /// dropped returns.
 pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from: &ViewerState) {
     let active = model.and_then(|model| Some((model, active_clip(model, state)?)));
-    let changed = |state: &ViewerState| active.map(|(_, clip)| state.edits.clips.changes_of(clip.id()));
+    let changed = |state: &ViewerState| active.map(|(_, clip)| state.character.edits.clips.changes_of(clip.id()));
     let before = changed(state);
     let was_copy = is_copy_active(state);
     // A copy that was removed while it played.
-    let returns = is_copy_active(from) && !is_copy_of(state, &from.playhead.clip);
+    let returns = is_copy_active(from) && !is_copy_of(state, &from.character.playhead.clip);
     state.restore_undoable(from);
     if returns || (was_copy && !is_copy_active(state)) {
-        state.playhead.clone_from(&from.playhead);
+        state.character.playhead.clone_from(&from.character.playhead);
         return;
     }
     if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
         follow_changes(state, clip, &before, &changes);
         if changes.trim != before.trim && is_active(model, from, clip) {
-            state.playhead.range = from.playhead.range;
+            state.character.playhead.range = from.character.playhead.range;
         }
     }
 }
 
 fn is_copy_active(state: &ViewerState) -> bool {
-    is_copy_of(state, &state.playhead.clip)
+    is_copy_of(state, &state.character.playhead.clip)
 }
 
 /// Whether the view has this copy of a clip.
 fn is_copy_of(state: &ViewerState, choice: &ClipChoice) -> bool {
     let ClipChoice::Clip(ClipId::Copy(copy)) = choice else { return false };
-    state.edits.clips.copies.iter().any(|known| known.id == *copy)
+    state.character.edits.clips.copies.iter().any(|known| known.id == *copy)
 }

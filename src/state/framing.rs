@@ -21,9 +21,9 @@ const MARGIN: f32 = 1.08;
 /// and with the source if that is visible too. A unit box if there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let follows = state.camera_options.follow;
-    let bounds = library
-        .active()
-        .map_or(Bounds::EMPTY, |model| library.bounds(&active_take(model, state), state.sources.scene, follows));
+    let bounds = library.active().map_or(Bounds::EMPTY, |model| {
+        library.bounds(&active_take(model, state), state.character.sources.scene, follows)
+    });
     let source = source_on_stage(library, state);
     let source = source.map_or(Bounds::EMPTY, |source| library.bounds(&source.take(), None, follows));
     let bounds = bounds.union(source);
@@ -58,7 +58,8 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
 /// another way at rest, this is the nearest quarter turn.
 pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
     let forward = library.active().and_then(Model::forward);
-    let Some(forward) = forward.map(|forward| world_from_model(state.edits.up).transform_vector3(forward)) else {
+    let Some(forward) = forward.map(|forward| world_from_model(state.character.edits.up).transform_vector3(forward))
+    else {
         return 0.0;
     };
     let level = Vec2::new(forward.x, forward.z);
@@ -73,11 +74,11 @@ pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
 /// Returns [`resolved_bounds`] without the model's hidden nodes, unless nothing would be left or a source stands beside it.
 fn shown_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let all = resolved_bounds(library, state);
-    let nodes = &state.edits.hidden.nodes;
+    let nodes = &state.character.edits.hidden.nodes;
     let is_whole = nodes.is_empty() || source_on_stage(library, state).is_some();
     let Some(model) = library.active().filter(|_| !is_whole) else { return all };
     let hidden = nodes.iter().filter_map(|&node| model.asset.skeleton.joint_of_source(node));
-    let (scene, in_place) = (state.sources.scene, state.camera_options.follow);
+    let (scene, in_place) = (state.character.sources.scene, state.camera_options.follow);
     let shown = active_take(model, state).bounds(scene, in_place, &hidden.collect::<Vec<_>>());
     if shown.is_empty() || !shown.size().is_finite() { all } else { shown }
 }
@@ -153,7 +154,7 @@ pub fn camera_eye(library: &Library, state: &ViewerState, aspect: f32, travel: V
         let model = library.active()?;
         let joint = model.asset.cameras.get(camera)?.joint;
         let model_from_camera = model_from_single_joint(&model.asset.skeleton, pose, joint);
-        Some(world_from_model(state.edits.up).transform_point3a(model_from_camera.translation).into())
+        Some(world_from_model(state.character.edits.up).transform_point3a(model_from_camera.translation).into())
     };
     match state.camera {
         CameraChoice::File(camera) => file_eye(camera),

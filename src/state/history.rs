@@ -180,9 +180,9 @@ impl Step {
     /// Whether taking the step changes nothing but edits, and among them those of retargeting.
     fn is_of_retargeting(&self, state: &ViewerState) -> bool {
         matches!(self, Self::Edits(before)
-            if before.retarget != state.retarget
-                || before.edits.clips != state.edits.clips
-                || before.edits.layers != state.edits.layers)
+            if before.character.retarget != state.character.retarget
+                || before.character.edits.clips != state.character.edits.clips
+                || before.character.edits.layers != state.character.edits.layers)
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.
@@ -211,7 +211,7 @@ impl Step {
 
 /// Whether the step from one state to the next is the editor's planting of the feet.
 fn plants_feet(before: &ViewerState, after: &ViewerState) -> bool {
-    after.retarget.feet_are_automatic && !before.retarget.feet_are_automatic
+    after.character.retarget.feet_are_automatic && !before.character.retarget.feet_are_automatic
 }
 
 /// Whether undo may cover the command; whether it does depends on the groups of the state that it changes. Neither a whole

@@ -133,78 +133,84 @@ impl Written {
 
 /// A key with one value. `$read` returns the field's value, or `None` if the text is not what `$expected` says.
 macro_rules! key {
-    ($name:literal, $group:ident $(.$field:ident)?, $read:expr, $write:expr, $expected:literal) => {
+    ($name:literal, $group:ident $(.$field:ident)*, $read:expr, $write:expr, $expected:literal) => {
         Key {
             name: $name,
             repeatable: false,
             expected: $expected,
             read: |state, text| match $read(text) {
                 Some(value) => {
-                    state.$group$(.$field)? = value;
+                    state.$group$(.$field)* = value;
                     Read::Done
                 }
                 None => Read::Bad($expected),
             },
-            write: |state| $write(&state.$group$(.$field)?),
-            reset: |state| state.$group$(.$field)? = ViewerState::default().$group$(.$field)?,
+            write: |state| $write(&state.$group$(.$field)*),
+            reset: |state| state.$group$(.$field)* = ViewerState::default().$group$(.$field)*,
         }
     };
 }
 
 /// A key whose values are the words of a table.
 macro_rules! word {
-    ($name:literal, $group:ident.$field:ident, $words:ident, $expected:literal) => {
-        key!($name, $group.$field, |text| from_word(&$words, text), |value| write_word(&$words, value), $expected)
+    ($name:literal, $group:ident $(.$field:ident)*, $words:ident, $expected:literal) => {
+        key!($name, $group$(.$field)*, |text| from_word(&$words, text), |value| write_word(&$words, value), $expected)
     };
 }
 
 /// A key with any number of values.
 macro_rules! list {
-    ($name:literal, $group:ident.$field:ident, $read:expr, $write:expr, $expected:expr) => {
+    ($name:literal, $group:ident $(.$field:ident)*, $read:expr, $write:expr, $expected:expr) => {
         Key {
             name: $name,
             repeatable: true,
             expected: $expected,
             read: |state, text| match $read(text) {
                 Some(value) => {
-                    state.$group.$field.push(value);
+                    state.$group$(.$field)*.push(value);
                     Read::Done
                 }
                 None => Read::Bad($expected),
             },
-            write: |state| Written::List(state.$group.$field.iter().map($write).collect()),
-            reset: |state| state.$group.$field.clear(),
+            write: |state| Written::List(state.$group$(.$field)*.iter().map($write).collect()),
+            reset: |state| state.$group$(.$field)*.clear(),
         }
     };
 }
 
 /// All keys, in the order they are written.
 const KEYS: &[Key] = &[
-    list!("model", sources.model, read_source, String::clone, "a URL, sample:NAME or a file name"),
-    list!("motion", sources.motion, read_source, String::clone, "a URL, sample:NAME or a file name"),
-    list!("map", retarget.map, read_map, map_text, "a URL, the compact form of a copied link, or a joint map as JSON"),
+    list!("model", character.sources.model, read_source, String::clone, "a URL, sample:NAME or a file name"),
+    list!("motion", character.sources.motion, read_source, String::clone, "a URL, sample:NAME or a file name"),
+    list!(
+        "map",
+        character.retarget.map,
+        read_map,
+        map_text,
+        "a URL, the compact form of a copied link, or a joint map as JSON"
+    ),
     key!(
         "unmapped",
-        retarget.unmapped,
+        character.retarget.unmapped,
         read_some(read_unmapped),
         write_some(unmapped_text),
         "rest, clip:CLIP or first-key:CLIP"
     ),
     key!(
         "root",
-        retarget.root,
+        character.retarget.root,
         read_some(read_root),
         write_some(root_text),
         "horizontal:, vertical: or yaw: with keep, in-place or freeze, extract, and origin: with rest or feet"
     ),
-    key!("feet", retarget.feet, read_some(read_feet), write_some(feet_text), "off or plant"),
-    key!("contacts", retarget.contacts, read_some(read_contacts), write_some(contacts_text), "off or keep"),
-    key!("scene", sources.scene, read_index, write_index, "a scene's index"),
-    key!("clip", playhead.clip, read_clip, write_clip, "a clip's name or index"),
-    key!("t", playhead.time_secs, finite, write_number, "seconds from 0 on"),
+    key!("feet", character.retarget.feet, read_some(read_feet), write_some(feet_text), "off or plant"),
+    key!("contacts", character.retarget.contacts, read_some(read_contacts), write_some(contacts_text), "off or keep"),
+    key!("scene", character.sources.scene, read_index, write_index, "a scene's index"),
+    key!("clip", character.playhead.clip, read_clip, write_clip, "a clip's name or index"),
+    key!("t", character.playhead.time_secs, finite, write_number, "seconds from 0 on"),
     key!(
         "fade",
-        playhead.fade,
+        character.playhead.fade,
         read_unless_empty(read_fade),
         write_some(fade_text),
         "two times in seconds and a clip: 0.1,1.5,Walk"
@@ -242,28 +248,40 @@ const KEYS: &[Key] = &[
         write: changes::write_change,
         reset: changes::reset_change,
     },
-    list!("layers", edits.layers, layers::read, layers::text, layers::EXPECTED),
+    list!("layers", character.edits.layers, layers::read, layers::text, layers::EXPECTED),
     key!("speed", playback.speed, finite, write_number, "a factor from 0.1 to 4"),
     word!("loop", playback.loop_mode, LOOP_MODES, "once, loop or ping-pong"),
     key!(
         "range",
-        playhead.range,
+        character.playhead.range,
         read_unless_empty(read_range),
         write_some(range_text),
         "two times in seconds from 0 on: 0.5,1.5"
     ),
     word!("skinning", display.skinning, SKINNING_MODES, "linear, rigid or dual-quaternion"),
-    key!("morph", edits.morph, read_morph, write_morph, "pairs of index and weight from -10 to 10: 0:0.5,3:1"),
+    key!(
+        "morph",
+        character.edits.morph,
+        read_morph,
+        write_morph,
+        "pairs of index and weight from -10 to 10: 0:0.5,3:1"
+    ),
     key!(
         "expression",
-        edits.expressions,
+        character.edits.expressions,
         read_expressions,
         write_expressions,
         "pairs of name and weight from 0 to 1: happy:0.5,blink:1"
     ),
     key!("look", display.look_at, read_look, write_look, "camera, x,y,z in metres, or off"),
     key!("springs", display.springs, flag, write_flag, "0 or 1"),
-    key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
+    key!(
+        "pose",
+        character.edits.pose,
+        read_pose,
+        write_pose,
+        "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"
+    ),
     Key {
         name: "pin",
         repeatable: true,
@@ -272,7 +290,7 @@ const KEYS: &[Key] = &[
         write: pins::write,
         reset: pins::reset,
     },
-    key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
+    key!("names", character.edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
     word!(
         "channel",
         display.channel,
@@ -301,13 +319,19 @@ const KEYS: &[Key] = &[
     key!("turntable", camera_options.turntable, finite, write_number, "degrees per second from -360 to 360"),
     key!(
         "variant",
-        edits.variant,
+        character.edits.variant,
         read_unless_empty(read_text),
         write_some(String::clone),
         "the name of a material variant"
     ),
-    key!("hidden", edits.hidden, read_hidden, write_hidden, "node indices, and materials as m and their index: 4,7,m2"),
-    word!("up", edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
+    key!(
+        "hidden",
+        character.edits.hidden,
+        read_hidden,
+        write_hidden,
+        "node indices, and materials as m and their index: 4,7,m2"
+    ),
+    word!("up", character.edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
     key!("exposure", display.exposure, finite, write_number, "stops from -10 to 10"),
     word!("tonemap", display.tone_map, TONE_MAPS, "neutral, aces, agx or none"),
     key!("environment", display.environment_degrees, finite, write_number, "degrees"),

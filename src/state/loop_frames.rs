@@ -31,7 +31,7 @@ impl LoopFrames {
             LoopMode::PingPong => frames_in(2.0 * length_secs).max(1),
         };
         let mut first = state.clone();
-        first.playhead.fade = None;
+        first.character.playhead.fade = None;
         apply(&mut first, library, Command::Seek(range.start_secs));
         apply(&mut first, library, Command::SetPlaying(true));
         if state.camera_options.turntable != 0.0 && state.camera == CameraChoice::Auto {

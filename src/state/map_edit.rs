@@ -67,9 +67,9 @@ pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: &Moti
     match edit {
         MapEdit::Load(new) => {
             map = *new;
-            (state.retarget.unmapped, state.retarget.root) = (None, None);
-            state.retarget.set_feet(None);
-            state.retarget.contacts = None;
+            (state.character.retarget.unmapped, state.character.retarget.root) = (None, None);
+            state.character.retarget.set_feet(None);
+            state.character.retarget.contacts = None;
         }
         MapEdit::Clear => map.joints.clear(),
         MapEdit::SwapSides => {

@@ -32,18 +32,18 @@ pub struct NumberedMap {
 
 /// Returns a motion's map in the view, without the view's overrides.
 pub(super) fn own_map<'a>(library: &Library, state: &'a ViewerState, motion: &MotionId) -> Option<&'a JointMap> {
-    Some(&numbered_for(&state.retarget.map, library.names_checksum(motion)?)?.map)
+    Some(&numbered_for(&state.character.retarget.map, library.names_checksum(motion)?)?.map)
 }
 
 /// Returns the active map of a motion: its map in the view, with the view's overrides. None if the view has no map for it.
 pub fn active_map(library: &Library, state: &ViewerState, motion: &MotionId) -> Option<JointMap> {
     let mut map = own_map(library, state, motion)?.clone();
-    if let Some(unmapped) = &state.retarget.unmapped {
+    if let Some(unmapped) = &state.character.retarget.unmapped {
         map.unmapped = unmapped.clone();
     }
-    map.root = state.retarget.root.unwrap_or(map.root);
-    map.feet = state.retarget.feet.unwrap_or(map.feet);
-    map.contacts = state.retarget.contacts.unwrap_or(map.contacts);
+    map.root = state.character.retarget.root.unwrap_or(map.root);
+    map.feet = state.character.retarget.feet.unwrap_or(map.feet);
+    map.contacts = state.character.retarget.contacts.unwrap_or(map.contacts);
     Some(map)
 }
 
@@ -70,7 +70,7 @@ pub fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
 /// Replaces the map of a motion; None removes it.
 pub(super) fn set_map(state: &mut ViewerState, library: &Library, motion: &MotionId, map: Option<JointMap>) {
     let Some(checksum) = library.names_checksum(motion) else { return };
-    let maps = &mut state.retarget.map;
+    let maps = &mut state.character.retarget.map;
     let at = maps.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));
     let map = map.map(|map| MotionMap::Numbers(NumberedMap { checksum, map }));
     match (at, map) {

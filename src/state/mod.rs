@@ -60,6 +60,6 @@ pub use take::{active_take, moment, take_of};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::active_variant;
 pub use view::{
-    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
-    RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
+    Background, CameraOptions, CharacterView, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback,
+    Playhead, RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

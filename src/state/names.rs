@@ -11,7 +11,7 @@ use crate::library::Model;
 /// `None` for other files.
 pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointIndex) -> Cow<'a, str> {
     let number = asset.skeleton.source_index(joint);
-    let custom = state.and_then(|state| state.edits.names.get(&number));
+    let custom = state.and_then(|state| state.character.edits.names.get(&number));
     match (custom, asset.skeleton.name(joint)) {
         (Some(name), _) => Cow::Borrowed(name),
         (None, "") => Cow::Owned(format!("Node {number}")),
@@ -22,7 +22,7 @@ pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointI
 /// Returns the skeleton to write into a file: with the user's custom names and, if `pose` is set, with that as its
 /// rest pose.
 pub fn written_skeleton(model: &Model, state: &ViewerState, pose: Option<&Pose>) -> Skeleton {
-    let names = state.edits.names.iter().map(|(&number, name)| (number, name.as_str()));
+    let names = state.character.edits.names.iter().map(|(&number, name)| (number, name.as_str()));
     let named = model.asset.skeleton.with_names(names);
     match pose {
         Some(pose) => named.with_rest(pose),

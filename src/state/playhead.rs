@@ -9,12 +9,12 @@ use crate::library::{Model, ModelClip};
 
 /// Returns the active clip; `None` for the rest pose, a model without clips, or a clip that the model lacks.
 pub fn active_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a ModelClip> {
-    chosen_clip(model, &state.playhead.clip)
+    chosen_clip(model, &state.character.playhead.clip)
 }
 
 /// Returns the clip that the state names and the model lacks.
 pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownName> {
-    let ClipChoice::Clip(clip) = &state.playhead.clip else { return None };
+    let ClipChoice::Clip(clip) = &state.character.playhead.clip else { return None };
     look_up_clip(model, clip).is_none().then(|| unknown_name(model, clip))
 }
 
@@ -30,7 +30,7 @@ pub(super) fn chosen_clip<'a>(model: &'a Model, choice: &ClipChoice) -> Option<&
 /// Returns the in and out points, clamped to the active clip.
 pub fn play_range(clip: &ModelClip, state: &ViewerState) -> TimeRange {
     let duration_secs = clip.duration_secs();
-    match state.playhead.range {
+    match state.character.playhead.range {
         Some(range) => TimeRange {
             start_secs: range.start_secs.clamp(0.0, duration_secs),
             end_secs: range.end_secs.clamp(0.0, duration_secs),
@@ -41,7 +41,7 @@ pub fn play_range(clip: &ModelClip, state: &ViewerState) -> TimeRange {
 
 /// Returns the time of the current pose in the active clip: the playhead, folded into the range by the loop mode.
 pub fn clip_secs(clip: &ModelClip, state: &ViewerState) -> f64 {
-    clip_time(state.playhead.time_secs, play_range(clip, state), state.playback.loop_mode)
+    clip_time(state.character.playhead.time_secs, play_range(clip, state), state.playback.loop_mode)
 }
 
 /// Returns the quarter turns that bring the file's up axis to +Y.

@@ -31,7 +31,7 @@ pub fn view_problems(view: &ViewerState, model: Option<&Model>) -> Vec<LinkError
 
 fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
     let mut add = |key, unknown, instead| found.push(LinkError::UnknownName { key, unknown, instead });
-    let edits = &view.edits;
+    let edits = &view.character.edits;
     if let Some(unknown) = unknown_clip(model, view) {
         add("clip", unknown, "the rest pose is used");
     }
@@ -62,7 +62,7 @@ fn find_names(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
 
 /// A trim may begin where its clip has ended.
 fn find_empty_clips(view: &ViewerState, model: &Model, found: &mut Vec<LinkError>) {
-    for (id, ClipChanges { trim, .. }) in &view.edits.clips.changes {
+    for (id, ClipChanges { trim, .. }) in &view.character.edits.clips.changes {
         let clip = look_up_clip(model, id).map(ModelClip::unchanged);
         if let (Some(clip), Some(range)) = (clip, trim)
             && range.start_secs >= f64::from(clip.duration_secs())

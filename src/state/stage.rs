@@ -39,9 +39,9 @@ pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<
     let borrowed = active.borrowed()?;
     let source = library.motion(&borrowed.motion)?.stage();
     let clip = ClipId::Own(borrowed.source_clip);
-    let in_place = world_from_model(state.edits.up) * borrowed.model_from_source;
+    let in_place = world_from_model(state.character.edits.up) * borrowed.model_from_source;
     let bounds = [
-        library.bounds(&active_take(model, state), state.sources.scene, true),
+        library.bounds(&active_take(model, state), state.character.sources.scene, true),
         library.bounds(&source_take(source, &clip, in_place), None, true),
     ];
     let offset = if state.display.show.over { Vec3::ZERO } else { beside(bounds, front_yaw_radians(library, state)) };

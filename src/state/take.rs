@@ -1,7 +1,7 @@
 //! What plays in a view.
 
 use super::playhead::{active_clip, chosen_clip, play_range, world_from_model};
-use super::{Fade, Playhead, ViewerState};
+use super::{CharacterView, Fade, Playhead, ViewerState};
 use crate::library::{Held, Model, ModelClip, Moment, Outgoing, Take};
 
 /// Returns what a view plays: the active clip with everything that the view lays over it.
@@ -13,7 +13,7 @@ pub fn active_take<'a>(model: &'a Model, state: &'a ViewerState) -> Take<'a> {
 
 /// Returns the same of another clip, the whole of it.
 pub fn take_of<'a>(model: &'a Model, clip: Option<&'a ModelClip>, state: &'a ViewerState) -> Take<'a> {
-    let ViewerState { playback, display, edits, .. } = state;
+    let ViewerState { character: CharacterView { edits, .. }, playback, display, .. } = state;
     Take {
         loop_mode: playback.loop_mode,
         layers: &edits.layers,
@@ -28,7 +28,7 @@ pub fn take_of<'a>(model: &'a Model, clip: Option<&'a ModelClip>, state: &'a Vie
 
 /// Returns the time of a view in its [`active_take`].
 pub fn moment<'a>(model: &'a Model, state: &ViewerState) -> Moment<'a> {
-    let Playhead { time_secs, fade, .. } = &state.playhead;
+    let Playhead { time_secs, fade, .. } = &state.character.playhead;
     let from = fade.as_ref().map(|Fade { clip, time_secs, elapsed_secs }| {
         let from = chosen_clip(model, clip);
         Outgoing {

@@ -15,8 +15,8 @@ use crate::retarget::{Contacts, Feet, Pin, RootOptions, Unmapped};
 ///
 /// | group | starts over with another model | covered by undo |
 /// | --- | --- | --- |
-/// | `sources`, `playhead`, `selection`, `camera` | yes | no |
-/// | `retarget`, `edits`, `inspect` | yes | yes |
+/// | `sources` and `playhead` of the character, `selection`, `camera` | yes | no |
+/// | `retarget` and `edits` of the character, `inspect` | yes | yes |
 /// | `display`, `lighting` | no | yes |
 /// | `playback`, `camera_options`, `page` | no | no |
 ///
@@ -25,16 +25,10 @@ use crate::retarget::{Contacts, Feet, Pin, RootOptions, Unmapped};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewerState {
-    /// The files and the scene.
-    pub sources: Sources,
-    /// How motions are retargeted.
-    pub retarget: RetargetEdits,
-    /// Changes to the model itself.
-    pub edits: Edits,
+    /// The character on the stage.
+    pub character: CharacterView,
     /// What the viewport explains.
     pub inspect: Inspect,
-    /// The active clip and the time in it.
-    pub playhead: Playhead,
     /// The selected joint and vertex.
     pub selection: Selection,
     /// Where the model is seen from.
@@ -55,20 +49,22 @@ impl ViewerState {
     /// Returns the view of another model: everything about the model comes from `model`, the rest is kept. Ends a crossfade.
     pub fn for_model(self, model: Self) -> Self {
         let Self { playback, display, lighting, camera_options, page, .. } = self;
-        let playhead = Playhead { fade: None, ..model.playhead };
-        Self { playhead, playback, display, lighting, camera_options, page, ..model }
+        let playhead = Playhead { fade: None, ..model.character.playhead };
+        let character = CharacterView { playhead, ..model.character };
+        Self { character, playback, display, lighting, camera_options, page, ..model }
     }
 
     /// Returns the default view of a model from this source.
     pub fn of_model(source: String) -> Self {
         let sources = Sources { model: vec![source], ..Sources::default() };
-        Self { sources, ..Self::default() }
+        Self { character: CharacterView { sources, ..CharacterView::default() }, ..Self::default() }
     }
 
     /// Returns the view with a sample as its model if it names none.
     pub fn or_sample(mut self, name: &str) -> Self {
-        if self.sources.model.is_empty() {
-            self.sources.model.push(format!("sample:{name}"));
+        let sources = &mut self.character.sources;
+        if sources.model.is_empty() {
+            sources.model.push(format!("sample:{name}"));
         }
         self
     }
@@ -97,7 +93,7 @@ impl ViewerState {
 
     /// Returns the groups that undo covers.
     pub(super) fn undoable(&self) -> UndoableEdits<'_> {
-        let Self { retarget, edits, inspect, display, lighting, .. } = self;
+        let Self { character: CharacterView { retarget, edits, .. }, inspect, display, lighting, .. } = self;
         UndoableEdits { retarget, edits, inspect, display, lighting }
     }
 
@@ -109,11 +105,25 @@ impl ViewerState {
     /// Copies the groups that undo covers from another state.
     pub(super) fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();
-        self.retarget.clone_from(retarget);
-        self.edits.clone_from(edits);
+        self.character.retarget.clone_from(retarget);
+        self.character.edits.clone_from(edits);
         self.lighting.clone_from(lighting);
         (self.inspect, self.display) = (*inspect, *display);
     }
+}
+
+/// All of the view that belongs to one character.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CharacterView {
+    /// The files and the scene.
+    pub sources: Sources,
+    /// How motions are retargeted.
+    pub retarget: RetargetEdits,
+    /// Changes to the model itself.
+    pub edits: Edits,
+    /// The active clip and the time in it.
+    pub playhead: Playhead,
 }
 
 /// A view's own settings of motion, for links, while the preference for reduced motion overrides them. `None` if it

@@ -29,7 +29,7 @@ const DEFAULT_BLEND_SECS: f64 = 0.2;
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let Some(clip) = active_clip(model, shown.state) else { return };
-    let before = shown.state.edits.clips.changes_of(clip.id());
+    let before = shown.state.character.edits.clips.changes_of(clip.id());
     let mut changes = before.clone();
     controls::section(ui, capitals!(text::CHANGE_CLIP));
     name(ui, clip, out);
@@ -90,7 +90,7 @@ fn name(ui: &mut Ui, clip: &ModelClip, out: &mut Output) {
 fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<ClipChanges> {
     // The range is then not in the time of the original clip.
     let is_timed = changes.reverse || changes.speed != 1.0;
-    let range = shown.state.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
+    let range = shown.state.character.playhead.range.filter(|range| !is_timed && range.length_secs() > 0.0);
     let start_secs = changes.trim.map_or(0.0, |trim| trim.start_secs);
     let in_clip = |secs: f64| egui::emath::round_to_decimals(start_secs + secs, 6);
     let range =
@@ -102,7 +102,7 @@ fn trim(ui: &mut Ui, shown: &Shown<'_>, changes: &mut ClipChanges) -> Option<Cli
         (false, false) => text::NEEDS_RANGE,
     };
     let why_not = range.is_none().then_some(no_range);
-    let is_full = shown.state.edits.clips.copies.len() == ClipEdits::MAX_COPIES;
+    let is_full = shown.state.character.edits.clips.copies.len() == ClipEdits::MAX_COPIES;
     ui.horizontal_wrapped(|ui| {
         let is_trimmed = changes.trim.is_some();
         if trim_button(ui, text::TRIM_TO_RANGE, why_not) {

@@ -103,7 +103,7 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
         if row.clicked() {
             out.commands.push(Command::SetClip(ClipChoice::Clip(clip.id().clone())));
         }
-        let changes = shown.state.edits.clips.changes_of(clip.id());
+        let changes = shown.state.character.edits.clips.changes_of(clip.id());
         if !changes.is_none() {
             ui.painter().circle_filled(row.rect.left_center() + vec2(5.0, 0.0), 2.5, style::palette(ui).accent);
             let changes = text::changes(&changes);

@@ -25,7 +25,7 @@ const UPPER_BODY: [BodyPart; 4] = [BodyPart::Torso, BodyPart::Head, BodyPart::Le
 /// Shows the section for a model with clips.
 pub(super) fn section(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active().filter(|model| !model.clips().is_empty()) else { return };
-    let before = &shown.state.edits.layers;
+    let before = &shown.state.character.edits.layers;
     let mut layers = before.clone();
     let mut moved = None;
     controls::section(ui, capitals!(text::LAYERS));
@@ -182,7 +182,7 @@ fn mask(ui: &mut Ui, shown: &Shown<'_>, model: &Model, layer: &mut ClipLayer) {
 
 /// The layers that the model has clips for.
 fn playable<'a>(shown: &Shown<'a>) -> impl Iterator<Item = (&'a ClipLayer, &'a ModelClip)> + use<'a> {
-    let layers = shown.library.active().map(|model| (model, &shown.state.edits.layers));
+    let layers = shown.library.active().map(|model| (model, &shown.state.character.edits.layers));
     let layers = layers.into_iter().flat_map(|(model, layers)| layers.iter().map(move |over| (over, model)));
     layers.filter_map(|(over, model)| Some((&over.layer, model.clip(&over.clip)?)))
 }

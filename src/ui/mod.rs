@@ -294,7 +294,8 @@ impl UiState {
 
     /// Shows the pose sliders if the opened view selects a joint that it poses manually.
     pub fn on_view_opened(&mut self, state: &ViewerState) {
-        self.joint_card.is_posing = state.selection.joint.is_some_and(|joint| state.edits.pose.contains_key(&joint));
+        self.joint_card.is_posing =
+            state.selection.joint.is_some_and(|joint| state.character.edits.pose.contains_key(&joint));
         if self.joint_card.is_posing {
             (self.layout.tab, self.layout.inspector_open) = (Tab::Scene, true);
         }

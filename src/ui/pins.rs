@@ -31,7 +31,8 @@ impl Named<'_> {
 /// Those of the pins that `wanted` accepts.
 fn pins<'a>(shown: &Shown<'a>, wanted: fn(&Pin) -> bool) -> impl Iterator<Item = Named<'a>> + use<'a> {
     let Shown { library, state, .. } = *shown;
-    let pins = library.active().into_iter().flat_map(|model| state.edits.pins.iter().map(move |pin| (model, pin)));
+    let pins =
+        library.active().into_iter().flat_map(|model| state.character.edits.pins.iter().map(move |pin| (model, pin)));
     pins.filter(move |(_, (_, pin))| wanted(pin)).filter_map(|(model, (&number, &pin))| {
         let name = |number| Some(title(Some(state), &model.asset, model.asset.skeleton.joint_of_source(number)?));
         let goal = if let PinGoal::Joint(other, _) = pin.goal { name(other) } else { None };

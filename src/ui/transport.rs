@@ -20,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
     let feet_gutter = if has_feet { feet::gutter(ui, shown) } else { 0.0 };
     let gutters = if has_tracks { [layers::gutter(ui, shown), pins::gutter(ui, shown)] } else { [0.0; 2] };
     let gutter = gutters.into_iter().fold(feet_gutter, f32::max);
-    let range = shown.state.playhead.range;
+    let range = shown.state.character.playhead.range;
     let bar = Scrub {
         clip: shown.clip().map(ModelClip::clip),
         time_secs: shown.clip_time_secs(),
@@ -143,7 +143,7 @@ fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     // Invisible rather than absent, so that the other buttons don't move.
     ui.scope(|ui| {
-        if shown.state.playhead.range.is_none() {
+        if shown.state.character.playhead.range.is_none() {
             ui.set_invisible();
         }
         if icon_button(ui, Icon::Close, text::CLEAR_RANGE).clicked() {
@@ -163,7 +163,7 @@ pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
     let duration_secs = shown.clip()?.duration_secs();
     let now = shown.clip_time_secs();
     let TimeRange { start_secs, end_secs } =
-        shown.state.playhead.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
+        shown.state.character.playhead.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
     let range = if start {
         TimeRange { start_secs: now, end_secs: if now < end_secs { end_secs } else { duration_secs } }
     } else {

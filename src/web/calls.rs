@@ -50,7 +50,7 @@ pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_ha
     let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await?;
     // After the frame: checking rig and clips takes milliseconds.
     let document = with_app(&page, |app| {
-        let sources = &app.state().sources.model;
+        let sources = &app.state().character.sources.model;
         app.library().active().map(|model| inspect(model, sources)).unwrap_or_default()
     });
     Ok(json!({ "shown": opened.kind, "document": document.map_err(stopped)? }).to_string())
@@ -248,7 +248,8 @@ pub fn summary() -> Result<String, JsValue> {
         let model = app.library().active();
         let clip = model.and_then(|model| active_clip(model, state)).map(ModelClip::title);
         let models = app.library().models().iter();
-        let unlisted = models.filter(|other| !other.is_placeholder() && !state.sources.model.contains(&other.origin));
+        let unlisted =
+            models.filter(|other| !other.is_placeholder() && !state.character.sources.model.contains(&other.origin));
         json!({
             "model": model.map_or_else(String::new, named),
             "isEmpty": model.is_none_or(Model::is_placeholder),
@@ -266,11 +267,11 @@ pub fn summary() -> Result<String, JsValue> {
 
 /// Whether files must be read to go from `before` to `state`.
 fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
-    let has_map_file = || state.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)));
+    let has_map_file = || state.character.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)));
     let light = &state.lighting.environment;
     let has_other_light = matches!(light, EnvironmentChoice::File(_)) && *light != before.lighting.environment;
-    let has_other_sources =
-        state.sources.model != before.sources.model || state.sources.motion != before.sources.motion;
+    let has_other_sources = state.character.sources.model != before.character.sources.model
+        || state.character.sources.motion != before.character.sources.motion;
     has_other_sources || has_other_light || has_map_file()
 }
 
@@ -294,8 +295,8 @@ async fn open_state(
     let with_model = reload || !with_app(page, |app| app.editor().holds(&state))?;
     let current_motions = if reload { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
     let environments = if reload { Vec::new() } else { with_app(page, |app| app.library().environments().to_vec())? };
-    let mut loaded = if with_model { state.sources.model.clone() } else { Vec::new() };
-    let mut motions = state.sources.motion.clone();
+    let mut loaded = if with_model { state.character.sources.model.clone() } else { Vec::new() };
+    let mut motions = state.character.sources.motion.clone();
     motions.retain(|source| !current_motions.iter().any(|motion| motion.origin == *source));
     let request = Request::View { state: Box::new(state), with_model, current_motions, environments, about_link };
     let opened = load(page, request).await?;

@@ -265,14 +265,14 @@ async fn open_fallback(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<First, String> {
     let mut models = Vec::new();
-    for motion in &wanted.sources.motion {
+    for motion in &wanted.character.sources.motion {
         match open_items(limits, vec![Item::Address(motion.into())], Role::Model, progress, None).await {
             Ok(found) => models.extend(found.models),
             Err(error) => problems.push(error.to_string()),
         }
     }
     models.truncate(1);
-    let view = match (models.first(), wanted.sources.model.first()) {
+    let view = match (models.first(), wanted.character.sources.model.first()) {
         (Some(model), _) => wanted.for_model(ViewerState::of_model(model.model.source.clone())),
         (None, Some(awaited)) => {
             models.push(Model::placeholder(awaited).into());

@@ -75,13 +75,13 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     assert_eq!(desk.active(), "sample:pilot", "a motion does not replace the model");
     assert_eq!(desk.retargeted_clips(), 1);
     assert!(desk.shows("Added 1 clip from Walk."));
-    let clip = desk.state().playhead.clip.clone();
+    let clip = desk.state().character.playhead.clip.clone();
     assert_ne!(clip, ClipChoice::First, "the new clip plays");
     desk.undo();
     assert_eq!((desk.retargeted_clips(), desk.library().motions().len()), (0, 0));
     assert!(desk.shows("Removed motion Walk. Redo brings it back."));
     desk.redo();
-    assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
+    assert_eq!((desk.retargeted_clips(), &desk.state().character.playhead.clip), (1, &clip));
     assert!(desk.shows("Added motion Walk again."));
     assert!(desk.shows(text::SEARCH_JOINTS), "borrowing brought the tab forward");
     desk.press(Tab::Scene.label());
@@ -104,16 +104,16 @@ fn the_motion_tabs_arrows_take_back_its_own_edits_only() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:walk".into()]);
     desk.press(Tab::Motion.label());
-    let proposed = desk.state().retarget.map.clone();
+    let proposed = desk.state().character.retarget.map.clone();
     desk.press(text::UNDO_KEY);
     assert_eq!(desk.library().motions().len(), 1, "the motion stays");
     desk.press(text::CLEAR_MAP);
-    assert_ne!(desk.state().retarget.map, proposed);
+    assert_ne!(desk.state().character.retarget.map, proposed);
     desk.press(text::UNDO_KEY);
     desk.press(text::UNDO_KEY);
-    assert_eq!((desk.library().motions().len(), &desk.state().retarget.map), (1, &proposed));
+    assert_eq!((desk.library().motions().len(), &desk.state().character.retarget.map), (1, &proposed));
     desk.press(text::REDO_KEY);
-    assert_ne!(desk.state().retarget.map, proposed);
+    assert_ne!(desk.state().character.retarget.map, proposed);
     // Ctrl+Z undoes every step, not only map edits.
     desk.undo();
     desk.undo();
@@ -159,14 +159,14 @@ fn a_joint_map_needs_a_motion_and_is_an_undo_step() {
     assert!(problem.contains("no motion is loaded"), "{problem}");
     assert_eq!(desk.state(), &before);
     desk.open(&["sample:walk".into()]);
-    let proposed = desk.state().retarget.map.clone();
+    let proposed = desk.state().character.retarget.map.clone();
     desk.open(std::slice::from_ref(&map));
     std::fs::remove_file(&map).expect("was there");
     assert_eq!(desk.problem(), None);
-    assert_ne!(desk.state().retarget.map, proposed);
+    assert_ne!(desk.state().character.retarget.map, proposed);
     assert!(desk.shows("Applied the joint map and its options to Walk."));
     desk.undo();
-    assert_eq!(desk.state().retarget.map, proposed);
+    assert_eq!(desk.state().character.retarget.map, proposed);
 }
 
 #[test]
@@ -198,9 +198,9 @@ fn the_link_names_the_active_model_of_an_archive() {
     desk.open(std::slice::from_ref(&archive));
     std::fs::remove_file(&archive).expect("was there");
     let file = archive.file_name().and_then(|name| name.to_str()).expect("has a name").to_owned();
-    assert_eq!(desk.state().sources.model, std::slice::from_ref(&file), "the first one");
+    assert_eq!(desk.state().character.sources.model, std::slice::from_ref(&file), "the first one");
     desk.press("dwarf.glb");
-    assert_eq!(desk.state().sources.model, [format!("{file}#!/in/dwarf.glb")]);
+    assert_eq!(desk.state().character.sources.model, [format!("{file}#!/in/dwarf.glb")]);
     assert!(
         to_link(desk.state(), desk.library()).contains("%23!/in/dwarf.glb"),
         "{}",

@@ -41,7 +41,7 @@ fn a_frame_is_the_same_whenever_it_is_drawn_and_the_view_stays() {
     assert!(!desk.shows(text::RECORDING));
     assert!(desk.video_frame(0).is_err());
     assert!(desk.state().playback.playing);
-    assert_ne!(desk.state().playhead, before.playhead, "playback goes on");
+    assert_ne!(desk.state().character.playhead, before.character.playhead, "playback goes on");
 }
 
 #[test]

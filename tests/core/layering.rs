@@ -243,20 +243,8 @@ fn names_stay_where_they_belong() {
 }
 
 /// The groups of `ViewerState`'s fields.
-const STATE_GROUPS: [&str; 12] = [
-    "sources",
-    "retarget",
-    "edits",
-    "inspect",
-    "playhead",
-    "selection",
-    "camera",
-    "playback",
-    "display",
-    "lighting",
-    "camera_options",
-    "page",
-];
+const STATE_GROUPS: [&str; 9] =
+    ["character", "inspect", "selection", "camera", "playback", "display", "lighting", "camera_options", "page"];
 
 /// Operators and methods that mutate their left-hand side.
 const CHANGES: [&str; 9] = ["+=", "-=", "*=", "|=", "&=", ".push(", ".insert(", ".extend(", ".clear("];
@@ -308,11 +296,11 @@ fn only_the_editor_changes_the_view() {
 #[test]
 fn changes_of_the_view_are_found() {
     let changing = [
-        "self.state.playhead.time_secs = 1.0;",
+        "self.state.character.playhead.time_secs = 1.0;",
         "state.camera = choice;",
         "state.playback.speed += 1.0;",
-        "state.sources.model.push(name);",
-        "view.sources = sources;",
+        "state.character.sources.model.push(name);",
+        "view.character.sources = sources;",
         "next.lighting.key = None;",
         "fn set(state: &mut ViewerState) {}",
     ];
@@ -321,7 +309,7 @@ fn changes_of_the_view_are_found() {
     }
     let reading = [
         "if state.camera == choice {}",
-        "state.sources.model.iter()",
+        "state.character.sources.model.iter()",
         "state.playback.speed => 1",
         "let x = state.page.embed;",
     ];

@@ -3,7 +3,7 @@
 use gaitway::frame::{Frame, View, evaluate};
 use gaitway::library::{Library, Model};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
-use gaitway::state::{Background, ClipChoice, Playhead, ViewerState};
+use gaitway::state::{Background, CharacterView, ClipChoice, Playhead, ViewerState};
 use glam::Vec3;
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
@@ -48,7 +48,8 @@ impl Stage {
     fn draw(&mut self, time_secs: Option<f64>) -> Picture {
         let clip = if time_secs.is_some() { ClipChoice::First } else { ClipChoice::RestPose };
         let playhead = Playhead { clip, time_secs: time_secs.unwrap_or(0.0), ..Playhead::default() };
-        let mut state = ViewerState { playhead, ..ViewerState::default() };
+        let mut state =
+            ViewerState { character: CharacterView { playhead, ..CharacterView::default() }, ..ViewerState::default() };
         state.display.background = Background::Transparent;
         (state.display.show.grid, state.display.show.shadow) = (false, false);
         let Self { gpu: Gpu { device, queue }, library, renderer, frame } = self;

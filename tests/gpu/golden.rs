@@ -10,7 +10,7 @@ use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
 use gaitway::samples;
-use gaitway::state::{Playhead, ViewerState};
+use gaitway::state::{CharacterView, Playhead, ViewerState};
 
 use crate::device::{Gpu, gpu};
 
@@ -71,7 +71,13 @@ fn draw(gpu: &Gpu, model: Model) -> Vec<u8> {
     let Gpu { device, queue } = gpu;
     let mut library = Library::default();
     library.add(model);
-    let state = ViewerState { playhead: Playhead { time_secs: 0.3, ..Default::default() }, ..Default::default() };
+    let state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..Default::default() },
+            ..CharacterView::default()
+        },
+        ..Default::default()
+    };
     let mut frame = Frame::default();
     evaluate(&library, &state, SIZE[0] as f32 / SIZE[1] as f32, &mut frame);
     let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });

@@ -33,10 +33,10 @@ fn a_second_loop_of_the_clip_does_not_allocate() {
     state.display.show.bounds = true;
     state.inspect.weights = true;
     state.inspect.split = true;
-    state.edits.pose.insert(15, [20.0, 0.0, 0.0]);
+    state.character.edits.pose.insert(15, [20.0, 0.0, 0.0]);
     let times = Some(PinTimes { start_secs: 0.2, end_secs: 0.6, blend_secs: 0.1 });
     for (joint, goal) in [(9, PinGoal::Point(Vec3::Y)), (13, PinGoal::Joint(5, Vec3::X)), (5, PinGoal::Camera)] {
-        state.edits.pins.insert(joint, Pin { goal, times });
+        state.character.edits.pins.insert(joint, Pin { goal, times });
     }
     assert_eq!(allocations_while_playing(&library, state, 70, 200), 0);
 }

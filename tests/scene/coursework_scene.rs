@@ -10,8 +10,8 @@ use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex
 use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
-    ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply, from_link,
-    title, written_skeleton,
+    CharacterView, ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState,
+    apply, from_link, title, written_skeleton,
 };
 use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
@@ -31,8 +31,14 @@ fn bent() -> ViewerState {
 /// The same rotations for the reference implementation of the exercise.
 fn rotations(state: &ViewerState) -> Vec<DQuat> {
     let of = |joint: usize| {
-        let [x, y, z] =
-            state.edits.pose.get(&joint).copied().unwrap_or_default().map(|angle| f64::from(angle).to_radians());
+        let [x, y, z] = state
+            .character
+            .edits
+            .pose
+            .get(&joint)
+            .copied()
+            .unwrap_or_default()
+            .map(|angle| f64::from(angle).to_radians());
         DQuat::from_euler(EulerRot::XYZ, x, y, z)
     };
     (0..18).map(of).collect()
@@ -66,7 +72,10 @@ fn manual_poses_match_the_formula() {
         assert!(furthest(&found, &exercise.skinned(&rotations(&state))) < 1e-6, "{name}");
         assert!(furthest(&found, &exercise.vertices) > 0.05, "{name} is bent");
         let rest = ViewerState {
-            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            character: CharacterView {
+                playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+                ..CharacterView::default()
+            },
             ..ViewerState::default()
         };
         assert!(furthest(&positions(&pose_document(&library, &rest)), &exercise.vertices) < 1e-6, "{name}");
@@ -133,7 +142,10 @@ fn the_terms_of_the_formula_add_up_to_the_drawn_position() {
     let (Some(library), Some(exercise)) = (open("mit6837/Model1.obj"), exercise("Model1")) else { return };
     let model = library.active().expect("a model");
     for up in [UpAxis::Y, UpAxis::Z] {
-        let state = ViewerState { edits: Edits { up, ..bent().edits }, ..bent() };
+        let state = ViewerState {
+            character: CharacterView { edits: Edits { up, ..bent().character.edits }, ..bent().character },
+            ..bent()
+        };
         let frame = evaluated(&library, &state);
         let expected = exercise.skinned(&rotations(&state));
         let mut formula = VertexFormula::default();
@@ -166,8 +178,11 @@ fn any_skinned_model_has_a_formula() {
     let model = library.active().expect("a model");
     for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
         let state = ViewerState {
+            character: CharacterView {
+                playhead: Playhead { time_secs: 0.4, ..Playhead::default() },
+                ..CharacterView::default()
+            },
             display: Display { skinning, ..Display::default() },
-            playhead: Playhead { time_secs: 0.4, ..Playhead::default() },
             ..ViewerState::default()
         };
         let frame = evaluated(&library, &state);
@@ -233,18 +248,18 @@ fn joints_can_be_renamed() {
         title(Some(state), asset, joint).into_owned()
     };
     assert_eq!(rename(&mut state, "  Crown,\tof: the head \n"), "Crown,of: the head");
-    assert_eq!(from_link(&link_of(&state)).0.edits.names, state.edits.names);
+    assert_eq!(from_link(&link_of(&state)).0.character.edits.names, state.character.edits.names);
     assert_eq!(rename(&mut state, &"x".repeat(500)).len(), 80);
     assert_eq!(rename(&mut state, ""), before);
     assert_eq!(rename(&mut state, &before.clone()), before, "the file's own name is not a custom name");
-    assert!(state.edits.names.is_empty());
+    assert!(state.character.edits.names.is_empty());
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!(state.edits.names[&5].len(), 80);
+    assert_eq!(state.character.edits.names[&5].len(), 80);
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!(state.edits.names[&5], "Crown,of: the head");
+    assert_eq!(state.character.edits.names[&5], "Crown,of: the head");
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });
-    assert_eq!(state.edits.names.len(), 1);
+    assert_eq!(state.character.edits.names.len(), 1);
     let written = written_skeleton(library.active().expect("a model"), &state, None);
     assert_eq!(written.name(joint), "Crown,of: the head");
     assert_eq!(written.rest(), asset.skeleton.rest());

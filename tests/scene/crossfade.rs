@@ -3,7 +3,7 @@
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
-use gaitway::state::{ClipChoice, Command, Playback, Playhead, ViewerState, apply};
+use gaitway::state::{CharacterView, ClipChoice, Command, Playback, Playhead, ViewerState, apply};
 
 use crate::by_place::ByPlace;
 use crate::data::{sampled, walker};
@@ -28,7 +28,10 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
     let library = walker_with_crossfade();
     let own = library.active().expect("a model").asset.clips.len();
     let mut state = ViewerState {
-        playhead: Playhead { clip: ClipChoice::called("0"), ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::called("0"), ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     apply(&mut state, &library, Command::Advance(0.3));
@@ -39,15 +42,24 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
         assert!(now.translation.abs_diff_eq(before.translation, 1e-6), "nothing jumps");
     }
     apply(&mut state, &library, Command::Advance(0.2));
-    assert!(state.playhead.fade.is_some());
+    assert!(state.character.playhead.fade.is_some());
     let (mixed, alone) = (
         pose(&library, &state),
-        pose(&library, &ViewerState { playhead: Playhead { fade: None, ..state.playhead.clone() }, ..state.clone() }),
+        pose(
+            &library,
+            &ViewerState {
+                character: CharacterView {
+                    playhead: Playhead { fade: None, ..state.character.playhead.clone() },
+                    ..state.clone().character
+                },
+                ..state.clone()
+            },
+        ),
     );
     assert_ne!(mixed, alone);
     assert!(mixed.locals().all(|local| local.rotation.is_normalized()));
     apply(&mut state, &library, Command::Advance(0.21));
-    assert_eq!(state.playhead.fade, None);
+    assert_eq!(state.character.playhead.fade, None);
 }
 
 #[test]
@@ -55,7 +67,7 @@ fn nothing_fades_while_paused_or_between_the_models_own_clips() {
     let library = walker_with_crossfade();
     let change = |state: &mut ViewerState, clip: usize| {
         apply(state, &library, Command::SetClip(ClipChoice::called(&clip.to_string())));
-        state.playhead.fade.clone()
+        state.character.playhead.fade.clone()
     };
     let mut playing = ViewerState::default();
     assert_eq!(change(&mut playing, 1), None, "the model's own clips have no map");
@@ -71,17 +83,20 @@ fn a_crossfade_into_the_rest_pose_or_past_the_end_of_a_clip_completes() {
     let library = walker_with_crossfade();
     let own = library.active().expect("a model").asset.clips.len();
     let playing = ViewerState {
-        playhead: Playhead { clip: ClipChoice::called(&own.to_string()), ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::called(&own.to_string()), ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let mut resting = playing.clone();
     apply(&mut resting, &library, Command::Advance(0.3));
     apply(&mut resting, &library, Command::SetClip(ClipChoice::RestPose));
-    assert!(resting.playhead.fade.is_some());
+    assert!(resting.character.playhead.fade.is_some());
     apply(&mut resting, &library, Command::Advance(0.2));
-    assert!(resting.playhead.fade.is_some(), "half of it");
+    assert!(resting.character.playhead.fade.is_some(), "half of it");
     apply(&mut resting, &library, Command::Advance(0.21));
-    assert_eq!((resting.playhead.fade, resting.playhead.time_secs), (None, 0.0));
+    assert_eq!((resting.character.playhead.fade, resting.character.playhead.time_secs), (None, 0.0));
     let mut once = playing;
     apply(&mut once, &library, Command::SetLoopMode(LoopMode::Once));
     apply(&mut once, &library, Command::SetClip(ClipChoice::First));
@@ -89,5 +104,5 @@ fn a_crossfade_into_the_rest_pose_or_past_the_end_of_a_clip_completes() {
     apply(&mut once, &library, Command::SetRange(Some(TimeRange { start_secs: 0.0, end_secs: 0.2 })));
     assert!(secs > 0.2);
     apply(&mut once, &library, Command::Advance(0.25));
-    assert_eq!((once.playhead.fade, once.playback.playing), (None, false));
+    assert_eq!((once.character.playhead.fade, once.playback.playing), (None, false));
 }

@@ -4,7 +4,7 @@ use gaitway::asset::SceneJoints;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::{ClipId, Library, Take};
 use gaitway::mesh::{Bounds, SkinningMode};
-use gaitway::state::{ClipChoice, Display, Playhead, ViewerState};
+use gaitway::state::{CharacterView, ClipChoice, Display, Playhead, ViewerState};
 use glam::Vec3;
 
 use crate::data::{open, walker};
@@ -27,7 +27,10 @@ fn check(library: &Library, clip: usize) {
     for sample in 0..=24 {
         let time_secs = duration_secs * f64::from(sample) / 24.0;
         let state = ViewerState {
-            playhead: Playhead { clip: ClipChoice::called(&clip.to_string()), time_secs, ..Playhead::default() },
+            character: CharacterView {
+                playhead: Playhead { clip: ClipChoice::called(&clip.to_string()), time_secs, ..Playhead::default() },
+                ..CharacterView::default()
+            },
             ..ViewerState::default()
         };
         let exact = exact(library, &state);
@@ -66,7 +69,10 @@ fn bounds_of_real_characters() {
 #[test]
 fn rest_bounds_are_exact() {
     let state = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         display: Display { skinning: SkinningMode::Linear, ..Display::default() },
         ..ViewerState::default()
     };

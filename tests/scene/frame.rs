@@ -6,7 +6,8 @@ use gaitway::frame::{Bone, Frame, PickedJoint, evaluate, pick_joint};
 use gaitway::library::{ClipId, Library, Model};
 use gaitway::mesh::{Geometry, Mesh, SkinningMode};
 use gaitway::state::{
-    Background, Channel, ClipChoice, Command, Display, Inspect, Playhead, Selection, Show, ViewerState, apply,
+    Background, Channel, CharacterView, ClipChoice, Command, Display, Inspect, Playhead, Selection, Show, ViewerState,
+    apply,
 };
 use glam::{Affine3A, Vec2, Vec3, Vec4Swizzles};
 
@@ -80,13 +81,22 @@ fn of_many_lights_the_strongest_are_drawn() {
 fn equal_states_give_equal_frames() {
     let library = walker();
     let state = ViewerState {
-        playhead: Playhead { time_secs: 0.3, ..showing(|show| show.skeleton = true).playhead },
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..showing(|show| show.skeleton = true).character.playhead },
+            ..showing(|show| show.skeleton = true).character
+        },
         ..showing(|show| show.skeleton = true)
     };
     let fresh = frame_of(&library, &state);
     let mut used = frame_of(
         &library,
-        &ViewerState { playhead: Playhead { time_secs: 0.9, ..Playhead::default() }, ..ViewerState::default() },
+        &ViewerState {
+            character: CharacterView {
+                playhead: Playhead { time_secs: 0.9, ..Playhead::default() },
+                ..CharacterView::default()
+            },
+            ..ViewerState::default()
+        },
     );
     evaluate(&library, &state, 1.5, &mut used);
     assert_eq!(used.characters[0].palette, fresh.characters[0].palette);
@@ -98,9 +108,14 @@ fn equal_states_give_equal_frames() {
 fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     let mut library = walker();
     let clip = ClipChoice::called("Wave");
-    let mut state =
-        ViewerState { playhead: Playhead { time_secs: 1.3, clip, ..Playhead::default() }, ..ViewerState::default() };
-    state.edits.pose.insert(HEAD, [30.0, 0.0, 0.0]);
+    let mut state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 1.3, clip, ..Playhead::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    };
+    state.character.edits.pose.insert(HEAD, [30.0, 0.0, 0.0]);
     let mut frame = frame_of(&library, &state);
     let skeleton = library.active().expect("the walker").asset.skeleton.clone();
     let mut world_from_joint = Vec::new();
@@ -108,7 +123,7 @@ fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     assert_eq!(world_from_joint, frame.characters[0].world_from_joint);
     assert_eq!(frame.pose().morph_weights, frame.characters[0].morph_weights);
     assert_eq!((frame.clip.clone(), frame.look.time_secs), (Some(ClipId::Own(2)), 1.3));
-    state.playhead.clip = ClipChoice::RestPose;
+    state.character.playhead.clip = ClipChoice::RestPose;
     evaluate(&library, &state, 1.5, &mut frame);
     assert_eq!((frame.clip.clone(), frame.look.time_secs), (None, 0.0));
     library = Library::default();
@@ -137,9 +152,9 @@ fn each_instance_has_its_own_palette() {
 #[test]
 fn manual_morph_weights_override_the_clip() {
     let mut state = ViewerState::default();
-    state.edits.morph.insert(0, 0.75);
+    state.character.edits.morph.insert(0, 0.75);
     // Neither a panic nor an effect: the link may be from another model.
-    state.edits.morph.insert(99, 1.0);
+    state.character.edits.morph.insert(99, 1.0);
     assert_eq!(frame_of(&walker(), &state).characters[0].morph_weights, [0.75]);
 }
 

@@ -3,8 +3,8 @@
 use gaitway::frame::{Frame, evaluate};
 use gaitway::retarget::RestChoice;
 use gaitway::state::{
-    CameraChoice, CameraOptions, Command, Comparison, Edits, OrbitCamera, Playback, Playhead, UpAxis, ViewerState,
-    apply, comparison_ratio, resolve_camera, resolved_bounds,
+    CameraChoice, CameraOptions, CharacterView, Command, Comparison, Edits, OrbitCamera, Playback, Playhead, UpAxis,
+    ViewerState, apply, comparison_ratio, resolve_camera, resolved_bounds,
 };
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
@@ -29,7 +29,13 @@ fn the_whole_clip_is_in_view() {
             for up in [UpAxis::Y, UpAxis::Z, UpAxis::MinusX] {
                 let reach = reach(
                     &library,
-                    &ViewerState { edits: Edits { up, ..Edits::default() }, ..ViewerState::default() },
+                    &ViewerState {
+                        character: CharacterView {
+                            edits: Edits { up, ..Edits::default() },
+                            ..CharacterView::default()
+                        },
+                        ..ViewerState::default()
+                    },
                     aspect,
                 );
                 assert!((0.85..=1.0).contains(&reach), "aspect {aspect}, {up:?}: {reach}");
@@ -53,8 +59,11 @@ fn framing_keeps_the_direction() {
 fn a_following_camera_stays_with_the_character() {
     let library = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::new(10.0, 2.0, -5.0)]);
     let follow = |time_secs| ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         camera_options: CameraOptions { follow: true, ..CameraOptions::default() },
-        playhead: Playhead { time_secs, ..Playhead::default() },
         ..ViewerState::default()
     };
     let (mut start, mut end) = (Frame::default(), Frame::default());
@@ -83,7 +92,10 @@ fn the_chosen_axis_points_up() {
         let mut frame = Frame::default();
         evaluate(
             &library,
-            &ViewerState { edits: Edits { up, ..Edits::default() }, ..ViewerState::default() },
+            &ViewerState {
+                character: CharacterView { edits: Edits { up, ..Edits::default() }, ..CharacterView::default() },
+                ..ViewerState::default()
+            },
             1.0,
             &mut frame,
         );

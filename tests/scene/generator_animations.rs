@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use gaitway::anim::LoopMode;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
-use gaitway::state::{ClipChoice, Playback, Playhead, ViewerState};
+use gaitway::state::{CharacterView, ClipChoice, Playback, Playhead, ViewerState};
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::data::open;
@@ -18,7 +18,10 @@ fn file(name: &str) -> Option<Library> {
 fn at(clip: usize, time_secs: f64) -> ViewerState {
     let clip = ClipChoice::called(&clip.to_string());
     ViewerState {
-        playhead: Playhead { clip, time_secs, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip, time_secs, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         playback: Playback { loop_mode: LoopMode::Once, ..Playback::default() },
         ..ViewerState::default()
     }
@@ -192,7 +195,10 @@ fn sampler_types_give_the_same_motion() {
 fn skin_02_ignores_the_transforms_of_the_skinned_node_and_its_parent() {
     let (Some(plain), Some(moved)) = (file("Animation_Skin_00"), file("Animation_Skin_02")) else { return };
     let rest = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     assert!(apart(&positions(&plain, 0, &rest), &positions(&moved, 1, &rest)) < 1e-6);
@@ -202,7 +208,10 @@ fn skin_02_ignores_the_transforms_of_the_skinned_node_and_its_parent() {
 fn skin_03_without_inverse_bind_matrices_only_its_joints_place_it() {
     let Some(library) = file("Animation_Skin_03") else { return };
     let rest = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let asset = &library.active().expect("a model").asset;
@@ -256,7 +265,10 @@ fn draws(library: &Library) -> Vec<usize> {
 fn skin_06_joints_need_no_common_root() {
     let (Some(chain), Some(roots)) = (file("Animation_Skin_00"), file("Animation_Skin_06")) else { return };
     let rest = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     // The second joint is at the same position, but given in world space.
@@ -277,7 +289,10 @@ fn skin_09_a_node_that_is_not_a_joint_moves_the_joint_below_it() {
 fn skin_11_one_mesh_with_two_skins() {
     let Some(library) = file("Animation_Skin_11") else { return };
     let rest = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let (first, second) = (positions(&library, 0, &rest), positions(&library, 3, &rest));

@@ -29,7 +29,7 @@ fn of_materials(materials: &[Option<usize>]) -> Hidden {
 
 fn hiding(hidden: Hidden) -> ViewerState {
     let mut state = ViewerState::default();
-    state.edits.hidden = hidden;
+    state.character.edits.hidden = hidden;
     state
 }
 
@@ -103,14 +103,14 @@ fn hiding_can_be_undone_and_changes_neither_numbers_nor_the_automatic_camera() {
     };
     let view = camera(&editor);
     editor.apply(Command::SetHidden(of_nodes(&[BODY, 500])));
-    assert_eq!(editor.state().edits.hidden, of_nodes(&[BODY]), "nodes that the model lacks are ignored");
+    assert_eq!(editor.state().character.edits.hidden, of_nodes(&[BODY]), "nodes that the model lacks are ignored");
     assert_eq!(visible(editor.library(), editor.state()), [false, true]);
     assert_eq!(pose_document(editor.library(), editor.state()), before);
     assert_eq!(camera(&editor), view);
     assert!(editor.undo());
     assert_eq!(visible(editor.library(), editor.state()), [true, true]);
     assert!(editor.redo());
-    assert_eq!(editor.state().edits.hidden, of_nodes(&[BODY]));
+    assert_eq!(editor.state().character.edits.hidden, of_nodes(&[BODY]));
 }
 
 #[test]
@@ -131,6 +131,6 @@ fn a_link_says_what_is_hidden() {
     assert_eq!(from_link("v=1&hidden=m2,17,4,m"), (state, Vec::new()));
     for bad in ["x", "4,m-1", "-1", "m2.5"] {
         let (state, errors) = from_link(&format!("hidden={bad}"));
-        assert_eq!((state.edits.hidden, errors.len()), (Hidden::default(), 1), "{bad}");
+        assert_eq!((state.character.edits.hidden, errors.len()), (Hidden::default(), 1), "{bad}");
     }
 }

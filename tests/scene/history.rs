@@ -1,7 +1,7 @@
 //! Undo and redo.
 
 use gaitway::library::{Library, Model, ModelId, Motion};
-use gaitway::state::{Command, Edits, History, Playhead, SavedMotion, Sources, UpAxis, ViewerState};
+use gaitway::state::{CharacterView, Command, Edits, History, Playhead, SavedMotion, Sources, UpAxis, ViewerState};
 
 use crate::data::walker;
 
@@ -90,7 +90,13 @@ fn undo_keeps_time_and_camera() {
     history.apply(&mut state, &library, Command::Orbit { yaw_radians: 1.0, pitch_radians: 0.0 });
     let before = state.clone();
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!(state, ViewerState { edits: Edits { up: UpAxis::Y, ..before.edits }, ..before });
+    assert_eq!(
+        state,
+        ViewerState {
+            character: CharacterView { edits: Edits { up: UpAxis::Y, ..before.character.edits }, ..before.character },
+            ..before
+        }
+    );
     assert!(!history.can_undo());
 }
 
@@ -126,15 +132,23 @@ fn opening_is_a_step_between_edits() {
     let (mut library, first, second) = two_models();
     let mut history = History::default();
     library.show(first);
-    let mut state =
-        ViewerState { playhead: Playhead { time_secs: 0.7, ..Playhead::default() }, ..ViewerState::default() };
+    let mut state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.7, ..Playhead::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    };
     history.apply(&mut state, &library, Command::SetExposure(1.0));
     history.opened(state.clone(), SavedMotion::default(), library.loaded());
     library.show(second);
     let asset = library.active().unwrap().asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
     state = ViewerState {
-        sources: Sources { motion: vec!["dance.glb".to_owned()], ..Sources::default() },
+        character: CharacterView {
+            sources: Sources { motion: vec!["dance.glb".to_owned()], ..Sources::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     history.end_gesture();
@@ -142,10 +156,13 @@ fn opening_is_a_step_between_edits() {
 
     let active = |library: &Library| library.active().map(|model| model.id);
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!((active(&library), state.display.exposure, state.sources.motion.len()), (Some(second), 0.0, 1));
+    assert_eq!(
+        (active(&library), state.display.exposure, state.character.sources.motion.len()),
+        (Some(second), 0.0, 1)
+    );
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!((active(&library), state.display.exposure, state.playhead.time_secs), (Some(first), 1.0, 0.7));
-    assert!(library.motions().is_empty() && state.sources.motion.is_empty());
+    assert_eq!((active(&library), state.display.exposure, state.character.playhead.time_secs), (Some(first), 1.0, 0.7));
+    assert!(library.motions().is_empty() && state.character.sources.motion.is_empty());
     assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state.display.exposure, 0.0);
     while redo(&mut history, &mut state, &mut library) {}
@@ -177,9 +194,9 @@ fn undo_relists_a_closed_model_and_keeps_the_view() {
     assert_eq!(library.listed(), [first, second], "the active model stays");
     library.close(first);
     assert_eq!(library.listed(), [second]);
-    state.playhead.time_secs = 0.7;
+    state.character.playhead.time_secs = 0.7;
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!((library.listed(), state.playhead.time_secs), (vec![first, second], 0.7));
+    assert_eq!((library.listed(), state.character.playhead.time_secs), (vec![first, second], 0.7));
     assert!(redo(&mut history, &mut state, &mut library));
     assert_eq!(library.listed(), [second]);
     assert_eq!(library.active().map(|model| model.id), Some(second));

@@ -77,7 +77,7 @@ fn the_pose_document_lists_all_copies_of_a_node() {
 fn copies_and_variants_allocate_nothing_per_frame() {
     let library = copies();
     let mut state = ViewerState::default();
-    state.edits.variant = Some("none of the file's".to_owned());
+    state.character.edits.variant = Some("none of the file's".to_owned());
     let mut frame = Frame::default();
     let draw = |frame: &mut Frame| evaluate(&library, &state, 1.0, frame);
     assert_eq!(allocations_after(&mut frame, draw, draw), 0);

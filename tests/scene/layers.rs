@@ -96,11 +96,11 @@ fn a_layer_outlasts_the_loops_of_the_clip() {
     for _ in 0..90 {
         apply(&mut state, &library, Command::Advance(1.0 / 45.0));
     }
-    assert!((state.playhead.time_secs - 2.0).abs() < 1e-4, "{}", state.playhead.time_secs);
+    assert!((state.character.playhead.time_secs - 2.0).abs() < 1e-4, "{}", state.character.playhead.time_secs);
     let model = library.active().expect("a model");
     let arm = LayerMask::of_parts(&[BodyPart::RightArm]).included(&model.body());
     let joint = model.asset.skeleton.joints().find(|joint| arm[joint.get()]).expect("an arm");
-    let (found, expected) = (shown(&library, &state), of_clip(&library, WAVE, state.playhead.time_secs));
+    let (found, expected) = (shown(&library, &state), of_clip(&library, WAVE, state.character.playhead.time_secs));
     assert_eq!(found.local(joint), expected.local(joint));
 }
 
@@ -110,13 +110,13 @@ fn numbers_are_clamped_and_unknown_clips_skipped() {
     let wild = ClipLayer { weight: 7.0, speed: f64::NAN, start_secs: -1e9, ..wave() };
     let state = state_with(&library, waves(vec![wild]), 0.0);
     let expected = ClipLayer { start_secs: -ClipLayer::MAX_START_SECS, ..wave() };
-    assert_eq!(state.edits.layers, waves(vec![expected]));
+    assert_eq!(state.character.edits.layers, waves(vec![expected]));
     let mut replaced = ViewerState::default();
     let wild = ClipLayer { weight: f64::INFINITY, ..wave() };
     let mut whole = ViewerState::default();
-    whole.edits.layers = waves(vec![wild]);
+    whole.character.edits.layers = waves(vec![wild]);
     apply(&mut replaced, &library, Command::Replace(Box::new(whole)));
-    assert_eq!(replaced.edits.layers, waves(vec![wave()]));
+    assert_eq!(replaced.character.edits.layers, waves(vec![wave()]));
     let waves = waves(vec![right_arm(wave())]);
     let state = state_with(&library, [vec![fly()], waves.clone()].concat(), 0.4);
     let without = state_with(&library, waves, 0.4);
@@ -135,9 +135,9 @@ fn layers_are_undone() {
         let layers = waves(vec![ClipLayer { weight, ..wave() }]);
         history.apply(&mut state, &library, Command::SetLayers(layers));
     }
-    assert_eq!(state.edits.layers.len(), 1);
+    assert_eq!(state.character.edits.layers.len(), 1);
     assert!(undo(&mut history, &mut state, &mut library), "a drag of a slider is one step");
-    assert!(state.edits.layers.is_empty());
+    assert!(state.character.edits.layers.is_empty());
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn playing_layers_does_not_allocate() {
     let library = walker();
     let sum = ClipLayer { mode: LayerMode::Additive, weight: 0.5, ..wave() };
     let mut state = ViewerState::default();
-    state.edits.layers = waves(vec![right_arm(wave()), sum]);
+    state.character.edits.layers = waves(vec![right_arm(wave()), sum]);
     state.camera_options.follow = true;
     assert_eq!(allocations_while_playing(&library, state, 200, 200), 0);
 }
@@ -159,7 +159,7 @@ fn manual_poses_are_above_layers() {
     let skeleton = &library.active().expect("a model").asset.skeleton;
     let joint = skeleton.joint_of_source(5).expect("a head");
     let posed = shown(&library, &state).local(joint);
-    state.edits.layers.clear();
+    state.character.edits.layers.clear();
     assert_eq!(posed.rotation, shown(&library, &state).local(joint).rotation);
 }
 
@@ -167,7 +167,7 @@ fn manual_poses_are_above_layers() {
 fn an_unknown_layer_of_a_view_is_told() {
     let mut editor = editor("sample:walker");
     let mut view = editor.state().clone();
-    view.edits.layers = vec![fly()];
+    view.character.edits.layers = vec![fly()];
     editor.apply(Command::Replace(Box::new(view)));
     let told = "layers: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the layer is left out.";
     let events = editor.take_events();

@@ -11,9 +11,9 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight, LinkError,
-    MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources, ToneMap, UpAxis,
-    VertexChoice, ViewerState, from_link,
+    Background, CameraChoice, Channel, CharacterView, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight,
+    LinkError, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, ToneMap,
+    UpAxis, VertexChoice, ViewerState, from_link,
 };
 use glam::Vec3;
 
@@ -89,64 +89,80 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     };
     vec![
         (
-            "sources.model",
+            "character.sources.model",
             with(&|state| {
-                state.sources.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]
+                state.character.sources.model =
+                    vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]
             }),
         ),
         (
-            "sources.motion",
-            with(&|state| state.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()]),
-        ),
-        ("retarget.map", with(&|state| state.retarget.map = some_maps())),
-        (
-            "retarget.unmapped",
+            "character.sources.motion",
             with(&|state| {
-                state.retarget.unmapped = Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
+                state.character.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()]
+            }),
+        ),
+        ("character.retarget.map", with(&|state| state.character.retarget.map = some_maps())),
+        (
+            "character.retarget.unmapped",
+            with(&|state| {
+                state.character.retarget.unmapped =
+                    Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
             }),
         ),
         (
-            "retarget.root",
+            "character.retarget.root",
             with(&|state| {
                 let (horizontal, yaw) = (RootPart::InPlace, RootPart::Freeze);
-                state.retarget.root = Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
+                state.character.retarget.root =
+                    Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
             }),
         ),
-        ("retarget.feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
-        ("retarget.contacts", with(&|state| state.retarget.contacts = Some(Contacts::Keep))),
-        ("sources.scene", with(&|state| state.sources.scene = Some(2))),
-        ("playhead.clip", with(&|state| state.playhead.clip = ClipChoice::called("Walk & run = 100 %"))),
-        ("playhead.time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
+        ("character.retarget.feet", with(&|state| state.character.retarget.feet = Some(Feet::Plant))),
+        ("character.retarget.contacts", with(&|state| state.character.retarget.contacts = Some(Contacts::Keep))),
+        ("character.sources.scene", with(&|state| state.character.sources.scene = Some(2))),
         (
-            "playhead.fade",
+            "character.playhead.clip",
+            with(&|state| state.character.playhead.clip = ClipChoice::called("Walk & run = 100 %")),
+        ),
+        ("character.playhead.time_secs", with(&|state| state.character.playhead.time_secs = 1.0 / 3.0)),
+        (
+            "character.playhead.fade",
             with(&|state| {
                 let clip = ClipChoice::called("Walk, slow");
-                state.playhead.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
+                state.character.playhead.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
             }),
         ),
         ("playback.playing", with(&|state| state.playback.playing = false)),
         ("playback.speed", with(&|state| state.playback.speed = 0.1)),
         ("playback.loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
-        ("playhead.range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
+        (
+            "character.playhead.range",
+            with(&|state| state.character.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 })),
+        ),
         ("display.skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
         (
-            "edits.hidden",
+            "character.edits.hidden",
             with(&|state| {
                 let (nodes, materials) = (BTreeSet::from([3, 12]), BTreeSet::from([None, Some(0)]));
-                state.edits.hidden = Hidden { nodes, materials };
+                state.character.edits.hidden = Hidden { nodes, materials };
             }),
         ),
-        ("edits.expressions", with(&|state| state.edits.expressions = BTreeMap::from([("a b,:".to_owned(), 0.5)]))),
+        (
+            "character.edits.expressions",
+            with(&|state| state.character.edits.expressions = BTreeMap::from([("a b,:".to_owned(), 0.5)])),
+        ),
         ("display.look_at", with(&|state| state.display.look_at = LookTarget::Camera)),
         ("display.channel", with(&|state| state.display.channel = Channel::VertexColor)),
         ("display.springs", with(&|state| state.display.springs = true)),
-        ("edits.morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
+        ("character.edits.morph", with(&|state| state.character.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
         (
-            "edits.pose",
-            with(&|state| state.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])),
+            "character.edits.pose",
+            with(&|state| {
+                state.character.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])
+            }),
         ),
         (
-            "edits.pins",
+            "character.edits.pins",
             with(&|state| {
                 let times = Some(PinTimes { start_secs: 0.25, end_secs: 1.0 / 3.0, blend_secs: 0.1 });
                 let at = Vec3::new(0.1, -1.0 / 3.0, 2e-7);
@@ -154,11 +170,11 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let pins = (3..)
                     .zip(goals)
                     .map(|(joint, goal)| (joint, Pin { goal, times: times.filter(|_| joint % 2 == 0) }));
-                state.edits.pins = pins.collect();
+                state.character.edits.pins = pins.collect();
             }),
         ),
         (
-            "edits.clips",
+            "character.edits.clips",
             with(&|state| {
                 let trim = Some(TimeRange { start_secs: 0.25, end_secs: 1.5 });
                 let all = ClipChanges {
@@ -174,16 +190,16 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let looped = ClipChanges { loop_secs: Some(0.0), ..ClipChanges::default() };
                 let clips = [("Walk: fast, 100 % & more", all), ("3", mirrored), ("歩", looped)];
                 let clips = clips.into_iter().map(|(clip, changes)| (ClipId::called(clip), changes));
-                state.edits.clips.changes = clips.collect();
+                state.character.edits.clips.changes = clips.collect();
                 for (at, (name, of)) in (0..).zip([("Walk: 50 % & more", "Walk"), ("a", "2")]) {
-                    state.edits.clips.copies.push(ClipCopy { id: CopyId(at), of: ClipId::called(of) });
-                    state.edits.clips.names.insert(ClipId::Copy(CopyId(at)), name.to_owned());
+                    state.character.edits.clips.copies.push(ClipCopy { id: CopyId(at), of: ClipId::called(of) });
+                    state.character.edits.clips.names.insert(ClipId::Copy(CopyId(at)), name.to_owned());
                 }
-                state.edits.clips.names.insert(ClipId::called("Run: 1"), "Läufer, 2:1".to_owned());
+                state.character.edits.clips.names.insert(ClipId::called("Run: 1"), "Läufer, 2:1".to_owned());
             }),
         ),
         (
-            "edits.layers",
+            "character.edits.layers",
             with(&|state| {
                 let mut mask = LayerMask::of_parts(&[BodyPart::Head, BodyPart::LeftArm]);
                 mask.joints.extend([4, 17]);
@@ -192,14 +208,14 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
                 let all = ClipLayer { weight, speed: 0.5, start_secs: -0.1, mode, mask };
                 let sum = ClipLayer { mode: LayerMode::Additive, ..ClipLayer::default() };
                 let layers = [("a: b, c", all), ("歩 50 % & more", ClipLayer::default()), ("歩 50 % & more", sum)];
-                state.edits.layers = layers.map(|(clip, layer)| over(clip, layer)).to_vec();
+                state.character.edits.layers = layers.map(|(clip, layer)| over(clip, layer)).to_vec();
             }),
         ),
         (
-            "edits.names",
+            "character.edits.names",
             with(&|state| {
                 let names = [(0, "Hips"), (3, "left: knee, 100 % & more"), (12, "ümläut 歩")];
-                state.edits.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
+                state.character.edits.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
             }),
         ),
         (
@@ -222,8 +238,11 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("camera_options.fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
         ("camera_options.follow", with(&|state| state.camera_options.follow = true)),
         ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
-        ("edits.variant", with(&|state| state.edits.variant = Some("Midnight & blue, 100 %".to_owned()))),
-        ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
+        (
+            "character.edits.variant",
+            with(&|state| state.character.edits.variant = Some("Midnight & blue, 100 %".to_owned())),
+        ),
+        ("character.edits.up", with(&|state| state.character.edits.up = UpAxis::MinusZ)),
         ("display.exposure", with(&|state| state.display.exposure = -0.7)),
         ("display.tone_map", with(&|state| state.display.tone_map = ToneMap::Agx)),
         ("display.environment_degrees", with(&|state| state.display.environment_degrees = 123.4)),
@@ -251,22 +270,26 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     ]
 }
 
-/// The path of each field in the state: group and name. The camera is both a group and a field.
-fn fields() -> Vec<Vec<String>> {
+/// The path of each field in the state: group and name. The camera is both a group and a field, and the character has groups of its own.
+fn fields() -> Vec<String> {
     let state = serde_json::to_value(ViewerState::default()).expect("plain data");
-    let of_group = |(group, value): (&String, &serde_json::Value)| -> Vec<Vec<String>> {
-        match value.as_object() {
-            Some(fields) => fields.keys().map(|field| vec![group.clone(), field.clone()]).collect(),
-            None => vec![vec![group.clone()]],
+    let groups = state.as_object().expect("a struct").iter();
+    groups.flat_map(|(group, value)| fields_of(group, value, if group == "character" { 2 } else { 1 })).collect()
+}
+
+fn fields_of(path: &str, value: &serde_json::Value, levels: usize) -> Vec<String> {
+    match value.as_object().filter(|_| levels > 0) {
+        Some(fields) => {
+            fields.iter().flat_map(|(field, value)| fields_of(&format!("{path}.{field}"), value, levels - 1)).collect()
         }
-    };
-    state.as_object().expect("a struct").iter().flat_map(of_group).collect()
+        None => vec![path.to_owned()],
+    }
 }
 
 #[test]
 fn every_field_of_the_state_has_a_key() {
     let changed = one_field_each();
-    let fields: BTreeSet<String> = fields().into_iter().map(|path| path.join(".")).collect();
+    let fields: BTreeSet<String> = fields().into_iter().collect();
     assert_eq!(changed.iter().map(|(field, _)| (*field).to_owned()).collect::<BTreeSet<_>>(), fields);
     for (field, state) in &changed {
         assert_ne!(link_of(state), link_of(&ViewerState::default()), "{field} is not in the link");
@@ -298,8 +321,11 @@ fn any_camera_round_trips_exactly() {
         };
         let time_secs = f64::from(next(100.0)) / 3.0;
         check_round_trip(&ViewerState {
+            character: CharacterView {
+                playhead: Playhead { time_secs, ..Playhead::default() },
+                ..CharacterView::default()
+            },
             camera: CameraChoice::Orbit(camera),
-            playhead: Playhead { time_secs, ..Playhead::default() },
             ..ViewerState::default()
         });
     }
@@ -313,37 +339,19 @@ fn defaults_are_left_out() {
 #[test]
 fn links_read_as_documented() {
     let default = ViewerState::default();
+    let with_character = |change: &dyn Fn(&mut CharacterView)| {
+        let mut state = default.clone();
+        change(&mut state.character);
+        state
+    };
     check_read("", default.clone());
-    check_read(
-        "#v=1&clip=",
-        ViewerState {
-            playhead: Playhead { clip: ClipChoice::RestPose, ..default.playhead.clone() },
-            ..default.clone()
-        },
-    );
-    check_read(
-        "clip=Run",
-        ViewerState {
-            playhead: Playhead { clip: ClipChoice::called("Run"), ..default.playhead.clone() },
-            ..default.clone()
-        },
-    );
-    check_read(
-        "t=0.5&play=0",
-        ViewerState {
-            playhead: Playhead { time_secs: 0.5, ..default.playhead.clone() },
-            playback: Playback { playing: false, ..default.playback },
-            ..default.clone()
-        },
-    );
+    check_read("#v=1&clip=", with_character(&|character| character.playhead.clip = ClipChoice::RestPose));
+    check_read("clip=Run", with_character(&|character| character.playhead.clip = ClipChoice::called("Run")));
+    let at_half = with_character(&|character| character.playhead.time_secs = 0.5);
+    check_read("t=0.5&play=0", ViewerState { playback: Playback { playing: false, ..default.playback }, ..at_half });
     check_read("camera=gltf:1", ViewerState { camera: CameraChoice::File(1), ..default.clone() });
-    check_read(
-        "model=sample%3Awalker",
-        ViewerState {
-            sources: Sources { model: vec!["sample:walker".to_owned()], ..default.sources.clone() },
-            ..default.clone()
-        },
-    );
+    let walker = with_character(&|character| character.sources.model = vec!["sample:walker".to_owned()]);
+    check_read("model=sample%3Awalker", walker);
     check_read(
         "background=%23ff8000",
         ViewerState {
@@ -382,21 +390,27 @@ fn invalid_names_and_vertices_are_reported() {
 fn a_plain_map_is_short_and_readable() {
     let maps = some_maps();
     let state = ViewerState {
-        retarget: RetargetEdits { map: maps[1..2].to_vec(), ..RetargetEdits::default() },
+        character: CharacterView {
+            retarget: RetargetEdits { map: maps[1..2].to_vec(), ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     assert_eq!(link_of(&state), "v=1&map=1.ffffffff.0-5,1-");
     check_read("map=1.ffffffff.1-,0-5", state.clone());
     // Any other text is the URL of a file.
     let of_file = |url: &str| ViewerState {
-        retarget: RetargetEdits { map: vec![MotionMap::File(url.to_owned())], ..RetargetEdits::default() },
+        character: CharacterView {
+            retarget: RetargetEdits { map: vec![MotionMap::File(url.to_owned())], ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     check_read("map=2.json", of_file("2.json"));
     // So does one as Gaitway proposes it.
     let with = |root: RootOptions| {
         let mut other = state.clone();
-        let [MotionMap::Numbers(numbered)] = &mut other.retarget.map[..] else { panic!("a map by numbers") };
+        let [MotionMap::Numbers(numbered)] = &mut other.character.retarget.map[..] else { panic!("a map by numbers") };
         numbered.map.root = root;
         other
     };
@@ -410,7 +424,10 @@ fn a_plain_map_is_short_and_readable() {
 fn parts_of_a_map_are_easy_to_write_manually() {
     let default = ViewerState::default();
     let root = |root| ViewerState {
-        retarget: RetargetEdits { root: Some(root), ..default.retarget.clone() },
+        character: CharacterView {
+            retarget: RetargetEdits { root: Some(root), ..default.character.retarget.clone() },
+            ..default.clone().character
+        },
         ..default.clone()
     };
     check_read("root=in-place", root(RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() }));
@@ -420,7 +437,13 @@ fn parts_of_a_map_are_easy_to_write_manually() {
     let at_feet = RootOptions { horizontal: RootPart::InPlace, origin: PathOrigin::Feet, ..RootOptions::default() };
     check_read("root=in-place,origin:feet", root(at_feet));
     let clip = |clip, frozen| ViewerState {
-        retarget: RetargetEdits { unmapped: Some(Unmapped::Clip { clip, frozen }), ..default.retarget.clone() },
+        character: CharacterView {
+            retarget: RetargetEdits {
+                unmapped: Some(Unmapped::Clip { clip, frozen }),
+                ..default.character.retarget.clone()
+            },
+            ..default.clone().character
+        },
         ..default.clone()
     };
     check_read("unmapped=clip:0", clip(ClipRef::Index(0), false));
@@ -428,20 +451,32 @@ fn parts_of_a_map_are_easy_to_write_manually() {
     check_read(
         "unmapped=rest",
         ViewerState {
-            retarget: RetargetEdits { unmapped: Some(Unmapped::Rest), ..default.retarget.clone() },
+            character: CharacterView {
+                retarget: RetargetEdits { unmapped: Some(Unmapped::Rest), ..default.character.retarget.clone() },
+                ..default.clone().character
+            },
             ..default.clone()
         },
     );
     check_read(
         "feet=off",
         ViewerState {
-            retarget: RetargetEdits { feet: Some(Feet::Off), ..default.retarget.clone() },
+            character: CharacterView {
+                retarget: RetargetEdits { feet: Some(Feet::Off), ..default.character.retarget.clone() },
+                ..default.clone().character
+            },
             ..default.clone()
         },
     );
     check_read(
         "contacts=keep",
-        ViewerState { retarget: RetargetEdits { contacts: Some(Contacts::Keep), ..default.retarget }, ..default },
+        ViewerState {
+            character: CharacterView {
+                retarget: RetargetEdits { contacts: Some(Contacts::Keep), ..default.character.retarget },
+                ..default.character
+            },
+            ..default
+        },
     );
 }
 
@@ -525,7 +560,10 @@ fn unknown_keys_are_kept() {
 #[test]
 fn an_object_changes_only_its_keys() {
     let base = ViewerState {
-        playhead: Playhead { time_secs: 2.0, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { time_secs: 2.0, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         playback: Playback { speed: 2.0, ..Playback::default() },
         selection: Selection { joint: Some(4), ..Selection::default() },
         ..ViewerState::default()
@@ -536,8 +574,11 @@ fn an_object_changes_only_its_keys() {
     assert_eq!(errors, []);
     let (camera, _) = from_link("camera=90,0,4,0,1,0");
     let expected = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.5, clip: ClipChoice::RestPose, ..base.character.playhead },
+            ..base.character
+        },
         camera: camera.camera,
-        playhead: Playhead { time_secs: 0.5, clip: ClipChoice::RestPose, ..base.playhead },
         playback: Playback { playing: false, ..base.playback },
         selection: Selection { joint: None, ..base.selection },
         ..base
@@ -550,8 +591,8 @@ fn an_object_changes_only_its_keys() {
 #[test]
 fn an_early_link_to_a_model_in_an_archive_keeps_working() {
     let (state, errors) = from_link("v=1&model=https://example.org/two.zip%23/in/fox.glb");
-    assert_eq!(state.sources.model, ["https://example.org/two.zip#!/in/fox.glb"]);
+    assert_eq!(state.character.sources.model, ["https://example.org/two.zip#!/in/fox.glb"]);
     assert!(errors.is_empty(), "{errors:?}");
     let (state, _) = from_link("v=1&model=https://example.org/two.zip%23!/in/fox.glb&model=fox.glb%23/b");
-    assert_eq!(state.sources.model, ["https://example.org/two.zip#!/in/fox.glb", "fox.glb#/b"]);
+    assert_eq!(state.character.sources.model, ["https://example.org/two.zip#!/in/fox.glb", "fox.glb#/b"]);
 }

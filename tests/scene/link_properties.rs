@@ -11,9 +11,9 @@ use gaitway::retarget::{
     Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, Channel, ClipChoice, EnvironmentChoice, Fade, Hidden, Inspect, KeyLight, LightSetup,
-    LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState,
-    from_link,
+    Background, CameraChoice, CameraOptions, Channel, CharacterView, ClipChoice, EnvironmentChoice, Fade, Hidden,
+    Inspect, KeyLight, LightSetup, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap,
+    UpAxis, VertexChoice, ViewerState, from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -185,7 +185,7 @@ impl Random {
         match field {
             32 => {
                 let expressions = (0..self.below(4)).map(|_| (self.text(), self.below(5) as f32 / 4.0));
-                state.edits.expressions = expressions.collect();
+                state.character.edits.expressions = expressions.collect();
             }
             33 => {
                 let point = LookTarget::Point(Vec3::new(self.number(), self.number(), self.number()));
@@ -194,41 +194,50 @@ impl Random {
             35 => {
                 let nodes = (0..self.below(4)).map(|_| self.below(300)).collect();
                 let materials = (0..self.below(4)).map(|_| self.often().then(|| self.below(9))).collect();
-                state.edits.hidden = Hidden { nodes, materials };
+                state.character.edits.hidden = Hidden { nodes, materials };
             }
             34 => state.display.channel = self.one(&Channel::ALL),
             _ => state.display.springs = self.often(),
         }
     }
 
-    fn set(&mut self, state: &mut ViewerState, field: usize) {
+    fn set_camera_options(&mut self, options: &mut CameraOptions, field: usize) {
         match field {
-            0 => state.sources.model = self.texts(),
-            1 => state.sources.motion = self.texts(),
-            2 => state.retarget.map = (0..self.below(3)).map(|_| self.map()).collect(),
-            3 => state.retarget.unmapped = Some(self.unmapped()),
-            4 => state.retarget.root = Some(self.root()),
-            5 => state.retarget.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
-            6 => state.sources.scene = Some(self.below(9)),
-            7 => state.playhead.clip = self.clip_or_rest(),
-            8 => state.playhead.time_secs = f64::from(self.number()) / 3.0,
+            19 => options.fov_degrees = self.number(),
+            20 => options.follow = self.often(),
+            _ => options.turntable = self.number(),
+        }
+    }
+
+    fn set(&mut self, state: &mut ViewerState, field: usize) {
+        let CharacterView { sources, retarget, edits, playhead } = &mut state.character;
+        match field {
+            0 => sources.model = self.texts(),
+            1 => sources.motion = self.texts(),
+            2 => retarget.map = (0..self.below(3)).map(|_| self.map()).collect(),
+            3 => retarget.unmapped = Some(self.unmapped()),
+            4 => retarget.root = Some(self.root()),
+            5 => retarget.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
+            6 => sources.scene = Some(self.below(9)),
+            7 => playhead.clip = self.clip_or_rest(),
+            8 => playhead.time_secs = f64::from(self.number()) / 3.0,
             9 => {
                 let clip = self.clip_or_rest();
                 let (time_secs, elapsed_secs) = (f64::from(self.number()), f64::from(self.number()));
-                state.playhead.fade = Some(Fade { clip, time_secs, elapsed_secs });
+                playhead.fade = Some(Fade { clip, time_secs, elapsed_secs });
             }
             10 => state.playback.playing = self.often(),
             11 => state.playback.speed = f64::from(self.number()),
             12 => state.playback.loop_mode = self.one(&[LoopMode::Once, LoopMode::Loop, LoopMode::PingPong]),
             13 => {
                 let (a, b) = (f64::from(self.number()), f64::from(self.number()));
-                state.playhead.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
+                playhead.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
             }
             14 => {
                 state.display.skinning =
                     self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion])
             }
-            15 => state.edits.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
+            15 => edits.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
             16 => {
                 let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
                 let (split, source) = (self.often(), self.often());
@@ -239,25 +248,23 @@ impl Random {
             }
             17 => state.selection.joint = Some(self.below(300)),
             18 => state.camera = self.camera(),
-            19 => state.camera_options.fov_degrees = self.number(),
-            20 => state.camera_options.follow = self.often(),
-            21 => state.edits.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
+            21 => edits.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
             25 => {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
-                state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
+                edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
-            37 => state.edits.clips.changes = self.changed_clips(),
-            42 => self.copy_and_rename(&mut state.edits.clips),
-            38 => state.edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
-            39 => state.edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
-            41 => state.retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),
-            26 => state.camera_options.turntable = self.number(),
-            27 => state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect(),
+            37 => edits.clips.changes = self.changed_clips(),
+            42 => self.copy_and_rename(&mut edits.clips),
+            38 => edits.layers = (0..self.below(4)).map(|_| self.layer()).collect(),
+            39 => edits.pins = (0..self.below(4)).map(|_| (self.below(300), self.pin())).collect(),
+            41 => retarget.contacts = Some(self.one(&[Contacts::Off, Contacts::Keep])),
+            19 | 20 | 26 => self.set_camera_options(&mut state.camera_options, field),
+            27 => edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect(),
             28 => {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
-            22 if self.often() => state.edits.variant = Some(self.text()),
+            22 if self.often() => edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
             32..=36 => self.set_avatar(state, field),
             _ => state.page.embed = self.often(),
@@ -367,7 +374,12 @@ fn a_map_of_sixty_joints_is_short() {
     let joints = (0..60).map(|joint| (joint, entry(3 * joint + 100))).collect();
     let map = JointMap { joints, ..JointMap::default() };
     let map = vec![MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map })];
-    let link =
-        link_of(&ViewerState { retarget: RetargetEdits { map, ..RetargetEdits::default() }, ..ViewerState::default() });
+    let link = link_of(&ViewerState {
+        character: CharacterView {
+            retarget: RetargetEdits { map, ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    });
     assert!(link.len() < 2000, "{} characters", link.len());
 }

@@ -6,7 +6,7 @@ use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{ClipId, Library, manual_degrees, manual_rotation};
 use gaitway::retarget::{Pin, PinGoal};
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, ViewerState, apply,
+    CameraChoice, CameraOptions, CharacterView, ClipChoice, Command, History, Playback, Playhead, ViewerState, apply,
 };
 use glam::{EulerRot, Quat, Vec3};
 
@@ -33,8 +33,13 @@ fn rest_rotation(library: &Library, joint: usize) -> Quat {
 #[test]
 fn a_manual_pose_overrides_the_clip_and_starts_from_the_rest_pose() {
     let library = walker();
-    let mut state =
-        ViewerState { playhead: Playhead { time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() };
+    let mut state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    };
     let before = local_rotation(&library, &state, SHIN);
     let head = local_rotation(&library, &state, HEAD);
     apply(&mut state, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
@@ -57,7 +62,10 @@ fn posing_a_joint_moves_its_descendants() {
         Vec3::from(frame.characters[0].world_from_joint[foot.get()].translation)
     };
     let rest = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let mut posed = rest.clone();
@@ -85,7 +93,7 @@ fn missing_joints_and_angles_that_are_not_finite_change_nothing() {
     }
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([190.0, -540.0, 180.0]) });
-    assert_eq!(state.edits.pose[&HEAD], [-170.0, -180.0, 180.0]);
+    assert_eq!(state.character.edits.pose[&HEAD], [-170.0, -180.0, 180.0]);
 }
 
 /// Together with a pin, which applies afterwards.
@@ -119,11 +127,11 @@ fn manual_poses_are_undone_one_gesture_at_a_time() {
     }
     history.end_gesture();
     history.apply(&mut state, &library, Command::ClearPose);
-    assert!(state.edits.pose.is_empty());
+    assert!(state.character.edits.pose.is_empty());
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!(state.edits.pose[&HEAD], [15.0, 0.0, 0.0]);
+    assert_eq!(state.character.edits.pose[&HEAD], [15.0, 0.0, 0.0]);
     assert!(undo(&mut history, &mut state, &mut library));
-    assert!(state.edits.pose.is_empty());
+    assert!(state.character.edits.pose.is_empty());
 }
 
 #[test]
@@ -139,7 +147,7 @@ fn the_turntable_turns_while_paused_unless_the_camera_is_the_files() {
     apply(&mut state, &library, Command::Advance(0.5));
     let CameraChoice::Orbit(second) = state.camera else { panic!("an orbit camera") };
     assert!((second.yaw_radians - first.yaw_radians - std::f32::consts::FRAC_PI_4).abs() < 1e-5);
-    assert_eq!(state.playhead.time_secs, 0.0);
+    assert_eq!(state.character.playhead.time_secs, 0.0);
     let mut fixed = ViewerState { camera: CameraChoice::File(0), ..state };
     apply(&mut fixed, &library, Command::Advance(0.5));
     assert_eq!(fixed.camera, CameraChoice::File(0));

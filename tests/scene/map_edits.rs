@@ -13,8 +13,8 @@ use gaitway::retarget::{
     RootOptions, RootPart, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
-    active_map, active_maps, apply, from_link, muted_properties,
+    CharacterView, ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits,
+    ViewerState, active_map, active_maps, apply, from_link, muted_properties,
 };
 use glam::{Quat, Vec3};
 
@@ -31,8 +31,11 @@ fn walker_with_motion() -> (Library, ViewerState) {
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
     let clip = ClipChoice::called("3");
     let mut state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         playback: Playback { playing: false, ..Playback::default() },
-        playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
         ..ViewerState::default()
     };
     reconcile(&mut library, &mut state);
@@ -211,7 +214,7 @@ fn a_cleared_map_stays_empty_until_edited() {
     assert_eq!(library.borrow_errors(), []);
     let mut again = cleared.clone();
     apply(&mut again, &library, Command::SetMap { motion: motion_at(&library, 0), map: None });
-    assert_eq!(again.retarget.map, state.retarget.map);
+    assert_eq!(again.character.retarget.map, state.character.retarget.map);
 }
 
 #[test]
@@ -223,7 +226,10 @@ fn every_member_of_a_loaded_map_is_applied() {
     let new = JointMap { feet: Feet::Plant, contacts: Contacts::Keep, ..map(&library, &state) };
     let state = edited(&library, &state, MapEdit::Load(Box::new(new.clone())));
     assert_eq!(map(&library, &state), new);
-    assert_eq!((state.retarget.root, state.retarget.feet, state.retarget.contacts), (None, None, None));
+    assert_eq!(
+        (state.character.retarget.root, state.character.retarget.feet, state.character.retarget.contacts),
+        (None, None, None)
+    );
 }
 
 #[test]
@@ -385,10 +391,13 @@ fn the_map_key_holds_every_member() {
     for (name, map) in members {
         let map = MotionMap::Numbers(NumberedMap { checksum: 0x0123_4567, map });
         let state = ViewerState {
-            retarget: RetargetEdits { map: vec![map], ..RetargetEdits::default() },
+            character: CharacterView {
+                retarget: RetargetEdits { map: vec![map], ..RetargetEdits::default() },
+                ..CharacterView::default()
+            },
             ..ViewerState::default()
         };
-        assert_ne!(state.retarget.map, ViewerState::default().retarget.map, "{name}");
+        assert_ne!(state.character.retarget.map, ViewerState::default().character.retarget.map, "{name}");
         let link = link_of(&state);
         let (back, errors) = from_link(&link);
         assert_eq!(errors, [], "{name}: {link}");
@@ -419,8 +428,13 @@ fn a_large_map_stays_short() {
         map.muted_channels.push(MutedChannel { source: number, property: Some(MutedProperty::Rotation) });
     }
     let maps = vec![MotionMap::Numbers(NumberedMap { checksum: 7, map })];
-    let state =
-        ViewerState { retarget: RetargetEdits { map: maps, ..RetargetEdits::default() }, ..ViewerState::default() };
+    let state = ViewerState {
+        character: CharacterView {
+            retarget: RetargetEdits { map: maps, ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    };
     let link = link_of(&state);
     assert!(link.len() < 2000, "{} characters", link.len());
     assert_eq!(from_link(&link).0, state);

@@ -12,8 +12,8 @@ use gaitway::retarget::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map, active_maps,
-    apply, from_link,
+    CharacterView, ClipChoice, Command, History, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map,
+    active_maps, apply, from_link,
 };
 use glam::Vec3;
 
@@ -67,7 +67,9 @@ fn a_map_is_proposed_for_every_motion() {
     let mut library = walker_with_motion();
     let mut state = ViewerState::default();
     assert_eq!(reconcile(&mut library, &mut state), []);
-    let [MotionMap::Numbers(map)] = &state.retarget.map[..] else { panic!("{:?}", state.retarget.map) };
+    let [MotionMap::Numbers(map)] = &state.character.retarget.map[..] else {
+        panic!("{:?}", state.character.retarget.map)
+    };
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
     let hips = number(&library, "Hips");
@@ -124,18 +126,24 @@ fn without_motions_no_map_is_proposed_or_lost() {
     let mut library = walker();
     let map = vec![MotionMap::of_file(&by_name()), MotionMap::File("map.json".to_owned())];
     let mut state = ViewerState {
-        retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
+        character: CharacterView {
+            retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     assert_eq!(reconcile(&mut library, &mut state), []);
-    assert_eq!(state.retarget.map, map);
+    assert_eq!(state.character.retarget.map, map);
 }
 
 #[test]
 fn a_map_by_name_becomes_numbers_and_round_trips() {
     let mut library = walker_with_motion();
     let mut state = ViewerState {
-        retarget: RetargetEdits { map: vec![MotionMap::of_file(&by_name())], ..RetargetEdits::default() },
+        character: CharacterView {
+            retarget: RetargetEdits { map: vec![MotionMap::of_file(&by_name())], ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     assert_eq!(reconcile(&mut library, &mut state), []);
@@ -158,7 +166,10 @@ fn a_map_that_fits_no_motion_is_reported_and_replaced() {
         ..JointMapFile::default()
     };
     let mut state = ViewerState {
-        retarget: RetargetEdits { map: vec![MotionMap::of_file(&wrong)], ..RetargetEdits::default() },
+        character: CharacterView {
+            retarget: RetargetEdits { map: vec![MotionMap::of_file(&wrong)], ..RetargetEdits::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let problems = reconcile(&mut library, &mut state);
@@ -181,7 +192,7 @@ fn numbers_for_other_names_are_not_used() {
     names[3] = "Else";
     library.set_motions(vec![Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)))]);
     assert_eq!(reconcile(&mut library, &mut other), [MapProblem::OtherFiles]);
-    assert_ne!(other.retarget.map, state.retarget.map);
+    assert_ne!(other.character.retarget.map, state.character.retarget.map);
 }
 
 #[test]
@@ -213,7 +224,7 @@ fn a_source_can_be_changed_and_restored() {
         assert_eq!(state, now, "missing joints change nothing");
     }
     apply(&mut state, &library, Command::SetMap { motion: motion_at(&library, 0), map: None });
-    assert_eq!(state.retarget.map, before.retarget.map, "the proposed map is back");
+    assert_eq!(state.character.retarget.map, before.character.retarget.map, "the proposed map is back");
 }
 
 #[test]
@@ -252,7 +263,7 @@ fn a_motion_without_anything_in_common_has_no_map() {
     library.set_motions(vec![Motion::new("snake.bvh".to_owned(), Arc::new(chain(&["s1", "s2", "s3"])))]);
     let mut state = ViewerState::default();
     assert_eq!(reconcile(&mut library, &mut state), []);
-    assert_eq!(state.retarget.map, []);
+    assert_eq!(state.character.retarget.map, []);
     let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
     assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
     assert!(error.to_string().contains("no joint in common"), "{error}");
@@ -262,9 +273,9 @@ fn a_motion_without_anything_in_common_has_no_map() {
     apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target: head, source: Some(1) });
     let map = active_map(&library, &state, &motion_at(&library, 0)).expect("a map");
     assert_eq!(map.joints.len(), 1);
-    let before = state.retarget.map.clone();
+    let before = state.character.retarget.map.clone();
     reconcile(&mut library, &mut state);
-    assert_eq!(state.retarget.map, before, "a manual map is not replaced by a proposal");
+    assert_eq!(state.character.retarget.map, before, "a manual map is not replaced by a proposal");
 }
 
 /// A link is complete: with the same files, it gives the same pose.
@@ -272,13 +283,16 @@ fn a_motion_without_anything_in_common_has_no_map() {
 fn a_link_restores_the_same_pose() {
     let mut library = walker_with_motion();
     let mut state = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         playback: Playback { playing: false, ..Playback::default() },
-        playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
         ..ViewerState::default()
     };
     reconcile(&mut library, &mut state);
     let arm = number(&library, "LeftUpperArm");
-    state.playhead.clip = ClipChoice::called("3");
+    state.character.playhead.clip = ClipChoice::called("3");
     apply(&mut state, &library, Command::SetSource { motion: motion_at(&library, 0), target: arm, source: None });
     apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
     let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
@@ -294,12 +308,18 @@ fn a_link_restores_the_same_pose() {
     assert_eq!(back, state);
     assert_eq!(pose_document(&fresh, &back), pose);
     let plain = ViewerState {
-        playhead: Playhead { clip: ClipChoice::called("3"), ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::called("3"), ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     };
     let mut plain = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..plain.character.playhead },
+            ..plain.character
+        },
         playback: Playback { playing: false, ..plain.playback },
-        playhead: Playhead { time_secs: 0.3, ..plain.playhead },
         ..plain
     };
     reconcile(&mut fresh, &mut plain);

@@ -7,7 +7,8 @@ use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{ClipId, LayeredClip, Library, Model};
 use gaitway::retarget::{ClipLayer, Pin, PinGoal, PinTimes};
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, History, OrbitCamera, Playhead, UpAxis, ViewerState, apply, from_link,
+    CameraChoice, CharacterView, ClipChoice, Command, History, OrbitCamera, Playhead, UpAxis, ViewerState, apply,
+    from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -59,7 +60,7 @@ fn a_pinned_hand_stays_while_the_clip_plays() {
     let library = walker();
     for (up, at) in [(UpAxis::Y, Vec3::new(0.25, 1.2, 0.3)), (UpAxis::Z, Vec3::new(0.25, 0.3, -1.2))] {
         let mut state = ViewerState::default();
-        state.edits.up = up;
+        state.character.edits.up = up;
         apply(&mut state, &library, set(LEFT_HAND, pin(PinGoal::Point(at))));
         for time_secs in [0.0, 0.2, 0.5, 0.9] {
             apply(&mut state, &library, Command::Seek(time_secs));
@@ -127,7 +128,7 @@ fn what_cannot_be_pinned_stays() {
         apply(&mut state, &library, set(joint, pin));
         assert_eq!(state, ViewerState::default(), "{joint}: {pin:?}");
         // A link may have them; they have no effect.
-        state.edits.pins.insert(joint, pin);
+        state.character.edits.pins.insert(joint, pin);
         let mut replaced = ViewerState::default();
         apply(&mut replaced, &library, Command::Replace(Box::new(state)));
         assert_eq!(frame(&library, &replaced).pose(), frame(&library, &ViewerState::default()).pose());
@@ -136,7 +137,7 @@ fn what_cannot_be_pinned_stays() {
     let mut state = ViewerState::default();
     apply(&mut state, &library, set(LEFT_HAND, Pin { times: Some(times), ..pin(point) }));
     let clamped = PinTimes { start_secs: 1.0, end_secs: 2.0, blend_secs: PinTimes::MAX_BLEND_SECS };
-    assert_eq!(state.edits.pins[&LEFT_HAND].times, Some(clamped));
+    assert_eq!(state.character.edits.pins[&LEFT_HAND].times, Some(clamped));
 }
 
 #[test]
@@ -147,15 +148,15 @@ fn a_drag_of_a_pin_is_one_step() {
         history.apply(&mut state, &library, set(LEFT_HAND, pin(PinGoal::Point(Vec3::new(x, 1.0, 0.3)))));
     }
     history.end_gesture();
-    let dragged = state.edits.pins.clone();
+    let dragged = state.character.edits.pins.clone();
     history.apply(&mut state, &library, Command::SetPin { joint: LEFT_HAND, pin: None });
-    assert!(state.edits.pins.is_empty());
+    assert!(state.character.edits.pins.is_empty());
     assert!(undo(&mut history, &mut state, &mut library));
-    assert_eq!(state.edits.pins, dragged);
+    assert_eq!(state.character.edits.pins, dragged);
     assert!(undo(&mut history, &mut state, &mut library));
-    assert!(state.edits.pins.is_empty());
+    assert!(state.character.edits.pins.is_empty());
     assert!(redo(&mut history, &mut state, &mut library));
-    assert_eq!(state.edits.pins, dragged);
+    assert_eq!(state.character.edits.pins, dragged);
 }
 
 #[test]
@@ -180,7 +181,7 @@ fn malformed_pins_are_reported_and_the_rest_is_kept() {
         let (state, errors) = from_link(&format!("pin={bad}&pin=5:look:camera"));
         assert_eq!(errors.len(), 1, "{bad}: {errors:?}");
         assert!(errors[0].to_string().contains("look:camera"), "{}", errors[0]);
-        assert_eq!(state.edits.pins.keys().collect::<Vec<_>>(), [&HEAD]);
+        assert_eq!(state.character.edits.pins.keys().collect::<Vec<_>>(), [&HEAD]);
     }
     let (state, errors) = from_link("pin=9:joint:4");
     assert_eq!((errors, link_of(&state)), (Vec::new(), "v=1&pin=9:joint:4,0,0,0".to_owned()));
@@ -200,8 +201,8 @@ pub fn check_written(editor: &Editor, written: &Library, secs: f64, (max_metres,
     for step in 0..120 {
         let time_secs = secs * (f64::from(step) + 0.37) / 121.0;
         let at = |state: &ViewerState| {
-            let playhead = Playhead { time_secs, ..state.playhead.clone() };
-            ViewerState { playhead, ..state.clone() }
+            let playhead = Playhead { time_secs, ..state.character.playhead.clone() };
+            ViewerState { character: CharacterView { playhead, ..state.clone().character }, ..state.clone() }
         };
         let shown = frame(editor.library(), &at(editor.state()));
         let again = frame(written, &at(&ViewerState::default()));
@@ -260,7 +261,8 @@ fn exports_repeat_the_pins_of_a_clip_that_a_layer_makes_longer() {
     check_written(&editor, &written, secs, (3.6e-4, 0.1));
     let at = |time_secs: f64| {
         let playhead = Playhead { time_secs, ..Playhead::default() };
-        let state = ViewerState { playhead, ..ViewerState::default() };
+        let state =
+            ViewerState { character: CharacterView { playhead, ..CharacterView::default() }, ..ViewerState::default() };
         let frame = frame(&written, &state);
         let skeleton = &written.active().expect("a model").asset.skeleton;
         let joint = skeleton.find("LeftHand").expect("a hand");
@@ -387,13 +389,17 @@ fn wrong_pins_are_refused() {
 fn a_link_has_its_pins() {
     let library = walker();
     let mut state = ViewerState::default();
-    state.playhead.clip = ClipChoice::RestPose;
+    state.character.playhead.clip = ClipChoice::RestPose;
     apply(&mut state, &library, set(LEFT_HAND, pin(PinGoal::Point(Vec3::new(0.25, 1.2, 0.3)))));
     let (again, errors) = from_link(&link_of(&state));
     assert_eq!(errors, []);
     assert_eq!(frame(&library, &again).pose(), frame(&library, &state).pose());
     assert_ne!(
         frame(&library, &again).pose(),
-        frame(&library, &ViewerState { edits: Default::default(), ..state }).pose()
+        frame(
+            &library,
+            &ViewerState { character: CharacterView { edits: Default::default(), ..state.character }, ..state }
+        )
+        .pose()
     );
 }

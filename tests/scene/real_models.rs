@@ -3,7 +3,7 @@
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::{ClipId, Library, Take, inspect};
-use gaitway::state::{ClipChoice, Playhead, ViewerState, active_clip, front_yaw_radians};
+use gaitway::state::{CharacterView, ClipChoice, Playhead, ViewerState, active_clip, front_yaw_radians};
 
 use crate::by_place::ByPlace;
 use crate::data::open;
@@ -75,7 +75,10 @@ fn a_skinned_mesh_ignores_its_nodes_transform() {
     let (mut frame, rest) = (
         Frame::default(),
         ViewerState {
-            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            character: CharacterView {
+                playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+                ..CharacterView::default()
+            },
             ..ViewerState::default()
         },
     );
@@ -101,7 +104,10 @@ fn the_frame_rate_is_detected_from_the_keys() {
         let Some(library) = open(path) else { return };
         let model = library.active().expect("a model");
         let state = ViewerState {
-            playhead: Playhead { clip: ClipChoice::called(clip), ..Playhead::default() },
+            character: CharacterView {
+                playhead: Playhead { clip: ClipChoice::called(clip), ..Playhead::default() },
+                ..CharacterView::default()
+            },
             ..ViewerState::default()
         };
         let clip = active_clip(model, &state).expect("the clip");

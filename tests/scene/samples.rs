@@ -24,19 +24,19 @@ fn check(scene: &Value) {
     let link = &link_of(scene);
     let (wanted, errors) = from_link(link);
     assert!(errors.is_empty(), "{link}: {errors:?}");
-    let paths = wanted.sources.model.iter().map(Into::into).collect::<Vec<_>>();
+    let paths = wanted.character.sources.model.iter().map(Into::into).collect::<Vec<_>>();
     let opened = open_paths(&paths).unwrap_or_else(|error| panic!("{link}: {error}"));
-    assert_eq!(opened.model.source, wanted.sources.model[0], "{link}");
+    assert_eq!(opened.model.source, wanted.character.sources.model[0], "{link}");
     assert!(opened.model.asset.warnings.iter().next().is_none(), "{link}: {:?}", opened.model.asset.warnings);
     let mut library = library_of(opened.model);
-    let motions = wanted.sources.motion.iter().flat_map(|motion| {
+    let motions = wanted.character.sources.motion.iter().flat_map(|motion| {
         let contents = read_paths(&[motion.into()], Role::Motion).unwrap_or_else(|error| panic!("{link}: {error}"));
         contents.motions.unwrap_or_default()
     });
     library.set_motions(motions.collect());
     library.borrow_each(vec![None; library.motions().len()]);
     assert!(library.borrow_errors().is_empty(), "{link}: {:?}", library.borrow_errors());
-    let named_clip = match &wanted.playhead.clip {
+    let named_clip = match &wanted.character.playhead.clip {
         ClipChoice::Clip(clip) => clip.name().map(str::to_owned),
         _ => None,
     };

@@ -298,7 +298,7 @@ fn one_of_several_models_that_cannot_be_read_is_left_out() {
             ["m.gltf"],
             "{link}"
         );
-        assert_eq!(view.sources.model.len(), 2, "it may be there when the link is opened again");
+        assert_eq!(view.character.sources.model.len(), 2, "it may be there when the link is opened again");
         let [problem] = &contents.problems[..] else { panic!("{:?}", contents.problems) };
         assert!(problem.starts_with("nowhere.glb: there is no such file"), "{problem}");
     }

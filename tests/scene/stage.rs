@@ -10,8 +10,8 @@ use gaitway::library::{Library, Model, Motion, map_for};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{JointMap, RestChoice, RestChoices};
 use gaitway::state::{
-    ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, compared_rests, resolved_bounds,
-    source_on_stage,
+    CharacterView, ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, compared_rests,
+    resolved_bounds, source_on_stage,
 };
 use glam::{Quat, Vec2, Vec3};
 
@@ -36,7 +36,13 @@ fn walker_with_larger_source() -> (Library, ViewerState) {
     let clip = ClipChoice::Clip(model.id_at(model.asset.clips.len()));
     (
         library,
-        ViewerState { playhead: Playhead { clip, time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() },
+        ViewerState {
+            character: CharacterView {
+                playhead: Playhead { clip, time_secs: 0.3, ..Playhead::default() },
+                ..CharacterView::default()
+            },
+            ..ViewerState::default()
+        },
     )
 }
 
@@ -79,7 +85,11 @@ fn compared_methods_have_one_pane_each_and_the_same_pose() {
     let library = walker();
     let inspect = Inspect { split: true, ..Inspect::default() };
     let playhead = Playhead { time_secs: 0.3, ..Playhead::default() };
-    let state = ViewerState { inspect, playhead, ..ViewerState::default() };
+    let state = ViewerState {
+        character: CharacterView { playhead, ..CharacterView::default() },
+        inspect,
+        ..ViewerState::default()
+    };
     let frame = frame_of(&library, &state, 1.5);
     let modes: Vec<_> = frame.characters.iter().map(|character| (character.pane, character.skinning)).collect();
     let expected = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
@@ -123,16 +133,27 @@ fn compared_rests_have_one_pane_each_with_the_clip_that_the_map_gives_with_that_
         poses.dedup();
         assert!(poses.len() > 1, "the rests differ");
     }
-    let own_clip = Playhead { clip: ClipChoice::First, ..state.playhead.clone() };
-    assert_eq!(frame_of(&library, &ViewerState { playhead: own_clip, ..state }, 1.5).comparison, None);
+    let own_clip = Playhead { clip: ClipChoice::First, ..state.character.playhead.clone() };
+    assert_eq!(
+        frame_of(
+            &library,
+            &ViewerState { character: CharacterView { playhead: own_clip, ..state.character }, ..state },
+            1.5
+        )
+        .comparison,
+        None
+    );
 }
 
 #[test]
 fn the_pose_document_has_only_the_selected_method() {
     let library = walker();
     let plain = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         display: Display { skinning: SkinningMode::Rigid, ..Display::default() },
-        playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
         ..ViewerState::default()
     };
     let compared = ViewerState { inspect: Inspect { split: true, ..plain.inspect }, ..plain.clone() };
@@ -168,10 +189,16 @@ fn over_overlays_the_source() {
 #[test]
 fn the_models_own_clips_have_no_source() {
     let (library, state) = walker_with_larger_source();
-    let own =
-        showing(&ViewerState { playhead: Playhead { clip: ClipChoice::First, ..state.playhead }, ..state }, |show| {
-            show.source = true
-        });
+    let own = showing(
+        &ViewerState {
+            character: CharacterView {
+                playhead: Playhead { clip: ClipChoice::First, ..state.character.playhead },
+                ..state.character
+            },
+            ..state
+        },
+        |show| show.source = true,
+    );
     assert!(source_on_stage(&library, &own).is_none());
     assert_eq!(frame_of(&library, &own, 1.5).characters.len(), 1);
 }
@@ -216,7 +243,7 @@ fn bones_are_coloured_by_rotation_error() {
     let (red, green) = color(&state);
     assert!(green > 3.0 * red, "a faithful copy is green: {red} {green}");
     let mut wrong = state.clone();
-    wrong.edits.pose.insert(15, [120.0, 0.0, 0.0]);
+    wrong.character.edits.pose.insert(15, [120.0, 0.0, 0.0]);
     let (red, green) = color(&wrong);
     assert!(red > 3.0 * green, "{red} {green}");
 }
@@ -226,8 +253,17 @@ fn the_source_plays_along() {
     let (library, state) = walker_with_larger_source();
     let state = showing(&state, |show| show.source = true);
     let early = frame_of(&library, &state, 1.5);
-    let late =
-        frame_of(&library, &ViewerState { playhead: Playhead { time_secs: 0.6, ..state.playhead }, ..state }, 1.5);
+    let late = frame_of(
+        &library,
+        &ViewerState {
+            character: CharacterView {
+                playhead: Playhead { time_secs: 0.6, ..state.character.playhead },
+                ..state.character
+            },
+            ..state
+        },
+        1.5,
+    );
     assert_ne!(early.characters[1].world_from_joint, late.characters[1].world_from_joint);
 }
 
@@ -247,7 +283,10 @@ fn long_model() -> (Library, ViewerState) {
     assert_eq!(library.borrow_errors(), []);
     let clip = ClipChoice::Clip(library.active().expect("a model").id_at(1));
     let playhead = Playhead { clip, time_secs: 1.0, ..Playhead::default() };
-    (library, ViewerState { playhead, ..ViewerState::default() })
+    (
+        library,
+        ViewerState { character: CharacterView { playhead, ..CharacterView::default() }, ..ViewerState::default() },
+    )
 }
 
 #[test]

@@ -6,8 +6,8 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::{ClipId, Library, ModelClip};
 use gaitway::retarget::ClipChanges;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, ClipEdit, Command, History, NameKind, OrbitCamera, Playback, Playhead,
-    UnknownName, ViewerState, active_clip, apply, clip_secs, resolve_camera, to_object,
+    CameraChoice, CameraOptions, CharacterView, ClipChoice, ClipEdit, Command, History, NameKind, OrbitCamera,
+    Playback, Playhead, UnknownName, ViewerState, active_clip, apply, clip_secs, resolve_camera, to_object,
 };
 use glam::Vec3;
 
@@ -61,21 +61,24 @@ fn numbers_that_are_not_finite_change_nothing() {
 #[test]
 fn values_out_of_range_are_clamped() {
     let library = one_second();
-    assert_eq!(after(&library, [Command::Seek(7.0)]).playhead.time_secs, 1.0);
-    assert_eq!(after(&library, [Command::Seek(-7.0)]).playhead.time_secs, 0.0);
+    assert_eq!(after(&library, [Command::Seek(7.0)]).character.playhead.time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(-7.0)]).character.playhead.time_secs, 0.0);
     assert_eq!(after(&library, [Command::SetSpeed(100.0)]).playback.speed, 4.0);
     assert_eq!(after(&library, [Command::SetFov(0.0)]).camera_options.fov_degrees, 5.0);
     let range = Some(TimeRange { start_secs: -1.0, end_secs: 9.0 });
     let whole = Some(TimeRange { start_secs: 0.0, end_secs: 1.0 });
-    assert_eq!(after(&library, [Command::SetRange(range)]).playhead.range, whole);
+    assert_eq!(after(&library, [Command::SetRange(range)]).character.playhead.range, whole);
     let bad = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: f64::NAN, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         camera: CameraChoice::Orbit(OrbitCamera {
             yaw_radians: 0.0,
             pitch_radians: 0.0,
             distance: -1.0,
             target: Vec3::ZERO,
         }),
-        playhead: Playhead { time_secs: f64::NAN, ..Playhead::default() },
         playback: Playback { speed: f64::INFINITY, ..Playback::default() },
         camera_options: CameraOptions { fov_degrees: 900.0, ..CameraOptions::default() },
         ..ViewerState::default()
@@ -85,18 +88,23 @@ fn values_out_of_range_are_clamped() {
         ..ViewerState::default()
     };
     assert_eq!(after(&library, [Command::Replace(Box::new(bad))]), expected);
-    let before_the_start =
-        ViewerState { playhead: Playhead { time_secs: -1.0, ..Playhead::default() }, ..ViewerState::default() };
+    let before_the_start = ViewerState {
+        character: CharacterView {
+            playhead: Playhead { time_secs: -1.0, ..Playhead::default() },
+            ..CharacterView::default()
+        },
+        ..ViewerState::default()
+    };
     assert_eq!(after(&library, [Command::Replace(Box::new(before_the_start))]), ViewerState::default());
 }
 
 #[test]
 fn time_advances_at_the_playback_speed() {
     let library = one_second();
-    assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).playhead.time_secs, 0.25);
-    assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).playhead.time_secs, 0.0);
+    assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).character.playhead.time_secs, 0.25);
+    assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).character.playhead.time_secs, 0.0);
     assert_eq!(
-        after(&library, [Command::SetClip(ClipChoice::RestPose), Command::Advance(0.5)]).playhead.time_secs,
+        after(&library, [Command::SetClip(ClipChoice::RestPose), Command::Advance(0.5)]).character.playhead.time_secs,
         0.0
     );
 }
@@ -106,9 +114,9 @@ fn playing_once_stops_at_the_end_and_restarts() {
     let library = one_second();
     let mut state =
         after(&library, [Command::SetLoopMode(LoopMode::Once), Command::Advance(0.75), Command::Advance(0.75)]);
-    assert_eq!((state.playhead.time_secs, state.playback.playing), (1.0, false));
+    assert_eq!((state.character.playhead.time_secs, state.playback.playing), (1.0, false));
     apply(&mut state, &library, Command::TogglePlaying);
-    assert_eq!((state.playhead.time_secs, state.playback.playing), (0.0, true));
+    assert_eq!((state.character.playhead.time_secs, state.playback.playing), (0.0, true));
 }
 
 #[test]
@@ -120,13 +128,21 @@ fn loops_fold_the_playhead_into_the_range() {
         for _ in 0..6 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
-        assert!((current_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.playhead.time_secs);
+        assert!(
+            (current_secs(&library, &state) - expected).abs() < 1e-9,
+            "{mode:?}: {}",
+            state.character.playhead.time_secs
+        );
         // However long it plays, the playhead stays near the range.
         for _ in 0..1000 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
-        assert!(state.playhead.time_secs < 2.0, "{mode:?}");
-        assert!((current_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.playhead.time_secs);
+        assert!(state.character.playhead.time_secs < 2.0, "{mode:?}");
+        assert!(
+            (current_secs(&library, &state) - expected).abs() < 1e-6,
+            "{mode:?}: {}",
+            state.character.playhead.time_secs
+        );
     }
 }
 
@@ -135,11 +151,11 @@ fn steps_are_whole_frames_and_pause() {
     let library = one_second();
     let at_frame = |frames: f64| frames / 30.0;
     let state = after(&library, [Command::Seek(0.49), Command::StepFrames(1)]);
-    assert_eq!((state.playhead.time_secs, state.playback.playing), (at_frame(16.0), false));
-    assert_eq!(after(&library, [Command::StepFrames(-1)]).playhead.time_secs, 1.0);
-    assert_eq!(after(&library, [Command::Seek(1.0), Command::StepFrames(1)]).playhead.time_secs, 0.0);
+    assert_eq!((state.character.playhead.time_secs, state.playback.playing), (at_frame(16.0), false));
+    assert_eq!(after(&library, [Command::StepFrames(-1)]).character.playhead.time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(1.0), Command::StepFrames(1)]).character.playhead.time_secs, 0.0);
     let once = [Command::SetLoopMode(LoopMode::Once), Command::StepFrames(-1)];
-    assert_eq!(after(&library, once).playhead.time_secs, 0.0);
+    assert_eq!(after(&library, once).character.playhead.time_secs, 0.0);
 }
 
 #[test]
@@ -148,7 +164,10 @@ fn a_new_clip_starts_at_its_beginning() {
     let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
     let wave = ClipChoice::Clip(ClipId::Own(2));
     let state = after(&library, [Command::Seek(0.5), Command::SetRange(range), Command::SetClip(wave.clone())]);
-    assert_eq!((state.playhead.time_secs, state.playhead.range, state.playhead.clip), (0.0, None, wave));
+    assert_eq!(
+        (state.character.playhead.time_secs, state.character.playhead.range, state.character.playhead.clip),
+        (0.0, None, wave)
+    );
 }
 
 #[test]
@@ -159,7 +178,7 @@ fn a_change_of_speed_keeps_the_pose_and_the_range() {
         |clip, changes| Command::EditClip { clip: ClipId::Own(clip), edit: ClipEdit::Change(Box::new(changes)) };
     let mut state = after(&library, [Command::Seek(0.5), Command::SetRange(range(0.25, 0.75))]);
     let check = |state: &ViewerState, time_secs, range| {
-        assert_eq!((state.playhead.time_secs, state.playhead.range), (time_secs, range));
+        assert_eq!((state.character.playhead.time_secs, state.character.playhead.range), (time_secs, range));
     };
     apply(&mut state, &library, change(1, ClipChanges { speed: 4.0, ..ClipChanges::NONE }));
     check(&state, 0.5, range(0.25, 0.75));
@@ -187,7 +206,7 @@ fn a_reversed_clip_keeps_the_pose_and_the_range() {
     let part = ClipChanges { speed: 2.0, trim: range(0.25, 0.75), ..ClipChanges::NONE };
     apply(&mut state, &library, change(part.clone()));
     check_time(&state, 0.0, None);
-    state.playhead.time_secs = 0.5625;
+    state.character.playhead.time_secs = 0.5625;
     apply(&mut state, &library, change(ClipChanges { reverse: true, ..part }));
     check_time(&state, 0.1875, None);
 }
@@ -196,7 +215,7 @@ fn check_time(state: &ViewerState, time_secs: f64, range: Option<TimeRange>) {
     let numbers = |time_secs: f64, range: Option<TimeRange>| {
         [time_secs].into_iter().chain(range.into_iter().flat_map(|range| [range.start_secs, range.end_secs]))
     };
-    let found = numbers(state.playhead.time_secs, state.playhead.range);
+    let found = numbers(state.character.playhead.time_secs, state.character.playhead.range);
     let expected: Vec<f64> = numbers(time_secs, range).collect();
     let is_near = found.clone().zip(&expected).all(|(found, expected)| (found - expected).abs() < 1e-9);
     assert!(
@@ -242,7 +261,14 @@ fn clips_are_found_by_name_and_by_index() {
     let model = library.active().expect("a model");
     let find = |name: &str| {
         let playhead = Playhead { clip: ClipChoice::called(name), ..Playhead::default() };
-        active_clip(model, &ViewerState { playhead, ..ViewerState::default() }).map(ModelClip::id)
+        active_clip(
+            model,
+            &ViewerState {
+                character: CharacterView { playhead, ..CharacterView::default() },
+                ..ViewerState::default()
+            },
+        )
+        .map(ModelClip::id)
     };
     let wave = Some(&ClipId::Own(2));
     assert_eq!((find("Wave"), find("2"), find("wave"), find("3"), find("")), (wave, wave, None, None, None));

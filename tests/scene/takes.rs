@@ -9,7 +9,7 @@ use gaitway::files::open_paths;
 use gaitway::library::{ClipId, Held, LayeredClip, Library, Model, ModelClip, Moment, Take, TakeSampler};
 use gaitway::mesh::Bounds;
 use gaitway::retarget::{ClipLayer, LayerMode, Pin, PinGoal};
-use gaitway::state::{Edits, Playhead, UpAxis, ViewerState, resolved_bounds};
+use gaitway::state::{CharacterView, Edits, Playhead, UpAxis, ViewerState, resolved_bounds};
 use glam::{Affine3A, Vec3};
 
 use crate::data::{moving_box, walker};
@@ -33,8 +33,12 @@ fn check_view(what: &str, library: &Library, state: &ViewerState) {
     let slack = 0.02 * bounds.diagonal();
     let duration_secs = f64::from(library.active().expect("a model").asset.clips[0].duration_secs());
     for step in 0..40 {
-        let playhead = Playhead { time_secs: 2.0 * duration_secs * f64::from(step) / 40.0, ..state.playhead.clone() };
-        let shown = exact(library, &ViewerState { playhead, ..state.clone() });
+        let playhead =
+            Playhead { time_secs: 2.0 * duration_secs * f64::from(step) / 40.0, ..state.character.playhead.clone() };
+        let shown = exact(
+            library,
+            &ViewerState { character: CharacterView { playhead, ..state.clone().character }, ..state.clone() },
+        );
         let is_inside = (bounds.min - slack).cmple(shown.min).all() && (bounds.max + slack).cmpge(shown.max).all();
         assert!(is_inside, "{what}: {shown:?} leaves {bounds:?} in step {step}");
     }
@@ -42,7 +46,10 @@ fn check_view(what: &str, library: &Library, state: &ViewerState) {
 
 #[test]
 fn what_is_laid_over_a_clip_stays_in_the_picture() {
-    let edits = |edits: Edits| ViewerState { edits, ..ViewerState::default() };
+    let edits = |edits: Edits| ViewerState {
+        character: CharacterView { edits, ..CharacterView::default() },
+        ..ViewerState::default()
+    };
     let jump = moving_box(0.5, &[0.0, 0.5, 1.0], &[Vec3::ZERO, Vec3::Y * 3.0, Vec3::ZERO]);
     for up in [UpAxis::Y, UpAxis::Z] {
         let layered = Edits { layers: vec![additive(0.0)], up, ..Edits::default() };

@@ -39,10 +39,10 @@ fn the_frame_says_which_variant_is_drawn() {
     ] {
         apply(&mut state, &library, command);
         evaluate(&library, &state, 1.0, &mut frame);
-        assert_eq!(frame.characters[0].variant, variant, "{:?}", state.edits.variant);
+        assert_eq!(frame.characters[0].variant, variant, "{:?}", state.character.edits.variant);
     }
     // A view may name a variant that the model lacks.
-    state.edits.variant = Some("Dusk".to_owned());
+    state.character.edits.variant = Some("Dusk".to_owned());
     evaluate(&library, &state, 1.0, &mut frame);
     assert_eq!(frame.characters[0].variant, None);
 }
@@ -56,11 +56,11 @@ fn a_variant_is_undone_and_stays_with_its_model() {
     assert_eq!(link, "v=1&variant=Night");
     assert_eq!(from_link(&link), (state.clone(), Vec::new()));
     assert!(history.undo(&mut state, &mut kept, &mut library));
-    assert_eq!(state.edits.variant, None);
+    assert_eq!(state.character.edits.variant, None);
     assert!(history.redo(&mut state, &mut kept, &mut library));
-    assert_eq!(state.edits.variant.as_deref(), Some("Night"));
+    assert_eq!(state.character.edits.variant.as_deref(), Some("Night"));
     let other = state.for_model(ViewerState::of_model("other.glb".to_owned()));
-    assert_eq!(other.edits.variant, None);
+    assert_eq!(other.character.edits.variant, None);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn an_unknown_variant_of_a_view_is_reported() {
     let notice = "variant: expected the name of a material variant, found “Dusk”; its variants are “Day”, “Night”; the \
                   file's own materials are used.";
     let mut view = ViewerState::of_model("box.glb".to_owned());
-    view.edits.variant = Some("Dusk".to_owned());
+    view.character.edits.variant = Some("Dusk".to_owned());
     let mut editor = Editor::default();
     let contents = Contents { models: vec![model("box.glb").into()], ..Contents::default() };
     editor.open(contents, Some(view), &mut |_| Ok(())).expect("fits");

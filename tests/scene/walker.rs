@@ -3,14 +3,17 @@
 use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
-use gaitway::state::{ClipChoice, Playhead, ViewerState};
+use gaitway::state::{CharacterView, ClipChoice, Playhead, ViewerState};
 use glam::Vec3;
 
 use crate::data::walker;
 
 fn at(clip: &str, time_secs: f64) -> ViewerState {
     ViewerState {
-        playhead: Playhead { clip: ClipChoice::called(clip), time_secs, ..Playhead::default() },
+        character: CharacterView {
+            playhead: Playhead { clip: ClipChoice::called(clip), time_secs, ..Playhead::default() },
+            ..CharacterView::default()
+        },
         ..ViewerState::default()
     }
 }

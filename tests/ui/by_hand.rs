@@ -21,7 +21,7 @@ fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
         state.selection.joint = Some(SHIN);
     });
     harness.state_mut().change(|state| {
-        state.playhead.clip = ClipChoice::RestPose;
+        state.character.playhead.clip = ClipChoice::RestPose;
     });
     harness.state_mut().panels.joint_card.is_posing = true;
     harness.run();
@@ -125,7 +125,7 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     press(&mut harness, text::POSE_MANUALLY);
     harness.get_by_label(text::POSE_ANGLES[0]).set_value_accesskit(40.0);
     harness.run();
-    assert!((harness.state().state().edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
+    assert!((harness.state().state().character.edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
     assert_eq!(reach(&mut harness, text::RESET_JOINT), [Command::SetPose { joint: SHIN, degrees: None }]);
     harness.get_by_label(text::POSE_ANGLES[2]).set_value_accesskit(-20.0);
     harness.run();
@@ -133,7 +133,7 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     harness.state_mut().change(|state| state.selection.joint = Some(SHIN - 1));
     harness.run();
     assert_eq!(reach(&mut harness, &text::counted(text::RESET_ALL, 1)), [Command::ClearPose]);
-    assert!(harness.state().state().edits.pose.is_empty());
+    assert!(harness.state().state().character.edits.pose.is_empty());
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn the_current_clip_is_changed_and_undone() {
         [Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(Box::new(mirrored.clone())) }]
     );
     assert_ne!(pose(&harness), before);
-    let clips = &harness.state().state().edits.clips;
+    let clips = &harness.state().state().character.edits.clips;
     assert_eq!(clips.changes.values().collect::<Vec<_>>(), [&mirrored]);
     let mark = |harness: &Harness<'_, Bench>| {
         let row = harness.get_by_label("Walk");
@@ -41,7 +41,7 @@ fn the_current_clip_is_changed_and_undone() {
     choose(&mut harness, text::EXPORT, text::SAVE_GLB);
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Model { clip: ClipId::Own(0) }))]);
     press(&mut harness, text::UNDO_STEP);
-    assert!(harness.state().state().edits.clips.changes.is_empty());
+    assert!(harness.state().state().character.edits.clips.changes.is_empty());
     assert_eq!(pose(&harness), before);
     assert_eq!(mark(&harness), None);
 }
@@ -65,7 +65,7 @@ fn changes_beyond_the_sliders_stay() {
         harness.key_press(egui::Key::Tab);
     }
     harness.run();
-    assert_eq!(harness.state().state().edits.clips.changes.values().collect::<Vec<_>>(), [&far]);
+    assert_eq!(harness.state().state().character.edits.clips.changes.values().collect::<Vec<_>>(), [&far]);
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn the_range_becomes_the_clip() {
         model.clip_at(0).duration_secs()
     };
     assert_eq!(duration(&harness), 0.5);
-    assert_eq!(harness.state().state().playhead.range, None);
+    assert_eq!(harness.state().state().character.playhead.range, None);
     // A part of the part, in its own time.
     let range = TimeRange { start_secs: 0.125, end_secs: 0.375 };
     harness.state_mut().editor.apply(Command::SetRange(Some(range)));
@@ -92,7 +92,7 @@ fn the_range_becomes_the_clip() {
     press(&mut harness, text::TRIM_TO_RANGE);
     let trim = TimeRange { start_secs: 0.375, end_secs: 0.625 };
     let trimmed = ClipChanges { trim: Some(trim), ..ClipChanges::NONE };
-    assert_eq!(harness.state().state().edits.clips.changes.values().collect::<Vec<_>>(), [&trimmed]);
+    assert_eq!(harness.state().state().character.edits.clips.changes.values().collect::<Vec<_>>(), [&trimmed]);
     assert_eq!(duration(&harness), 0.25);
     press(&mut harness, text::UNDO_TRIM);
     assert!(duration(&harness) > 0.75);
@@ -115,7 +115,7 @@ fn a_borrowed_clip_is_changed_in_the_motion_tab_and_tells_its_seam() {
     harness.get_by_label(text::RESET_CHANGES).scroll_to_me();
     harness.run();
     press(&mut harness, text::RESET_CHANGES);
-    assert!(harness.state().state().edits.clips.changes.is_empty());
+    assert!(harness.state().state().character.edits.clips.changes.is_empty());
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn the_chosen_clip_is_in_sight() {
     };
     assert!(!is_in_sight(&harness));
     harness.state_mut().change(|state| {
-        state.playhead.clip = ClipChoice::called("Move 50");
+        state.character.playhead.clip = ClipChoice::called("Move 50");
     });
     harness.run_steps(30);
     assert!(is_in_sight(&harness));

@@ -54,7 +54,7 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
     let mut harness = strip(WIDE);
     press(&mut harness, "joint 2");
     harness.state_mut().change(|state| {
-        state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
+        state.character.edits.pose.insert(2, [0.0, 0.0, 90.0]);
     });
     harness.run();
     let unscaled = text::labelled(text::SCALE, "1.000 1.000 1.000");
@@ -97,7 +97,7 @@ fn a_vertex_shows_shares_that_add_up() {
         assert!(harness.query_by_label(text::VERTEX_HINT).is_some());
         // Turned by a quarter about Z, joint 2 alone would put (1, 1) at (0, 0).
         harness.state_mut().change(|state| {
-            state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
+            state.character.edits.pose.insert(2, [0.0, 0.0, 90.0]);
         });
         harness.state_mut().change(|state| {
             state.selection.vertex = Some(VertexChoice { instance: 0, primitive: 0, vertex: 3 });
@@ -191,7 +191,7 @@ fn a_joint_is_renamed_in_its_card() {
     harness.run();
     harness.key_press(egui::Key::Escape);
     harness.run();
-    assert_eq!(harness.state().state().edits.names[&2], name);
+    assert_eq!(harness.state().state().character.edits.names[&2], name);
 }
 
 #[test]

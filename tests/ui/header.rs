@@ -202,7 +202,7 @@ fn an_open_model_lends_its_motion() {
     editor.borrow_from(dancer, &mut |_| Ok(())).expect("it has the same joints");
     let (library, state) = (editor.library(), editor.state());
     assert_eq!(library.active().expect("a model").clips().borrowed().count(), 3);
-    assert_eq!(state.sources.motion, ["dancer.glb"]);
+    assert_eq!(state.character.sources.motion, ["dancer.glb"]);
     assert!(harness.state_mut().editor.undo());
     assert_eq!(harness.state().library().motions().len(), 0);
 }

@@ -35,7 +35,7 @@ fn display_sets_skinning_overlays_and_morphs() {
     harness.state_mut().commands.clear();
     harness.get_by_label("Blink").set_value_accesskit(0.75);
     harness.run();
-    let morphs: Vec<_> = harness.state().state().edits.morph.values().copied().collect();
+    let morphs: Vec<_> = harness.state().state().character.edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
     assert_eq!(reach(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
 }
@@ -53,7 +53,7 @@ fn display_offers_the_material_variants_of_the_file() {
     let mut harness = bench_of(WIDE, library);
     press(&mut harness, Tab::Display.label());
     assert_eq!(press(&mut harness, "Night"), [Command::SetVariant(Some("Night".to_owned()))]);
-    assert_eq!(harness.state().state().edits.variant.as_deref(), Some("Night"));
+    assert_eq!(harness.state().state().character.edits.variant.as_deref(), Some("Night"));
     assert_eq!(press(&mut harness, text::NO_VARIANT), [Command::SetVariant(None)]);
 }
 
@@ -174,7 +174,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     assert!(harness.query_by_label("Sorrow").is_none());
     harness.get_by_label("Joy").set_value_accesskit(0.75);
     harness.run();
-    assert_eq!(harness.state().state().edits.expressions.get("happy"), Some(&0.75));
+    assert_eq!(harness.state().state().character.edits.expressions.get("happy"), Some(&0.75));
     assert_eq!(press(&mut harness, text::RESET_EXPRESSIONS), [Command::ClearExpressions]);
     assert_eq!(press(&mut harness, text::SPRINGS), [Command::SetSprings(true)]);
     let choice = |choice: &str| format!("{}: {choice}", text::EYES);

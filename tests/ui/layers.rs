@@ -21,7 +21,7 @@ fn scrolled_to(harness: &mut Harness<'_, Bench>, label: &str) {
 }
 
 fn layers(harness: &Harness<'_, Bench>) -> Vec<LayeredClip> {
-    harness.state().state().edits.layers.clone()
+    harness.state().state().character.edits.layers.clone()
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_long_name_leaves_the_panel_as_it_is() {
     let before = harness.state().viewport;
     scrolled_to(&mut harness, text::ADD_LAYER);
     press(&mut harness, text::ADD_LAYER);
-    let whole = &harness.state().state().edits.layers[..];
+    let whole = &harness.state().state().character.edits.layers[..];
     assert!(matches!(whole, [over] if over.layer.mask.is_all()), "a model without arms: {whole:?}");
     harness.run();
     assert_eq!(harness.state().viewport.x_range(), before.x_range());

@@ -42,7 +42,7 @@ fn on_screen(bench: &Bench, at: Vec3) -> Pos2 {
 }
 
 fn pin_of(harness: &Harness<'_, Bench>, joint: usize) -> Option<Pin> {
-    harness.state().state().edits.pins.get(&joint).copied()
+    harness.state().state().character.edits.pins.get(&joint).copied()
 }
 
 fn choice(harness: &mut Harness<'_, Bench>, about: &str, option: &str) -> Vec<Command> {

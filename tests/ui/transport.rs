@@ -55,7 +55,7 @@ fn scrubbing_seeks_and_holds_the_time() {
 fn in_and_out_points_are_set_dragged_and_cleared() {
     let mut harness = sample_bench(WIDE);
     harness.state_mut().change(|state| {
-        state.playhead.time_secs = 0.5;
+        state.character.playhead.time_secs = 0.5;
     });
     harness.run();
     let duration = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs());
@@ -77,12 +77,12 @@ fn a_dragged_in_or_out_point_stops_at_the_other() {
     let set = TimeRange { start_secs: 0.25 * duration, end_secs: 0.75 * duration };
     for (dragged, share) in [(text::IN_POINT, 0.9), (text::OUT_POINT, 0.1)] {
         let mut harness = sample_bench(WIDE);
-        harness.state_mut().change(|state| state.playhead.range = Some(set));
+        harness.state_mut().change(|state| state.character.playhead.range = Some(set));
         harness.run();
         let (handle, bar) = (harness.get_by_label(dragged).rect().center(), harness.get_by_label(text::TIME).rect());
         let beyond = pos2(bar.left() + share * bar.width(), handle.y);
         drag(&mut harness, handle, beyond, PointerButton::Primary);
-        let range = harness.state().state().playhead.range.expect("is set");
+        let range = harness.state().state().character.playhead.range.expect("is set");
         let (kept, was) =
             if dragged == text::IN_POINT { (range.end_secs, set.end_secs) } else { (range.start_secs, set.start_secs) };
         assert_eq!(kept, was, "{dragged}: the other stays");
@@ -97,14 +97,14 @@ fn handles_that_meet_can_both_be_grabbed() {
     for side in [-1.0, 1.0] {
         let mut harness = sample_bench(NARROW);
         let set = TimeRange { start_secs: middle, end_secs: middle + 1.0 / 30.0 };
-        harness.state_mut().change(|state| state.playhead.range = Some(set));
+        harness.state_mut().change(|state| state.character.playhead.range = Some(set));
         harness.run();
         let [start, end] = [text::IN_POINT, text::OUT_POINT].map(|label| harness.get_by_label(label).rect());
         assert!(start.right() <= end.left() + 0.01, "{start:?} {end:?}");
         let inner = if side < 0.0 { start.right() } else { end.left() };
         let from = pos2(inner + side * 4.0, start.center().y);
         drag(&mut harness, from, pos2(from.x + side * 100.0, from.y), PointerButton::Primary);
-        let range = harness.state().state().playhead.range.expect("is set");
+        let range = harness.state().state().character.playhead.range.expect("is set");
         let (moved, kept) = if side < 0.0 {
             (set.start_secs - range.start_secs, range.end_secs - set.end_secs)
         } else {
@@ -120,10 +120,12 @@ fn a_range_has_at_least_one_frame() {
     let mut harness = sample_bench(WIDE);
     let duration = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs());
     for (at, button) in [(0.0, text::SET_OUT_POINT), (duration, text::SET_IN_POINT)] {
-        harness.state_mut().change(|state| (state.playhead.time_secs, state.playhead.range) = (at, None));
+        harness
+            .state_mut()
+            .change(|state| (state.character.playhead.time_secs, state.character.playhead.range) = (at, None));
         harness.run();
         press(&mut harness, button);
-        let range = harness.state().state().playhead.range.expect("is set");
+        let range = harness.state().state().character.playhead.range.expect("is set");
         assert!((range.end_secs - range.start_secs - 1.0 / 30.0).abs() < 1e-6, "{range:?} from {at}");
         assert!(range.start_secs >= 0.0 && range.end_secs <= duration, "{range:?}");
     }
@@ -151,7 +153,7 @@ fn speed_is_a_menu_on_a_phone() {
 fn the_rest_pose_has_nothing_to_play() {
     let mut harness = sample_bench(WIDE);
     harness.state_mut().change(|state| {
-        state.playhead.clip = ClipChoice::RestPose;
+        state.character.playhead.clip = ClipChoice::RestPose;
     });
     harness.run();
     assert!(press(&mut harness, text::PLAY).is_empty());
@@ -162,7 +164,7 @@ fn the_rest_pose_has_nothing_to_play() {
 fn time_is_told_in_seconds_and_frames() {
     let mut harness = sample_bench(WIDE);
     harness.state_mut().change(|state| {
-        state.playhead.time_secs = 0.5;
+        state.character.playhead.time_secs = 0.5;
     });
     harness.run();
     assert!(harness.query_by_label(&text::seconds(0.5, 1.07)).is_some());

@@ -19,7 +19,7 @@ const TRIM: &str = "trim:START:END in seconds, the end after the start";
 pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
     match read_clip(text) {
         Some(clip) => {
-            state.edits.clips.changes.entry(clip).or_default().mirror = true;
+            state.character.edits.clips.changes.entry(clip).or_default().mirror = true;
             Read::Done
         }
         None => Read::Bad(MIRROR),
@@ -27,7 +27,7 @@ pub(super) fn read_mirror(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write_mirror(state: &ViewerState) -> Written {
-    let mirrored = state.edits.clips.changes.iter().filter(|(_, changes)| changes.mirror);
+    let mirrored = state.character.edits.clips.changes.iter().filter(|(_, changes)| changes.mirror);
     Written::List(mirrored.map(|(clip, _)| clip_text(clip)).collect())
 }
 
@@ -37,7 +37,7 @@ pub(super) fn reset_mirror(state: &mut ViewerState) {
 
 pub(super) fn read_copy(state: &mut ViewerState, text: &str) -> Read {
     let names = text.split_once(':').and_then(|(name, of)| Some((clip_name(name)?, read_clip(of)?)));
-    let edits = &mut state.edits.clips;
+    let edits = &mut state.character.edits.clips;
     match names {
         Some((name, of))
             if edits.copies.len() < ClipEdits::MAX_COPIES && !copy_names(edits).any(|taken| *taken == name) =>
@@ -56,7 +56,7 @@ fn copy_names(edits: &ClipEdits) -> impl Iterator<Item = &String> {
 }
 
 pub(super) fn write_copy(state: &ViewerState) -> Written {
-    let ClipEdits { copies, names, .. } = &state.edits.clips;
+    let ClipEdits { copies, names, .. } = &state.character.edits.clips;
     let text = |copy: &ClipCopy| {
         let name = names.get(&ClipId::Copy(copy.id))?;
         Some(format!("{}:{}", escaped_name(name), clip_text(&copy.of)))
@@ -65,7 +65,7 @@ pub(super) fn write_copy(state: &ViewerState) -> Written {
 }
 
 pub(super) fn reset_copy(state: &mut ViewerState) {
-    let edits = &mut state.edits.clips;
+    let edits = &mut state.character.edits.clips;
     edits.copies.clear();
     edits.names.retain(|clip, _| !matches!(clip, ClipId::Copy(_)));
 }
@@ -73,7 +73,7 @@ pub(super) fn reset_copy(state: &mut ViewerState) {
 pub(super) fn read_rename(state: &mut ViewerState, text: &str) -> Read {
     match text.split_once(':').and_then(|(clip, name)| Some((read_clip(clip)?, clip_name(name)?))) {
         Some((clip, name)) => {
-            state.edits.clips.names.insert(clip, name);
+            state.character.edits.clips.names.insert(clip, name);
             Read::Done
         }
         None => Read::Bad(RENAME),
@@ -81,18 +81,18 @@ pub(super) fn read_rename(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write_rename(state: &ViewerState) -> Written {
-    let renamed = state.edits.clips.names.iter().filter(|(clip, _)| !matches!(clip, ClipId::Copy(_)));
+    let renamed = state.character.edits.clips.names.iter().filter(|(clip, _)| !matches!(clip, ClipId::Copy(_)));
     Written::List(renamed.map(|(clip, name)| format!("{}:{}", clip_text(clip), escaped_name(name))).collect())
 }
 
 pub(super) fn reset_rename(state: &mut ViewerState) {
-    state.edits.clips.names.retain(|clip, _| matches!(clip, ClipId::Copy(_)));
+    state.character.edits.clips.names.retain(|clip, _| matches!(clip, ClipId::Copy(_)));
 }
 
 pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
     match read(text) {
         Ok((clip, changes)) => {
-            let clips = &mut state.edits.clips;
+            let clips = &mut state.character.edits.clips;
             let mirror = clips.changes_of(&clip).mirror;
             clips.set_changes(clip, ClipChanges { mirror, ..changes });
             Read::Done
@@ -102,7 +102,7 @@ pub(super) fn read_change(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write_change(state: &ViewerState) -> Written {
-    let texts = state.edits.clips.changes.iter().filter_map(|(clip, changes)| {
+    let texts = state.character.edits.clips.changes.iter().filter_map(|(clip, changes)| {
         let text = words(changes).join(",");
         (!text.is_empty()).then(|| format!("{}:{text}", clip_text(clip)))
     });
@@ -114,7 +114,7 @@ pub(super) fn reset_change(state: &mut ViewerState) {
 }
 
 fn reset(state: &mut ViewerState, one: fn(&mut ClipChanges)) {
-    let changes = &mut state.edits.clips.changes;
+    let changes = &mut state.character.edits.clips.changes;
     changes.values_mut().for_each(one);
     changes.retain(|_, changes| !changes.is_none());
 }

@@ -18,7 +18,7 @@ pub(super) fn read(state: &mut ViewerState, text: &str) -> Read {
     };
     match read(text) {
         Some((joint, pin)) => {
-            state.edits.pins.insert(joint, pin);
+            state.character.edits.pins.insert(joint, pin);
             Read::Done
         }
         None => Read::Bad(EXPECTED),
@@ -26,11 +26,11 @@ pub(super) fn read(state: &mut ViewerState, text: &str) -> Read {
 }
 
 pub(super) fn write(state: &ViewerState) -> Written {
-    Written::List(state.edits.pins.iter().map(|(joint, pin)| format!("{joint}:{}", pin_text(pin))).collect())
+    Written::List(state.character.edits.pins.iter().map(|(joint, pin)| format!("{joint}:{}", pin_text(pin))).collect())
 }
 
 pub(super) fn reset(state: &mut ViewerState) {
-    state.edits.pins.clear();
+    state.character.edits.pins.clear();
 }
 
 fn pin_text(pin: &Pin) -> String {

@@ -132,7 +132,7 @@ impl Inputs {
             motion: pairing.motion.asset.clone(),
             motions: shown.library.motions().iter().map(|motion| motion.asset.clone()).collect(),
             map: pairing.map.clone(),
-            names: pairing.state.edits.names.clone(),
+            names: pairing.state.character.edits.names.clone(),
         }
     }
 
@@ -143,7 +143,7 @@ impl Inputs {
             && Arc::ptr_eq(&self.map, pairing.map)
             && self.motions.len() == motions.len()
             && self.motions.iter().zip(motions).all(|(kept, motion)| Arc::ptr_eq(kept, &motion.asset))
-            && self.names == pairing.state.edits.names
+            && self.names == pairing.state.character.edits.names
     }
 }
 

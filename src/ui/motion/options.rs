@@ -35,7 +35,7 @@ pub(super) fn show(
     if controls::switch(ui, text::PLANT_FEET, planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
-    if shown.state.retarget.feet_are_automatic {
+    if shown.state.character.retarget.feet_are_automatic {
         controls::hint(ui, text::PLANTED_AUTOMATICALLY);
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");

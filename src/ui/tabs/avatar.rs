@@ -79,7 +79,7 @@ fn expressions(ui: &mut Ui, shown: &Shown<'_>, avatar: &Avatar, out: &mut Output
         return;
     }
     controls::section(ui, "EXPRESSIONS");
-    let edited = &shown.state.edits.expressions;
+    let edited = &shown.state.character.edits.expressions;
     if ui.add_enabled(!edited.is_empty(), egui::Button::new(text::RESET_EXPRESSIONS)).clicked() {
         out.commands.push(Command::ClearExpressions);
     }

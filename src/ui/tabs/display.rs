@@ -216,7 +216,7 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
     if count > 0 {
         controls::section(ui, "MORPH TARGETS");
         // Always visible, so that the sliders don't move when the first one is touched.
-        let is_edited = !shown.state.edits.morph.is_empty();
+        let is_edited = !shown.state.character.edits.morph.is_empty();
         if ui.add_enabled(is_edited, egui::Button::new(text::RESET_MORPHS)).clicked() {
             out.commands.push(Command::ClearMorphs);
         }
@@ -233,7 +233,7 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
             let name = mesh.target_names.get(target).filter(|name| !name.is_empty());
             let name = name.cloned().unwrap_or_else(|| format!("Target {target}"));
             let rest = asset.skeleton.rest().morph_weights.get(index).copied().unwrap_or(0.0);
-            let edited = shown.state.edits.morph.get(&index).copied();
+            let edited = shown.state.character.edits.morph.get(&index).copied();
             let value = edited.or_else(|| now.get(index).copied()).unwrap_or(rest);
             let settings = SliderSettings {
                 range: (0.0, 1.0),

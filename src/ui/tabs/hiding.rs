@@ -36,7 +36,7 @@ pub fn eye(ui: &Ui, row: Rect, id: Id, name: &str, is_shown: bool) -> Option<Pre
 
 /// Shows the button that unhides everything, if anything is hidden.
 pub fn show_all(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    if !shown.state.edits.hidden.is_empty() && ui.button(text::SHOW_ALL).clicked() {
+    if !shown.state.character.edits.hidden.is_empty() && ui.button(text::SHOW_ALL).clicked() {
         out.commands.push(Command::SetHidden(Hidden::default()));
     }
 }

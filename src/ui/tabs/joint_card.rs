@@ -42,7 +42,7 @@ pub fn show(
         hide_buttons(ui, shown, asset, joint, out);
     }
     // One that the user hid has a button that shows it.
-    let is_hidden_here = shown.state.edits.hidden.nodes.contains(&asset.skeleton.source_index(joint));
+    let is_hidden_here = shown.state.character.edits.hidden.nodes.contains(&asset.skeleton.source_index(joint));
     if !is_hidden_here && !shown.frame.is_visible(joint) {
         controls::hint(ui, text::NODE_HIDDEN);
     }
@@ -101,7 +101,7 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card
 
 /// Hides or solos the meshes and lights of the node and below.
 fn hide_buttons(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, out: &mut Output) {
-    let hidden = &shown.state.edits.hidden;
+    let hidden = &shown.state.character.edits.hidden;
     let number = asset.skeleton.source_index(joint);
     ui.horizontal_wrapped(|ui| {
         let label = if hidden.nodes.contains(&number) { text::SHOW } else { text::HIDE };
@@ -116,7 +116,7 @@ fn hide_buttons(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex
 
 /// Shown while any joint is posed manually.
 fn reset_buttons(ui: &mut Ui, shown: &Shown<'_>, joint: usize, out: &mut Output) {
-    let posed = &shown.state.edits.pose;
+    let posed = &shown.state.character.edits.pose;
     if posed.is_empty() {
         return;
     }
@@ -177,7 +177,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: 
 fn pose_sliders(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
     let number = asset.skeleton.source_index(joint);
     let rest = asset.skeleton.rest().get(joint).map_or(Quat::IDENTITY, |local| local.rotation);
-    let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| manual_degrees(rest, rotation));
+    let now = shown.state.character.edits.pose.get(&number).copied().unwrap_or_else(|| manual_degrees(rest, rotation));
     // Turns -0 into 0.
     let now = now.map(|angle| angle + 0.0);
     controls::hint(ui, text::POSE_HINT);

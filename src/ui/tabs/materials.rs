@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, lists: &Lists, out: &
 }
 
 fn row(ui: &mut Ui, shown: &Shown<'_>, model: &Model, material: &MaterialText, out: &mut Output) {
-    let hidden = &shown.state.edits.hidden;
+    let hidden = &shown.state.character.edits.hidden;
     let is_shown = !hidden.materials.contains(&material.index);
     // As high as the button that hides the material.
     let name_height = controls::row_height(ui, 22.0);

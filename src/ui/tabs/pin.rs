@@ -20,7 +20,7 @@ const DEFAULT_BLEND_SECS: f64 = 0.25;
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, out: &mut Output) {
     let skeleton = &model.asset.skeleton;
     let number = skeleton.source_index(joint);
-    let before = shown.state.edits.pins.get(&number).copied();
+    let before = shown.state.character.edits.pins.get(&number).copied();
     let allows = |goal| active_take(model, shown.state).pinning(None).allows(number, goal);
     let is_head = model.recognition().slot(joint) == Some(Slot::Head);
     let Some(character) = shown.frame.characters.first() else { return };

@@ -159,7 +159,7 @@ impl SceneTree {
 
     fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
         let asset = &model.asset;
-        let names = &shown.state.edits.names;
+        let names = &shown.state.character.edits.names;
         let kept = self.rows.take().filter(|kept| kept.search == self.search && kept.names == *names);
         let kept = kept.unwrap_or_else(|| {
             let rows = self.rows(asset, shown.state);
@@ -175,7 +175,7 @@ impl SceneTree {
     /// Returns whether a row was expanded or collapsed.
     fn show_rows(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, rows: &[Row], out: &mut Output) -> bool {
         let asset = &model.asset;
-        let hidden = &shown.state.edits.hidden;
+        let hidden = &shown.state.character.edits.hidden;
         let mut is_folded = false;
         // The few rows that a search leaves bring the card of the joint closer.
         let is_searching = !self.search.is_empty();

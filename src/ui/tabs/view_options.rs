@@ -69,7 +69,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
         (UpAxis::MinusY, "−Y"),
         (UpAxis::MinusZ, "−Z"),
     ];
-    if let Some(up) = controls::segmented(ui, text::UP_AXIS, Some(shown.state.edits.up), &axes) {
+    if let Some(up) = controls::segmented(ui, text::UP_AXIS, Some(shown.state.character.edits.up), &axes) {
         out.commands.push(Command::SetUp(up));
     }
     ui.add_space(2.0);
@@ -280,7 +280,7 @@ fn background(ui: &mut Ui, now: Background, out: &mut Output) {
 fn scenes(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active().filter(|model| model.asset.scenes.len() > 1) else { return };
     controls::section(ui, "SCENE");
-    let now = model.scene(shown.state.sources.scene);
+    let now = model.scene(shown.state.character.sources.scene);
     for (index, scene) in model.asset.scenes.iter().enumerate() {
         let name = if scene.name.is_empty() { format!("Scene {index}") } else { scene.name.clone() };
         let default = if model.asset.default_scene == Some(index) { "default" } else { "" };

@@ -17,7 +17,7 @@ const GRAB_POINTS: f32 = 12.0;
 /// Shows the handles; returns whether one has captured the pointer.
 pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
     let Canvas { ui, painter, response, shown } = canvas;
-    let pins = &shown.state.edits.pins;
+    let pins = &shown.state.character.edits.pins;
     if pins.is_empty() || shown.state.page.embed {
         return false;
     }

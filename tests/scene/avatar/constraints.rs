@@ -28,7 +28,7 @@ pub const SOURCE: usize = 2;
 /// The source posed manually.
 fn turned_source() -> ViewerState {
     let mut state = ViewerState::default();
-    state.edits.pose.insert(SOURCE, [40.0, -25.0, 60.0]);
+    state.character.edits.pose.insert(SOURCE, [40.0, -25.0, 60.0]);
     state
 }
 
@@ -102,7 +102,7 @@ fn constraints_apply_in_the_order_of_their_dependencies() {
     ]);
     let library = library(build);
     let mut state = ViewerState::default();
-    state.edits.pose.insert(1, [30.0, 0.0, 0.0]);
+    state.character.edits.pose.insert(1, [30.0, 0.0, 0.0]);
     let turned = Quat::from_rotation_x(30.0_f32.to_radians());
     assert!(is_near(rotation(&library, &frame(&library, &state), "third"), turned));
 }

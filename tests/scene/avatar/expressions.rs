@@ -173,11 +173,11 @@ fn unknown_expressions_are_ignored_and_edits_can_be_undone() {
     history.apply(&mut state, &library, set("happy", f32::NAN));
     assert_eq!(state, ViewerState::default());
     history.apply(&mut state, &library, set("happy", 3.0));
-    assert_eq!(state.edits.expressions, BTreeMap::from([("happy".to_owned(), 1.0)]));
+    assert_eq!(state.character.edits.expressions, BTreeMap::from([("happy".to_owned(), 1.0)]));
     assert!(undo(&mut history, &mut state, &mut library));
     assert_eq!(state, ViewerState::default());
     // As from a link that is read before its model is loaded.
-    state.edits.expressions.insert("grin".to_owned(), 1.0);
+    state.character.edits.expressions.insert("grin".to_owned(), 1.0);
     assert_eq!(frame(&library, &state).pose().morph_weights, [0.25, 0.0]);
 }
 

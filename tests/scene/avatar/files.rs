@@ -54,7 +54,7 @@ fn real_avatars_load_and_move() {
     let binary = open("vrm/vrm1_VRMC_vrm_expressions_isBinary_Overridden.vrm");
     let materials = |weights: &[(&str, f32)]| {
         let mut state = ViewerState::default();
-        state.edits.expressions = weights.iter().map(|&(name, weight)| (name.to_owned(), weight)).collect();
+        state.character.edits.expressions = weights.iter().map(|&(name, weight)| (name.to_owned(), weight)).collect();
         frame(&binary, &state).characters[0].materials.clone()
     };
     assert_eq!(materials(&[("blink", 0.4)]), []);
@@ -191,8 +191,8 @@ fn invalid_values_do_no_harm() {
             let mut state = looking_at(Vec3::new(0.3, 2.0, 1.0));
             state.display.springs = true;
             let names = model(&library).asset.avatar.expressions.iter().map(|expression| expression.name.clone());
-            state.edits.expressions = names.map(|name| (name, 1.0)).collect();
-            state.playhead.time_secs = 0.4;
+            state.character.edits.expressions = names.map(|name| (name, 1.0)).collect();
+            state.character.playhead.time_secs = 0.4;
             let frame = frame(&library, &state);
             let is_nan = frame.characters[0].world_from_joint.iter().any(|world| world.is_nan());
             let has_nan_weight = frame.pose().morph_weights.iter().any(|weight| weight.is_nan());

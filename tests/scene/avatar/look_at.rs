@@ -65,7 +65,7 @@ fn eye_rotations_are_relative_to_the_head() {
     let library = library(eyes("bone", json!({})));
     let mut state = looking_at(seen_at(30.0, 0.0));
     // The head (node 2) turns towards the target about an axis through the middle of the eyes.
-    state.edits.pose.insert(2, [0.0, 30.0, 0.0]);
+    state.character.edits.pose.insert(2, [0.0, 30.0, 0.0]);
     assert!(is_near(rotation(&library, &frame(&library, &state), "eye.L"), Quat::IDENTITY));
 }
 

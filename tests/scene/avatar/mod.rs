@@ -90,7 +90,7 @@ fn avatars_do_not_allocate_while_they_play() {
     let sphere = json!([{ "node": 4, "shape": { "sphere": { "radius": 0.1 } } }]);
     let springs = library(chain(0.5, sphere));
     let mut face = swinging();
-    face.edits.expressions = BTreeMap::from([("happy".to_owned(), 0.5)]);
+    face.character.edits.expressions = BTreeMap::from([("happy".to_owned(), 0.5)]);
     let mut eyes_state = swinging();
     eyes_state.display.look_at = LookTarget::Camera;
     eyes_state.camera_options.follow = true;

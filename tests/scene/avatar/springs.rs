@@ -74,7 +74,7 @@ fn playing_and_seeking_give_the_same_springs_bit_for_bit() {
     }
     let mut moved = std::collections::BTreeSet::new();
     for (state, expected) in &played {
-        assert_eq!(poses(&frame(&library, state)), *expected, "at {}", state.playhead.time_secs);
+        assert_eq!(poses(&frame(&library, state)), *expected, "at {}", state.character.playhead.time_secs);
         moved.insert(expected.clone());
     }
     assert!(moved.len() > 100, "the springs move");
@@ -84,7 +84,7 @@ fn playing_and_seeking_give_the_same_springs_bit_for_bit() {
     for index in order {
         let (state, expected) = &played[index];
         evaluate(&library, state, 1.5, &mut playing);
-        assert_eq!(poses(&playing), *expected, "at {}", state.playhead.time_secs);
+        assert_eq!(poses(&playing), *expected, "at {}", state.character.playhead.time_secs);
     }
 }
 

@@ -182,7 +182,7 @@ fn the_camera_follows_again_when_a_model_comes_back() {
 }
 
 fn are_automatic(editor: &Editor) -> bool {
-    editor.state().retarget.feet_are_automatic
+    editor.state().character.retarget.feet_are_automatic
 }
 
 /// Whatever restores or replaces a view says who has planted its feet.
@@ -195,7 +195,7 @@ fn who_has_planted_the_feet_belongs_to_the_view() {
     let (link, errors) = from_link(&to_link(editor.state(), editor.library()));
     assert!(errors.is_empty(), "{errors:?}");
     editor.apply(Command::Replace(Box::new(link)));
-    assert_eq!((editor.state().retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
+    assert_eq!((editor.state().character.retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
     // Another model has its own.
     let mut editor = self::editor("sample:dwarf");
     open_by_hand(&mut editor, "sample:walk");
@@ -204,7 +204,7 @@ fn who_has_planted_the_feet_belongs_to_the_view() {
     let dwarf = id_of(&editor, "sample:dwarf");
     open_by_hand(&mut editor, "sample:pilot");
     editor.activate(dwarf, &mut any).expect("fits");
-    assert_eq!((editor.state().retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
+    assert_eq!((editor.state().character.retarget.feet, are_automatic(&editor)), (Some(Feet::Plant), false));
     // A script's word counts like the user's; other keys say nothing about feet.
     let mut editor = self::editor("sample:dwarf");
     open_by_hand(&mut editor, "sample:walk");
@@ -245,7 +245,7 @@ fn feet_that_would_sink_in_are_held() {
 fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     let mut editor = editor("sample:dwarf");
     let told = open_by_hand(&mut editor, "sample:walk");
-    assert_eq!(editor.state().retarget.feet, Some(Feet::Plant));
+    assert_eq!(editor.state().character.retarget.feet, Some(Feet::Plant));
     let is_told =
         |event: &Event| matches!(event, Event::Notice { text, undoable: true } if text.contains("held on the ground"));
     assert!(told.iter().any(is_told), "{told:?}");
@@ -266,14 +266,14 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     editor.undo();
     assert_eq!((are_automatic(&editor), is_edit(&editor)), (true, (false, true)), "as before the user's edits");
     assert!(editor.undo());
-    assert_eq!((editor.state().retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
+    assert_eq!((editor.state().character.retarget.feet, motions(&editor).len()), (None, 1), "only the planting");
     assert!(editor.undo());
     assert_eq!(motions(&editor).len(), 0);
     // Where the feet stand as well as the source's, nothing is done.
     let told = open_by_hand(&mut editor, "sample:mannequin");
     assert!(!told.iter().any(is_told));
     let told = open_by_hand(&mut editor, "sample:mannequin_run");
-    assert_eq!((editor.state().retarget.feet, told.iter().any(is_told)), (None, false));
+    assert_eq!((editor.state().character.retarget.feet, told.iter().any(is_told)), (None, false));
     // Opened together, model and motion are set up as one after the other.
     let both = |is_by_hand| Contents {
         is_by_hand,
@@ -283,7 +283,7 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     let opened = |contents, mut editor: Editor| {
         editor.open(contents, None, &mut any).expect("fits");
         let told = editor.take_events();
-        (editor.state().retarget.feet, told.iter().any(is_told), told.contains(&Event::MotionsAdded))
+        (editor.state().character.retarget.feet, told.iter().any(is_told), told.contains(&Event::MotionsAdded))
     };
     assert_eq!(opened(both(true), super::editor("sample:pilot")), (Some(Feet::Plant), true, true));
     assert_eq!(opened(both(true), Editor::default()), (Some(Feet::Plant), true, true), "in an empty editor as well");
@@ -292,5 +292,5 @@ fn feet_that_would_slide_are_held_and_let_go_with_one_step() {
     open(&mut editor, "sample:dwarf");
     editor.remove_motion(&motion_at(editor.library(), 0));
     open(&mut editor, "sample:walk");
-    assert_eq!(editor.state().retarget.feet, None);
+    assert_eq!(editor.state().character.retarget.feet, None);
 }

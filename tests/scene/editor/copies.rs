@@ -97,12 +97,12 @@ fn a_copy_takes_the_layers_that_play_it_along() {
     let mut editor = editor("sample:walker");
     cut(&mut editor, 0, 0.25, 0.5);
     editor.apply(Command::SetLayers(["Walk part 1", "Wave"].map(layer).to_vec()));
-    let layers = editor.state().edits.layers.clone();
+    let layers = editor.state().character.edits.layers.clone();
     edit(&mut editor, 3, ClipEdit::RemoveCopy);
-    assert_eq!(editor.state().edits.layers, layers[1..]);
+    assert_eq!(editor.state().character.edits.layers, layers[1..]);
     assert_eq!(title(&editor), Some("Walk"));
     assert!(editor.undo());
-    assert_eq!(editor.state().edits.layers, layers);
+    assert_eq!(editor.state().character.edits.layers, layers);
     assert_eq!((title(&editor), model(&editor).clips().len()), (Some("Walk part 1"), 4), "it plays again");
 }
 
@@ -113,13 +113,13 @@ fn copies_are_undone_and_redone() {
     cut(&mut editor, 0, 0.25, 0.5);
     assert!(editor.undo());
     assert_eq!((title(&editor), model(&editor).clips().len()), (Some("Walk"), 3));
-    assert_eq!(editor.state().playhead.time_secs, 0.3, "where it was");
+    assert_eq!(editor.state().character.playhead.time_secs, 0.3, "where it was");
     assert!(editor.redo());
     assert_eq!((model(&editor).titles()[3], secs(&editor, 3)), ("Walk part 1", 0.25));
     editor.apply(Command::SetClip(ClipChoice::called("Walk part 1")));
     edit(&mut editor, 3, ClipEdit::RemoveCopy);
     assert_eq!((title(&editor), model(&editor).clips().len()), (Some("Walk"), 3));
-    assert_eq!(editor.state().edits.clips, ClipEdits::default(), "its changes are gone with it");
+    assert_eq!(editor.state().character.edits.clips, ClipEdits::default(), "its changes are gone with it");
     // Nothing else can be removed.
     edit(&mut editor, 0, ClipEdit::RemoveCopy);
     assert_eq!(model(&editor).clips().len(), 3);
@@ -196,7 +196,7 @@ fn clip_of(editor: &Editor, source: &str, source_clip: usize) -> Option<ClipId> 
 }
 
 fn is_mirrored(editor: &Editor, source: &str) -> Option<bool> {
-    Some(editor.state().edits.clips.changes_of(&clip_of(editor, source, 0)?).mirror)
+    Some(editor.state().character.edits.clips.changes_of(&clip_of(editor, source, 0)?).mirror)
 }
 
 /// Clips of several motions are often called alike, so that edits name them by index.
@@ -218,7 +218,7 @@ fn edits_stay_with_their_clip_whatever_becomes_of_other_motions() {
             assert_eq!(is_mirrored(editor, name), Some(*name == "run.glb"), "{name} of {names:?}");
         }
         let run = clip_of(editor, "run.glb", 0).expect("borrowed");
-        assert_eq!(editor.state().edits.layers[0].clip, run);
+        assert_eq!(editor.state().character.edits.layers[0].clip, run);
         assert_eq!(of_copy(editor), run);
     };
     check(&editor, &["walk.glb", "run.glb", "jump.glb"]);
@@ -240,7 +240,7 @@ fn edits_stay_with_their_clip_whatever_becomes_of_other_motions() {
     // Edits go with their motion, and come back with it.
     let run = editor.library().motions().iter().position(|motion| motion.source == "run.glb").expect("is there");
     editor.remove_motion(&motion_at(editor.library(), run));
-    let Edits { clips, layers, .. } = &editor.state().edits;
+    let Edits { clips, layers, .. } = &editor.state().character.edits;
     assert_eq!((clips, layers.len()), (&ClipEdits::default(), 0));
     assert!(editor.undo());
     check(&editor, &["walk.glb", "run.glb"]);

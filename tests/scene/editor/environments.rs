@@ -4,7 +4,7 @@ use gaitway::asset::Panorama;
 use gaitway::editor::{Contents, Editor};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Environment, Library};
-use gaitway::state::{Command, EnvironmentChoice, Lighting, ViewerState};
+use gaitway::state::{CharacterView, Command, EnvironmentChoice, Lighting, ViewerState};
 use glam::Vec3;
 
 use super::{any, contents, editor, notices, open};
@@ -32,7 +32,10 @@ fn an_environment_lights_the_scene_until_it_is_undone() {
     editor.undo();
     assert_eq!(editor.state().lighting, Lighting::default());
     // A view names what lights it, so opening the file for it changes nothing.
-    let view = ViewerState { sources: editor.state().sources.clone(), ..ViewerState::default() };
+    let view = ViewerState {
+        character: CharacterView { sources: editor.state().character.sources.clone(), ..CharacterView::default() },
+        ..ViewerState::default()
+    };
     let contents = Contents { motions: Some(Vec::new()), ..environment("sky.hdr").into_private() };
     editor.open(contents, Some(view), &mut any).expect("is loaded");
     assert_eq!(editor.state().lighting, Lighting::default());
@@ -48,7 +51,7 @@ fn an_environment_and_the_model_it_is_opened_with_are_one_step() {
     editor.open(Contents { environment: environment("beach.hdr").environment, ..model }, None, &mut any).expect("fits");
     assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
     assert!(editor.undo());
-    assert_eq!(editor.state().sources.model, ["sample:walker"]);
+    assert_eq!(editor.state().character.sources.model, ["sample:walker"]);
     assert_eq!(editor.state().lighting, Lighting::default());
     assert!(editor.redo());
     assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
@@ -61,7 +64,7 @@ fn an_environment_on_an_empty_stage_is_undone_by_itself() {
     let model = contents(&["sample:pilot"]);
     editor.open(Contents { environment: environment("beach.hdr").environment, ..model }, None, &mut any).expect("fits");
     assert!(editor.undo());
-    assert_eq!(editor.state().sources.model, ["sample:pilot"]);
+    assert_eq!(editor.state().character.sources.model, ["sample:pilot"]);
     assert_eq!(editor.state().lighting, Lighting::default());
 }
 

@@ -54,7 +54,7 @@ fn edit_all(editor: &mut Editor) -> BTreeMap<(String, usize), f64> {
 
 /// Each clip and each copy is turned by the angle of its source, each layer starts after as many seconds, and none is missing.
 fn check(editor: &Editor, angles: &BTreeMap<(String, usize), f64>, after: &str) {
-    let (library, edits) = (model(editor), &editor.state().edits);
+    let (library, edits) = (model(editor), &editor.state().character.edits);
     let mut turned: BTreeMap<(String, usize), Vec<f64>> = BTreeMap::new();
     for clip in library.clips() {
         let changes = edits.clips.changes_of(clip.id());
@@ -153,7 +153,7 @@ fn a_clip_is_renamed_on_the_page_in_the_link_and_in_files() {
     open_motion(&mut other, "dance.glb");
     let (mut view, errors) = from_link(&link);
     assert_eq!(errors, []);
-    view.sources = other.state().sources.clone();
+    view.character.sources = other.state().character.sources.clone();
     other.apply(Command::Replace(Box::new(view)));
     let names = [&own, &borrowed].map(|clip| model(&other).clip(clip).expect("is there").title());
     assert_eq!((title(&other), names), (Some("March: 1"), ["March: 1", "Stroll"]));
@@ -161,7 +161,7 @@ fn a_clip_is_renamed_on_the_page_in_the_link_and_in_files() {
 
     // Undone one by one.
     assert!(editor.undo() && editor.undo());
-    assert_eq!(editor.state().edits.clips.names, BTreeMap::new());
+    assert_eq!(editor.state().character.edits.clips.names, BTreeMap::new());
     editor.apply(Command::SetClip(ClipChoice::Clip(borrowed)));
     assert_eq!(to_link(editor.state(), editor.library()), before);
 }
@@ -177,7 +177,7 @@ fn no_two_clips_get_the_same_name_and_an_empty_one_restores_the_files() {
     assert_eq!(rename(&mut editor, "Stroll"), "Stroll");
     assert_eq!(rename(&mut editor, &"x".repeat(100)), "x".repeat(80));
     assert_eq!(rename(&mut editor, " \n"), "Walk");
-    assert!(editor.state().edits.clips.names.is_empty());
+    assert!(editor.state().character.edits.clips.names.is_empty());
     // Copies have no other name than their own.
     edit(&mut editor, ClipId::Own(0), ClipEdit::Copy(Box::default()));
     let copy = model(&editor).id_at(3);

@@ -3,7 +3,9 @@
 use gaitway::editor::{Contents, Editor, Event, OpenedMap};
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::JointMapFile;
-use gaitway::state::{ClipChoice, Command, MapEdit, Sources, ViewerState, active_map, from_link, to_link, to_object};
+use gaitway::state::{
+    CharacterView, ClipChoice, Command, MapEdit, Sources, ViewerState, active_map, from_link, to_link, to_object,
+};
 use glam::Vec3;
 use serde_json::json;
 
@@ -20,7 +22,10 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
         (0..Library::MAX_MOTIONS).map(|number| Motion::new(format!("{number}.glb"), stranger.clone())).collect();
     let motion = motions.iter().map(|motion| motion.origin.clone()).collect();
     let now = editor.state().clone();
-    let view = ViewerState { sources: Sources { motion, ..now.sources }, ..now };
+    let view = ViewerState {
+        character: CharacterView { sources: Sources { motion, ..now.character.sources }, ..now.character },
+        ..now
+    };
     let contents = Contents { motions: Some(motions), ..Contents::default() };
     editor.open(contents, Some(view), &mut any).expect("the model stays");
     editor.remove_motion(&motion_at(editor.library(), 1));
@@ -53,7 +58,7 @@ fn the_rest_pose_is_active_while_a_map_is_empty() {
     editor.apply(Command::EditMap { motion: motion_at(editor.library(), 0), edit: MapEdit::Clear });
     editor.apply(Command::SetClip(ClipChoice::First));
     editor.undo();
-    assert_eq!(editor.state().playhead.clip, ClipChoice::First);
+    assert_eq!(editor.state().character.playhead.clip, ClipChoice::First);
 }
 
 #[test]
@@ -125,7 +130,7 @@ fn a_map_waits_for_its_motion() {
     let mut editor = Editor::default();
     editor.open(Contents { map: Some(map), ..contents(&["sample:walker"]) }, None, &mut any).expect("fits");
     let (again, errors) = from_link(&to_link(editor.state(), editor.library()));
-    assert_eq!((&again.retarget, &errors[..]), (&editor.state().retarget, &[][..]));
+    assert_eq!((&again.character.retarget, &errors[..]), (&editor.state().character.retarget, &[][..]));
     open_motion(&mut editor, "dance.glb");
     assert_eq!(sources(&editor), Some(1));
 }

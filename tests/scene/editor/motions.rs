@@ -98,7 +98,7 @@ fn of_several_motions_those_without_animation_are_not_kept() {
         let motions = Some(vec![still("duck.glb"), motion("dance.glb"), cube.clone()]);
         editor.open(Contents { motions, ..with }, None, &mut any).expect("one fits");
         assert_eq!(self::motions(&editor), ["dance.glb", "cube.glb"], "the cube can be mapped by hand");
-        assert_eq!(editor.state().sources.motion, ["dance.glb", "cube.glb"]);
+        assert_eq!(editor.state().character.sources.motion, ["dance.glb", "cube.glb"]);
         let events = editor.take_events();
         let notices = notices(&events);
         assert!(notices.iter().any(|notice| notice.contains("clips from dance.glb.")), "{notices:?}");
@@ -190,7 +190,7 @@ fn an_open_model_lends_its_clips() {
     let events = editor.take_events();
     assert!(events.contains(&Event::MotionsAdded), "{events:?}");
     assert_eq!((active(&editor), motions(&editor)), ("sample:mannequin", vec!["sample:pilot"]));
-    assert_eq!(editor.state().sources.motion, ["sample:pilot"]);
+    assert_eq!(editor.state().character.sources.motion, ["sample:pilot"]);
     assert_eq!(editor.library().active().expect("a model").clips().borrowed().count(), 6);
     while editor.can_undo() && !motions(&editor).is_empty() {
         editor.undo();

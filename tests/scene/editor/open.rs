@@ -54,8 +54,11 @@ fn another_model_resets_model_settings_and_keeps_the_rest() {
     let pilot = editor.state().clone();
     open(&mut editor, "sample:creature");
     let now = editor.state();
-    assert_eq!((now.inspect, now.edits.up, now.selection.joint), (Inspect::default(), UpAxis::Y, None));
-    assert_eq!((&now.playhead.clip, &now.retarget), (&ClipChoice::First, &RetargetEdits::default()));
+    assert_eq!((now.inspect, now.character.edits.up, now.selection.joint), (Inspect::default(), UpAxis::Y, None));
+    assert_eq!(
+        (&now.character.playhead.clip, &now.character.retarget),
+        (&ClipChoice::First, &RetargetEdits::default())
+    );
     assert_eq!((now.display.show, now.playback.speed, now.camera_options.fov_degrees), (show, 2.0, 50.0));
     editor.undo();
     assert_eq!(editor.state(), &pilot);
@@ -68,17 +71,17 @@ fn a_model_returns_with_its_clip_time_and_range() {
     editor.apply(Command::SetPlaying(false));
     editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.2, end_secs: 0.6 })));
     editor.apply(Command::Seek(0.4));
-    let (playhead, playing) = (editor.state().playhead.clone(), title(&editor).map(str::to_owned));
+    let (playhead, playing) = (editor.state().character.playhead.clone(), title(&editor).map(str::to_owned));
     assert!(playing.is_some());
     open(&mut editor, "sample:walker");
     editor.close(id_of(&editor, "sample:walker"), &mut any).expect("fits");
-    assert_eq!((active(&editor), &editor.state().playhead), ("sample:pilot", &playhead));
+    assert_eq!((active(&editor), &editor.state().character.playhead), ("sample:pilot", &playhead));
     // Also beside a motion that was added to another model.
     open(&mut editor, "sample:walker");
     open_motion(&mut editor, "other.glb");
     editor.activate(id_of(&editor, "sample:pilot"), &mut any).expect("fits");
     assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
-    let now = &editor.state().playhead;
+    let now = &editor.state().character.playhead;
     assert_eq!((now.time_secs, now.range), (playhead.time_secs, playhead.range));
     assert_eq!(title(&editor).map(str::to_owned), playing);
 }
@@ -108,7 +111,7 @@ fn an_unnamed_borrowed_clip_is_called_like_its_file() {
 fn a_state_about_other_files_is_ignored() {
     let mut editor = editor("sample:pilot");
     let mut other = editor.state().clone();
-    other.sources.model = vec!["sample:dwarf".to_owned()];
+    other.character.sources.model = vec!["sample:dwarf".to_owned()];
     other.playback.speed = 3.0;
     let before = editor.state().clone();
     editor.apply(Command::Replace(Box::new(other)));
@@ -140,9 +143,9 @@ fn a_link_to_the_loaded_files_can_be_undone() {
     assert_eq!(editor.state().display.exposure, 2.0);
     // Another time is nothing to undo.
     let steps = editor.undo_steps();
-    view.playhead.time_secs = 0.5;
+    view.character.playhead.time_secs = 0.5;
     follow(&mut editor, &view);
-    assert_eq!((editor.state().playhead.time_secs, editor.undo_steps()), (0.5, steps));
+    assert_eq!((editor.state().character.playhead.time_secs, editor.undo_steps()), (0.5, steps));
 }
 
 #[test]
@@ -167,7 +170,7 @@ fn a_clip_whose_number_is_the_name_of_another_can_be_chosen() {
         // What a link calls it is found again.
         let (view, _) = from_link(&to_link(editor.state(), editor.library()));
         let model = editor.library().active().expect("a model");
-        assert_eq!(active_clip(model, &view).map(ModelClip::id), Some(&wanted), "{:?}", view.playhead.clip);
+        assert_eq!(active_clip(model, &view).map(ModelClip::id), Some(&wanted), "{:?}", view.character.playhead.clip);
     }
 }
 
@@ -203,7 +206,7 @@ fn an_unknown_clip_of_a_view_is_told() {
     let told = "clip: expected the name or index of a clip, found “Fly”; its clips are “Walk”, “Idle”, “Wave”; the rest pose is used.";
     let view = || {
         let mut view = ViewerState::of_model("sample:walker".to_owned());
-        view.playhead.clip = ClipChoice::called("Fly");
+        view.character.playhead.clip = ClipChoice::called("Fly");
         view
     };
     let mut editor = Editor::default();
@@ -261,10 +264,13 @@ fn nothing_is_said_of_what_a_link_names_before_its_files_are_there() {
     editor.open(contents(true), Some(view.clone()), &mut any).expect("fits");
     let told = |events: &[Event]| events.iter().any(|event| matches!(event, Event::Problem(_) | Event::AboutView(_)));
     assert!(!told(&editor.take_events()));
-    assert_eq!((&editor.state().playhead.clip, editor.state().playhead.time_secs), (&ClipChoice::First, 1.0));
+    assert_eq!(
+        (&editor.state().character.playhead.clip, editor.state().character.playhead.time_secs),
+        (&ClipChoice::First, 1.0)
+    );
     editor.open(contents(false), Some(view), &mut any).expect("fits");
     assert!(told(&editor.take_events()));
-    assert_eq!(editor.state().playhead.clip, ClipChoice::called("Fly"));
+    assert_eq!(editor.state().character.playhead.clip, ClipChoice::called("Fly"));
 }
 
 /// As for another file under the same name, or one that was exported in other units.
@@ -450,7 +456,7 @@ fn the_last_models_to_give_way_are_those_that_the_user_has_edited() {
     assert_eq!(open(9), "Opened 9.glb. Closed 1.glb to make room, which undo doesn't take back.");
     let walker = id_of(&editor, "sample:walker");
     editor.activate(walker, &mut any).expect("fits");
-    assert_eq!(editor.state().edits.pose[&9], [90.0, 0.0, 0.0]);
+    assert_eq!(editor.state().character.edits.pose[&9], [90.0, 0.0, 0.0]);
 }
 
 /// Before the model that it should move is there.
@@ -496,6 +502,6 @@ fn a_model_exported_with_a_clip_plays_that_clip() {
     // Scripts get the first clip, as links do that name none.
     let mut script = Editor::default();
     open_file(&mut script, file, false);
-    assert_eq!(script.state().playhead.clip, ClipChoice::First);
+    assert_eq!(script.state().character.playhead.clip, ClipChoice::First);
     std::fs::remove_file(&path).expect("is there");
 }

@@ -75,7 +75,7 @@ fn a_change_that_needs_files_leaves_a_started_clip_playing() {
     editor.open(contents(&["sample:walker"]), Some(view), &mut any).expect("fits");
     let change = |editor: &mut Editor, name: &str, playing: Option<bool>| {
         let mut view = editor.shared_state();
-        view.sources.motion = vec![name.to_owned()];
+        view.character.sources.motion = vec![name.to_owned()];
         view.playback.playing = playing.unwrap_or(view.playback.playing);
         let contents = Contents { motions: Some(vec![motion(name)]), ..Contents::default() };
         editor.open_change(contents, view, &mut any).expect("fits");

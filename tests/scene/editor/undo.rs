@@ -51,28 +51,28 @@ fn a_step_says_what_it_changed() {
 #[test]
 fn the_clip_before_a_motion_plays_again_after_undo() {
     let mut editor = editor("sample:pilot");
-    let before = editor.state().playhead.clip.clone();
+    let before = editor.state().character.playhead.clip.clone();
     open(&mut editor, "sample:walk");
-    let borrowed = editor.state().playhead.clip.clone();
+    let borrowed = editor.state().character.playhead.clip.clone();
     assert_ne!(borrowed, before);
     editor.undo();
-    assert_eq!(editor.state().playhead.clip, before);
+    assert_eq!(editor.state().character.playhead.clip, before);
     editor.redo();
-    assert_eq!(editor.state().playhead.clip, borrowed);
+    assert_eq!(editor.state().character.playhead.clip, borrowed);
 }
 
 #[test]
 fn redo_plays_the_motion_that_was_added_last() {
     let mut editor = editor("sample:pilot");
     open(&mut editor, "sample:walk");
-    let walk = editor.state().playhead.clip.clone();
+    let walk = editor.state().character.playhead.clip.clone();
     open_motion(&mut editor, "dance.glb");
-    let dance = editor.state().playhead.clip.clone();
+    let dance = editor.state().character.playhead.clip.clone();
     assert_ne!(dance, walk);
     editor.undo();
-    assert_eq!(editor.state().playhead.clip, walk);
+    assert_eq!(editor.state().character.playhead.clip, walk);
     editor.redo();
-    assert_eq!(editor.state().playhead.clip, dance);
+    assert_eq!(editor.state().character.playhead.clip, dance);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use gaitway::frame::{Frame, evaluate, travelled};
 use gaitway::library::{Library, Model, Motion, inspect};
 use gaitway::retarget::{JointMap, propose};
 use gaitway::samples;
-use gaitway::state::{CameraChoice, ClipChoice, Command, Fade, Playhead, ViewerState};
+use gaitway::state::{CameraChoice, CharacterView, ClipChoice, Command, Fade, Playhead, ViewerState};
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -58,7 +58,7 @@ fn check(library: &Library, json: &Value, buffers: &[Vec<u8>], times_secs: &[f32
 /// A view of the first clip at this time.
 pub fn at(time_secs: f32) -> ViewerState {
     let playhead = Playhead { time_secs: f64::from(time_secs), ..Playhead::default() };
-    ViewerState { playhead, ..ViewerState::default() }
+    ViewerState { character: CharacterView { playhead, ..CharacterView::default() }, ..ViewerState::default() }
 }
 
 /// One of everything that can be animated: meshes with two morph targets on nodes 0, 5, 6 and 7, a spot light on node
@@ -314,7 +314,16 @@ fn retargeted_clips_have_no_properties_and_crossfades_switch_halfway() {
         let clip = |index: usize| ClipChoice::Clip(model.id_at(index));
         let fade = Some(Fade { clip: clip(from), time_secs: 0.0, elapsed_secs });
         let playhead = Playhead { clip: clip(to), fade, ..Playhead::default() };
-        sampled(model, &ViewerState { playhead, ..ViewerState::default() }).properties.get(BASE_COLOR) == Some(RED)
+        sampled(
+            model,
+            &ViewerState {
+                character: CharacterView { playhead, ..CharacterView::default() },
+                ..ViewerState::default()
+            },
+        )
+        .properties
+        .get(BASE_COLOR)
+            == Some(RED)
     };
     for (elapsed_secs, is_old) in [(0.0, true), (0.19, true), (0.21, false), (0.4, false)] {
         assert_eq!(is_red(0, borrowed, elapsed_secs), is_old, "{elapsed_secs}");

@@ -3,7 +3,7 @@
 use gaitway::frame::{Frame, evaluate, pick_vertex, pose_document};
 use gaitway::library::Library;
 use gaitway::mesh::DeformedVertices;
-use gaitway::state::{ClipChoice, Playhead, ViewerState, resolved_bounds};
+use gaitway::state::{CharacterView, ClipChoice, Playhead, ViewerState, resolved_bounds};
 use glam::{Vec2, Vec3};
 use serde_json::json;
 
@@ -105,7 +105,12 @@ fn visibility_is_animated_in_steps() {
     );
     // The rest pose has the visibility of the file.
     let playhead = Playhead { clip: ClipChoice::RestPose, ..Playhead::default() };
-    evaluate(&library, &ViewerState { playhead, ..ViewerState::default() }, 1.0, &mut frame);
+    evaluate(
+        &library,
+        &ViewerState { character: CharacterView { playhead, ..CharacterView::default() }, ..ViewerState::default() },
+        1.0,
+        &mut frame,
+    );
     assert!(!frame.characters[0].draws[1].visible);
 }
 
