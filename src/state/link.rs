@@ -3,7 +3,6 @@
 //! row of [`KEYS`].
 
 mod changes;
-mod files;
 mod layers;
 mod pins;
 mod values;
@@ -11,12 +10,9 @@ mod values;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::{Map, Value, json};
 
-pub use self::files::{
-    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_with_missing,
-    link_without_missing, linked_files, most_similar_link, public_link, shown_files,
-};
+pub use gaitway_session::{Link, LinkedFile, MEMBER_SEPARATOR, is_to_bring, with_current_member};
+
 pub use self::pins::read_pin;
-pub use self::values::with_current_member;
 use self::values::*;
 use super::clip_names::with_link_names;
 use super::{UnknownName, ViewerState};

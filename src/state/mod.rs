@@ -44,11 +44,8 @@ pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
 pub use layers::unknown_layers;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
-pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object, with_current_member};
-pub use link::{
-    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_with_missing,
-    link_without_missing, linked_files, most_similar_link, public_link, shown_files,
-};
+pub use link::{Link, LinkedFile, MEMBER_SEPARATOR, is_to_bring, with_current_member};
+pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object};
 pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};

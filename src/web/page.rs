@@ -20,7 +20,7 @@ use crate::editor::{AboutLink, Contents, ExportedFile, short_name};
 use crate::files::{Held, ImageLimits, Item, OpenError, Role, open_items, open_view};
 use crate::library::{Environment, Library, Model, ModelId};
 use crate::samples;
-use crate::state::{EnvironmentChoice, ViewerState, from_link, link_without_missing, to_link};
+use crate::state::{EnvironmentChoice, Link, ViewerState, from_link, to_link};
 
 /// A running instance on its canvas.
 pub(super) struct Page {
@@ -285,8 +285,9 @@ async fn open_fallback(
 
 /// Reads as much of a link as can be shown without the files that it waits for, and what is known of it besides.
 pub(super) fn state_of_link(link: &str) -> (ViewerState, AboutLink) {
-    let shown = link_without_missing(link);
-    let (state, errors) = from_link(&shown);
+    let link = Link::from(link);
+    let shown = link.without_missing();
+    let (state, errors) = from_link(shown.text());
     (state.or_sample(samples::WALKER), AboutLink { errors, is_partial: shown != link })
 }
 

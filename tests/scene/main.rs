@@ -35,7 +35,6 @@ mod history;
 mod instancing;
 mod layers;
 mod link;
-mod link_files;
 mod link_properties;
 mod loop_frames;
 mod manual_pose;

@@ -28,7 +28,7 @@ export interface GaitwayError extends Error {
   code: ErrorCode;
 }
 
-/** A `model`, `motion` or `light` of a link; see `LinkedFile` in src/state/link/files.rs. */
+/** A `model`, `motion` or `light` of a link; see `LinkedFile` in crates/session/src/link.rs. */
 export interface LinkedFile {
   role: "model" | "motion" | "light";
   name: string;

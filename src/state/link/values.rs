@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
+use gaitway_session::{is_light_file, with_current_member};
 use glam::Vec3;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::Value;
 
-use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::LookTarget;
@@ -158,17 +158,6 @@ fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
 /// Reads a decimal number; rejects infinities and NaN.
 pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
     text.trim().parse::<T>().ok().filter(|&value| Into::<f64>::into(value).is_finite())
-}
-
-/// Returns a source with the current separator: a model inside an archive is `ARCHIVE#!/MEMBER`, but an early version wrote
-/// `ARCHIVE#/MEMBER`.
-pub fn with_current_member(text: &str) -> String {
-    match text.split_once("#/").filter(|_| !text.contains(MEMBER_SEPARATOR)) {
-        Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
-            format!("{file}{MEMBER_SEPARATOR}{member}")
-        }
-        _ => text.to_owned(),
-    }
 }
 
 pub(super) fn read_source(text: &str) -> Option<String> {
@@ -518,7 +507,7 @@ pub(super) fn write_light(environment: &EnvironmentChoice) -> Written {
 pub(super) fn read_light(text: &str) -> Option<EnvironmentChoice> {
     match from_word(&LIGHT_SETUPS, text) {
         Some(setup) => Some(EnvironmentChoice::Setup(setup)),
-        None => text.contains(['.', '/', ':']).then(|| EnvironmentChoice::File(text.to_owned())),
+        None => is_light_file(text).then(|| EnvironmentChoice::File(text.to_owned())),
     }
 }
 

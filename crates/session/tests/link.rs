@@ -1,10 +1,7 @@
 //! The files that a link names: listing them, marking local ones for the recipient to supply, leaving out missing ones,
 //! and adding them again.
 
-use gaitway::state::{
-    LinkRole, LinkedFile, embedded_link, link_with_files, link_with_missing, link_without_missing, linked_files,
-    most_similar_link, public_link, shown_files,
-};
+use gaitway_session::{Link, LinkRole, LinkedFile};
 use serde_json::{Value, json};
 
 fn file(role: LinkRole, name: &str, member: &str, is_to_bring: bool) -> LinkedFile {
@@ -17,7 +14,15 @@ fn owned(texts: &[&str]) -> Vec<String> {
 
 #[track_caller]
 fn check_file(pair: &str, expected: LinkedFile) {
-    assert_eq!(linked_files(&format!("v=1&{pair}&t=1")), [expected], "{pair}");
+    assert_eq!(Link::from(format!("v=1&{pair}&t=1")).files(), [expected], "{pair}");
+}
+
+fn files(link: &str) -> Vec<LinkedFile> {
+    Link::from(link).files().to_vec()
+}
+
+fn shown_files(link: &str) -> String {
+    Link::from(link).shown_files()
 }
 
 #[test]
@@ -26,23 +31,23 @@ fn a_file_is_a_url_a_sample_or_a_local_name() {
     check_file("motion=https://a.example/x%20y.bvh", file(LinkRole::Motion, "https://a.example/x y.bvh", "", false));
     check_file("model=file:S%C3%B6ldner.glb", file(LinkRole::Model, "Söldner.glb", "", true));
     check_file("model=100%", file(LinkRole::Model, "100%", "", false));
-    assert_eq!(linked_files("model=&motion=&t=1"), [], "no file has an empty name");
-    assert_eq!(linked_files("v=1&map=https://a.example/map.json&models=x&t=1"), []);
-    assert_eq!(linked_files(""), []);
+    assert_eq!(files("model=&motion=&t=1"), [], "no file has an empty name");
+    assert_eq!(files("v=1&map=https://a.example/map.json&models=x&t=1"), []);
+    assert_eq!(files(""), []);
 }
 
 /// web/still.js searches these links before the program has loaded; tests/browser/still.test.mjs checks that it finds
 /// the same files.
 #[test]
 fn what_is_loaded_early_is_what_the_link_names() {
-    let cases: Vec<Value> = serde_json::from_str(include_str!("early.json")).expect("JSON");
+    let cases: Vec<Value> = serde_json::from_str(include_str!("../../../tests/scene/early.json")).expect("JSON");
     for case in cases {
         let link = case["link"].as_str().expect("a text");
-        let files = linked_files(link);
-        let models = files.iter().filter(|file| file.role == LinkRole::Model);
-        let models: Vec<String> = models.map(|file| format!("{}{}", file.name, file.member)).collect();
+        let read = Link::from(link);
+        let models: Vec<String> =
+            read.files_of(LinkRole::Model).map(|file| format!("{}{}", file.name, file.member)).collect();
         assert_eq!(json!(models), case["models"], "{link}");
-        let samples: Vec<&str> = files.iter().filter_map(|file| file.name.strip_prefix("sample:")).collect();
+        let samples: Vec<&str> = read.files().iter().filter_map(|file| file.name.strip_prefix("sample:")).collect();
         assert_eq!(json!(samples), case["samples"], "{link}");
     }
 }
@@ -74,7 +79,7 @@ fn links_to_the_same_files_are_recognized() {
 #[test]
 fn a_public_link_marks_only_local_files() {
     let check = |link: &str, local: &[&str], expected: &str| {
-        assert_eq!(public_link(link, &owned(local)), expected, "{link}");
+        assert_eq!(Link::from(link).public(&owned(local)).text(), expected, "{link}");
     };
     check("v=1&model=sample:pilot&t=1", &["fox.glb"], "v=1&model=sample:pilot&t=1");
     check("v=1&model=fox.glb&motion=fox.glb", &["fox.glb"], "v=1&model=file:fox.glb&motion=file:fox.glb");
@@ -86,13 +91,13 @@ fn a_public_link_marks_only_local_files() {
 
 #[test]
 fn an_embedded_link_has_one_embed_key() {
-    assert_eq!(embedded_link("v=1&embed=0&t=1"), "v=1&t=1&embed=1");
-    assert_eq!(embedded_link("v=1"), "v=1&embed=1");
+    assert_eq!(Link::from("v=1&embed=0&t=1").embedded().text(), "v=1&t=1&embed=1");
+    assert_eq!(Link::from("v=1").embedded().text(), "v=1&embed=1");
 }
 
 #[test]
 fn only_keys_that_apply_without_the_missing_files_are_kept() {
-    let check = |link: &str, expected: &str| assert_eq!(link_without_missing(link), expected, "{link}");
+    let check = |link: &str, expected: &str| assert_eq!(Link::from(link).without_missing().text(), expected, "{link}");
     check("v=1&model=a.glb&clip=run&&t=1", "v=1&model=a.glb&clip=run&&t=1");
     // An empty stage stands for the model, and keeps the rest.
     let awaited = "v=1&model=file:a.glb&motion=file:b.bvh&t=1&exposure=1&embed=1&show=skeleton,weights";
@@ -107,7 +112,7 @@ fn only_keys_that_apply_without_the_missing_files_are_kept() {
 #[test]
 fn supplied_files_replace_the_missing_ones() {
     let check = |link: &str, names: &[&str], expected: &str| {
-        assert_eq!(link_with_files(link, &owned(names)), expected, "{link}");
+        assert_eq!(Link::from(link).with_names(&owned(names)).text(), expected, "{link}");
     };
     check("v=1&model=file:a.glb&t=1", &["in/a b.glb"], "v=1&model=in%2Fa%20b.glb&t=1");
     check("model=file:two.zip%23!/man.glb&motion=c.bvh", &["two.zip"], "model=two.zip%23!%2Fman.glb&motion=c.bvh");
@@ -123,21 +128,21 @@ fn supplied_files_replace_the_missing_ones() {
 #[test]
 fn sharing_a_link_and_supplying_its_files_restores_it() {
     let link = "v=1&model=two.zip%23!%2Fman.glb&motion=d%20e.bvh&clip=run";
-    let shared = public_link(link, &owned(&["two.zip", "d e.bvh"]));
-    let files = linked_files(&shared);
-    assert!(files.iter().all(|file| file.is_to_bring), "{shared}");
-    let names: Vec<String> = files.into_iter().map(|file| file.name).collect();
-    assert_eq!(link_with_files(&shared, &names), link);
+    let shared = Link::from(link).public(&owned(&["two.zip", "d e.bvh"]));
+    assert!(shared.files().iter().all(|file| file.is_to_bring), "{shared:?}");
+    let names: Vec<String> = shared.files().iter().map(|file| file.name.clone()).collect();
+    assert_eq!(shared.with_names(&names).text(), link);
 }
 
 #[test]
 fn the_most_similar_link_shows_the_same_files() {
-    let scenes = owned(&[
+    let scenes = [
         "v=1&model=sample:pilot&clip=run&t=0.27",
         "v=1&model=sample:pilot&clip=idle&show=grid,split",
         "v=1&model=sample:mannequin&motion=sample:run",
-    ]);
-    let check = |link: &str, expected| assert_eq!(most_similar_link(link, &scenes), expected, "{link}");
+    ]
+    .map(Link::from);
+    let check = |link: &str, expected| assert_eq!(Link::from(link).most_similar(&scenes), expected, "{link}");
     check("v=1&model=sample:pilot&clip=run&t=3", Some(0));
     check("v=1&model=sample:pilot&clip=idle&t=3", Some(1));
     check("v=1&model=sample:pilot", Some(0));
@@ -153,26 +158,26 @@ fn a_shared_link_asks_for_what_is_missing_here() {
     let asking = "v=1&model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&clip=9&fov=30&camera=1,2,3,4,5,6";
     let now = "v=1&model=sample:pilot&motion=sample:walk&copy=A:walk&clip=run&fov=20";
     assert_eq!(
-        link_with_missing(now, asking),
+        Link::from(now).with_missing(&asking.into()).text(),
         "model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&v=1&copy=A:walk&clip=run&fov=20\
          &camera=1,2,3,4,5,6"
     );
     let other = "v=1&model=sample:dwarf&fov=20";
-    assert_eq!(link_with_missing(other, asking), other, "something else is shown");
+    assert_eq!(Link::from(other).with_missing(&asking.into()).text(), other, "something else is shown");
 }
 
 #[test]
 fn an_image_that_lights_the_scene_is_a_file_of_the_link() {
     let link = "v=1&model=fox.glb&clip=Run&light=beach.hdr";
-    let roles = |link: &str| linked_files(link).iter().map(|file| (file.role, file.is_to_bring)).collect::<Vec<_>>();
+    let roles = |link: &str| files(link).iter().map(|file| (file.role, file.is_to_bring)).collect::<Vec<_>>();
     assert_eq!(roles(link), [(LinkRole::Model, false), (LinkRole::Light, false)]);
     assert_eq!(roles("v=1&light=outdoor"), [], "a generated light is none");
     assert_eq!(roles("v=1&light=outdor"), [], "nor is a misspelt one");
-    let public = public_link(link, &["beach.hdr".to_owned()]);
-    assert_eq!(public, "v=1&model=fox.glb&clip=Run&light=file:beach.hdr");
-    assert_eq!(link_without_missing(&public), "v=1&model=fox.glb&clip=Run");
+    let public = Link::from(link).public(&owned(&["beach.hdr"]));
+    assert_eq!(public.text(), "v=1&model=fox.glb&clip=Run&light=file:beach.hdr");
+    assert_eq!(public.without_missing().text(), "v=1&model=fox.glb&clip=Run");
     let awaiting = "v=1&model=file:fox.glb&clip=Run&light=file:beach.hdr&fov=20";
-    assert_eq!(link_without_missing(awaiting), awaiting, "an empty stage keeps all");
-    assert_eq!(link_with_files(&public, &["beach.hdr".to_owned()]), link);
+    assert_eq!(Link::from(awaiting).without_missing().text(), awaiting, "an empty stage keeps all");
+    assert_eq!(public.with_names(&owned(&["beach.hdr"])).text(), link);
     assert_ne!(shown_files(link), shown_files("v=1&model=fox.glb&light=other.hdr"));
 }
