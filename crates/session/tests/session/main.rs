@@ -1,0 +1,11 @@
+//! Sessions against a model of the page, its browser and the program, in which everything that takes time ends in any order.
+
+mod awaited;
+mod history;
+mod latest;
+mod opening;
+mod orders;
+mod privacy;
+mod program;
+mod programs;
+mod world;
