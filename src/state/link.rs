@@ -10,7 +10,7 @@ mod values;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::{Map, Value, json};
 
-pub use gaitway_session::{Link, LinkedFile, MEMBER_SEPARATOR, is_to_bring, with_current_member};
+pub use gaitway_session::{Link, MEMBER_SEPARATOR, is_to_bring, with_current_member};
 
 pub use self::pins::read_pin;
 use self::values::*;

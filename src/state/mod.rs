@@ -44,7 +44,7 @@ pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
 pub use layers::unknown_layers;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
-pub use link::{Link, LinkedFile, MEMBER_SEPARATOR, is_to_bring, with_current_member};
+pub use link::{Link, MEMBER_SEPARATOR, is_to_bring, with_current_member};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object};
 pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};

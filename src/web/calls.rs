@@ -43,10 +43,10 @@ pub fn panic_for_test() {
 /// `{shown, document}`: which of `model`, `motion`, `light` and `map` it was, and the inspect document. Changes nothing on failure.
 /// `is_by_hand`: the user opened it, not a script.
 #[wasm_bindgen]
-pub async fn open(items: Array, role: Option<String>, is_private: bool, is_by_hand: bool) -> Result<String, JsValue> {
+pub async fn open(items: Array, role: String, is_private: bool, is_by_hand: bool) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
     let items = items_of(items).map_err(malformed)?;
-    let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
+    let role = if role == "motion" { Role::Motion } else { Role::Any };
     let opened = load(&page, Request::Items { items, role, is_private, is_by_hand }).await?;
     // After the frame: checking rig and clips takes milliseconds.
     let document = with_app(&page, |app| {
@@ -109,13 +109,6 @@ pub fn refuse(problem: String) -> Result<(), JsValue> {
 pub fn notify(notice: String) -> Result<(), JsValue> {
     page().map_err(stopped)?.inbox.send(Message::Notice(notice));
     Ok(())
-}
-
-/// Whether anything loaded is one of the user's local files.
-#[wasm_bindgen]
-pub fn is_private() -> Result<bool, JsValue> {
-    let page = page().map_err(stopped)?;
-    with_app(&page, |app| app.editor().is_private()).map_err(stopped)
 }
 
 /// Returns the link's keys as JSON.
@@ -561,6 +554,6 @@ fn stopped(message: String) -> JsValue {
     error(ErrorCode::LostDevice, &message)
 }
 
-fn malformed(message: String) -> JsValue {
+pub(super) fn malformed(message: String) -> JsValue {
     error(ErrorCode::Malformed, &message)
 }

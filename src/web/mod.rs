@@ -4,10 +4,10 @@
 #[cfg(feature = "bench")]
 mod bench;
 mod calls;
-mod links;
 mod mirror;
 mod page;
 mod rehearsal;
+mod session;
 mod shell;
 
 pub use page::start;

@@ -42,7 +42,7 @@ pub enum Effect {
         /// Settings that suit the items may be chosen.
         is_by_hand: bool,
     },
-    /// Forget what a task has read.
+    /// Forget what a task has read, or what is known of what it has opened.
     Forget {
         /// The task.
         task: TaskId,
@@ -189,7 +189,7 @@ pub struct Facts {
     pub is_local: bool,
     /// What a link needs, if files are asked for.
     pub need: Option<String>,
-    /// A page around this one must not learn what is shown, whatever the program itself says.
+    /// A page around this one must not learn what is shown.
     pub is_private: bool,
     /// How often the user's own files were opened: reveals any that came and went.
     pub seen_private: u32,

@@ -166,7 +166,8 @@ impl Session {
     pub fn handle(&mut self, event: Event, shown: Option<Shown>) -> Vec<Effect> {
         match shown {
             Some(shown) => self.shown = shown,
-            // It may have shown anything since.
+            // After a trap, what it has shown last counts; a program that is busy may have shown anything since.
+            None if matches!(event, Event::Stopped { .. }) => {}
             None => self.shown.is_private |= self.program == Program::Running,
         }
         match event {
@@ -203,7 +204,7 @@ impl Session {
             link: self.view.clone(),
             is_local: self.held.local_files(&self.view).next().is_some(),
             need: asking.map(Awaited::need),
-            is_private: self.is_private_beyond_program(),
+            is_private: self.is_private(),
             seen_private: self.privacy.seen,
         }
     }
@@ -335,14 +336,10 @@ impl Session {
         item.id().is_some_and(|id| self.files.get(&id).copied().unwrap_or_default())
     }
 
-    fn is_private_beyond_program(&self) -> bool {
-        let is_opening = || self.jobs.iter().any(|job| job.stage.load().is_some_and(|load| load.is_private));
-        self.privacy.rejected || self.privacy.visited || is_opening()
-    }
-
     /// Whether a page around this one must not learn what is shown.
     fn is_private(&self) -> bool {
-        self.shown.is_private || self.is_private_beyond_program()
+        let is_opening = || self.jobs.iter().any(|job| job.stage.load().is_some_and(|load| load.is_private));
+        self.shown.is_private || self.privacy.rejected || self.privacy.visited || is_opening()
     }
 
     /// The user's own files are opened: they are private from now on.

@@ -216,7 +216,10 @@ impl Session {
                     Completion::Done(hint) => self.finish(opening, hint),
                 }
             }
-            (Stage::Following(following), opening) => self.continue_following(ask, opening, *following, at),
+            (Stage::Following(following), opening) => {
+                self.effects.push(Effect::Forget { task });
+                self.continue_following(ask, opening, *following, at);
+            }
             _ => {}
         }
     }
@@ -233,6 +236,7 @@ impl Session {
             self.record();
         }
         self.effects.extend(opening.request.map(|request| Effect::Reply { request, task }));
+        self.effects.push(Effect::Forget { task });
         if opening.by == By::Hand {
             self.effects.extend(hint.map(|text| Effect::Notify { text }));
             self.effects.extend([Effect::HideGallery, Effect::Focus]);
@@ -300,6 +304,7 @@ impl Session {
             Some((task, _)) => Effect::Reply { request, task },
             None => Effect::Reject { request, failure },
         }));
+        self.effects.extend(opening.shown.map(|(task, _)| Effect::Forget { task }));
     }
 }
 

@@ -1,5 +1,7 @@
 //! What a page around this one must not learn: anything of the user's own files.
 
+use gaitway_session::Event;
+
 use crate::orders::in_every_order;
 use crate::program::Content;
 use crate::world::{Act, World};
@@ -95,4 +97,19 @@ fn a_restart_keeps_files_private() {
     world.then(MINE).then(Act::Crash).then(Act::Launch);
     assert_eq!(world.models(), ["Mine.glb"]);
     assert!(world.is_private());
+}
+
+#[test]
+fn a_program_that_traps_is_as_private_as_what_it_has_shown() {
+    assert!(!start().then(Act::Crash).is_private());
+    assert!(start().then(MINE).then(Act::Crash).is_private());
+}
+
+#[test]
+fn a_program_that_is_too_busy_to_be_asked_may_show_anything() {
+    let mut world = start();
+    world.session.handle(Event::Settled, None);
+    assert!(world.is_private());
+    world.tell(Event::Settled);
+    assert!(!world.is_private());
 }

@@ -1,7 +1,7 @@
 //! The model of the page and its browser: everything outside a session. It performs the session's effects, and whatever takes time
 //! becomes something that is due, in an order that a test chooses.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway_session::{
     By, Code, Effect, EntryState, Event, Failure, FileId, Item, Link, NamedFile, RequestId, Role, Session, TaskId,
@@ -78,6 +78,8 @@ pub struct World {
     /// The dialog with what couldn't be loaded is open.
     pub report: Option<Vec<String>>,
     read: BTreeMap<TaskId, Vec<(Item, Option<Content>)>>,
+    /// Tasks that have opened something, of which the page keeps a description.
+    documents: BTreeSet<TaskId>,
     last_file: u32,
     last_request: u32,
 }
@@ -104,6 +106,7 @@ impl World {
             asks: None,
             report: None,
             read: BTreeMap::new(),
+            documents: BTreeSet::new(),
             last_file: 0,
             last_request: 0,
         };
@@ -172,11 +175,12 @@ impl World {
 
     /// Whether a page around this one must not learn what is shown.
     pub fn is_private(&self) -> bool {
-        self.session.facts().is_private || self.program.as_ref().is_some_and(|program| program.shown().is_private)
+        self.session.facts().is_private
     }
 
-    pub fn has_read_nothing(&self) -> bool {
-        self.read.is_empty()
+    /// Whether the page keeps nothing for tasks.
+    pub fn has_forgotten_tasks(&self) -> bool {
+        self.read.is_empty() && self.documents.is_empty()
     }
 
     pub fn act(&mut self, act: Act) {
@@ -304,7 +308,12 @@ impl World {
                     self.tell(Event::Changed { link: view.link() });
                 }
             }
-            Due::Answer(event) => self.tell(event),
+            Due::Answer(event) => {
+                if let Event::Opened { task, .. } = event {
+                    self.documents.insert(task);
+                }
+                self.tell(event);
+            }
             Due::Frame => self.draw(),
             Due::Settle => self.tell(Event::Settled),
             Due::Traverse(delta) => {
@@ -372,7 +381,8 @@ impl World {
                 self.load(task, Load::Items { items, role, is_private });
             }
             Effect::Forget { task } => {
-                self.read.remove(&task).expect("something was read for the task");
+                let is_known = self.read.remove(&task).is_some() | self.documents.remove(&task);
+                assert!(is_known, "the task has read or opened something");
             }
             Effect::Follow { task, link, reload } => self.follow(task, link, reload),
             Effect::FindReferences { task, items } => self.find_references(task, &items),
@@ -398,7 +408,14 @@ impl World {
                 self.due.retain(|due| *due != Due::Settle);
                 self.due.push(Due::Settle);
             }
-            Effect::Reply { request, task } => self.answers.get_mut(&request).expect("a request").push(Ok(task)),
+            Effect::Reply { request, task } => {
+                assert!(self.documents.contains(&task), "the answer is known");
+                self.answers.get_mut(&request).expect("a request").push(Ok(task));
+            }
+            Effect::Announce { task, .. } => {
+                assert!(self.documents.contains(&task), "it is known what was opened");
+                self.told.push(effect);
+            }
             Effect::Reject { request, failure } => {
                 self.answers.get_mut(&request).expect("a request").push(Err(failure));
             }
