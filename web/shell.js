@@ -6,9 +6,11 @@ import { button, byId } from "./shell/dom.js";
 import "./shell/drop.js";
 import { answerParent } from "./shell/embed.js";
 import { launch } from "./shell/instance.js";
+import "./shell/link-dialogs.js";
 import { install } from "./shell/offline.js";
 import { showOpenDialog } from "./shell/open-dialog.js";
 import { shareScrolling } from "./shell/scrolling.js";
+import "./shell/share.js";
 
 window.gaitway = gaitway;
 

@@ -1,8 +1,8 @@
 // `window.gaitway`, the script interface.
-import { takeNews } from "./load.js";
 import { open } from "./opening.js";
 import { parts } from "./parts.js";
-import { running, session, unlessStopped, whenComplete } from "./session.js";
+import { program, running, unlessEnded, whenComplete } from "./running.js";
+import { send } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 
@@ -13,7 +13,7 @@ const samples = /** @type {HTMLMetaElement | null} */ (document.querySelector('m
  * @param {"state" | "pose" | "stats"} name
  */
 function ask(name) {
-  if (session.app !== null) return JSON.parse(session.app[name]());
+  if (program.app !== null) return JSON.parse(program.app[name]());
   return running().then((app) => JSON.parse(app[name]()));
 }
 
@@ -30,18 +30,19 @@ export const gaitway = {
   stats: () => ask("stats"),
   async apply(partial) {
     const app = await running();
-    takeNews(await unlessStopped(app, app.apply(JSON.stringify(partial ?? null))));
+    const { loaded } = JSON.parse(await unlessEnded(app.apply(JSON.stringify(partial ?? null))));
+    send({ event: "applied", read: loaded });
   },
   async screenshot() {
     await whenComplete();
     const app = await running();
-    return new Blob([await unlessStopped(app, app.screenshot())], { type: "image/png" });
+    return new Blob([await unlessEnded(app.screenshot())], { type: "image/png" });
   },
 };
 
 /** Adds what only a build for benches/web has. */
 export function addBenches() {
-  const { bench_characters: characters, bench_load: load, bench_retarget: retarget } = session.app ?? {};
+  const { bench_characters: characters, bench_load: load, bench_retarget: retarget } = program.app ?? {};
   if (characters === undefined || load === undefined || retarget === undefined) return;
   gaitway.benchCharacters = characters;
   gaitway.benchLoad = (bytes) => load(new Uint8Array(bytes));

@@ -1,10 +1,10 @@
-// Propagates changes of the view to screen readers, the title, the gallery, the address bar and scripts.
-import { byId } from "./dom.js";
-import { markCard } from "./gallery.js";
-import { localFiles } from "./held.js";
-import { keepTypedAddressOnce, recordView } from "./history.js";
+// Propagates changes of the view to screen readers, the title, the gallery, the session and scripts, and tells the user what the
+// session says.
+import { byId, focusCanvas, frames, messageOf } from "./dom.js";
+import { hideGallery, markCard } from "./gallery.js";
 import { say, sayNews, sayProblem } from "./panels.js";
-import { session } from "./session.js";
+import { program } from "./running.js";
+import { facts, performs, send } from "./session.js";
 
 const SUMMARY_DELAY_MS = 250;
 
@@ -28,36 +28,19 @@ let announcedNotice = null;
  * @param {string} link
  */
 export function viewChanged(link) {
-  session.link = link;
-  keepTypedAddressOnce();
-  summarizeSoon();
-  // After the frame, so that listeners may ask for the state.
+  send({ event: "changed", link });
+  // In a task of its own, so that listeners may ask for the state.
   setTimeout(() => dispatchEvent(new CustomEvent("gaitway:change")));
 }
 
-export function summarizeSoon() {
-  cancelSummary();
-  timer = setTimeout(summarize, SUMMARY_DELAY_MS);
-}
-
-export function cancelSummary() {
-  clearTimeout(timer);
-}
-
-/** Clears the last error once something has been opened. */
-export function forgetProblem() {
-  announced = null;
-  sayProblem("");
-}
-
 /**
- * Announces the current view and writes it to the address bar. Returns the model's name and the app's notice.
+ * Announces the current view. Returns the model's name and the app's notice.
  * @returns {{ model: string, notice: string | null }}
  */
 export function summarize() {
-  if (session.app === null) return { model: "", notice: null };
+  if (program.app === null) return { model: "", notice: null };
   /** @type {{ model: string, clip: string | null, playing: boolean, isEmbedded: boolean, notice: string | null, problem: string | null }} */
-  const { model, clip, playing, isEmbedded, notice, problem } = JSON.parse(session.app.summary());
+  const { model, clip, playing, isEmbedded, notice, problem } = JSON.parse(program.app.summary());
   byId("stage").classList.toggle("embedded", isEmbedded);
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   // What is gone from the screen is no longer announced; errors that the page itself found stay.
@@ -65,11 +48,49 @@ export function summarize() {
   announced = problem;
   if (notice !== null && notice !== announcedNotice) sayNews(notice);
   announcedNotice = notice;
-  session.isLocal = localFiles(session.link).length > 0;
-  markCard(session.link, session.isLocal);
+  markCard(facts().link, facts().isLocal);
   document.title = model === "" ? "Gaitway" : `${model} – Gaitway`;
-  recordView();
   return { model, notice };
 }
 
-addEventListener("pagehide", cancelSummary);
+/**
+ * Shows an error about something that never reached the app.
+ * @param {unknown} error
+ */
+export function refuse(error) {
+  sayProblem(messageOf(error));
+  program.app?.refuse(messageOf(error));
+}
+
+performs({
+  settleSoon() {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      summarize();
+      send({ event: "settled" });
+    }, SUMMARY_DELAY_MS);
+  },
+  async notify({ text }) {
+    const { app } = program;
+    // After what the app is about to say itself.
+    await frames(2);
+    if (program.app === app) app?.notify(text);
+  },
+  async sayProblem({ message }) {
+    // The app learns of it in its next frame and may announce an older error first.
+    await frames(2);
+    sayProblem(message);
+  },
+  refuse: ({ message }) => refuse(message),
+  forgetProblem() {
+    announced = null;
+    sayProblem("");
+  },
+  hideGallery,
+  focus() {
+    // A dialog has given the focus back to the control that opened it, if that is still there.
+    if (!byId("stage").contains(document.activeElement)) focusCanvas();
+  },
+});
+
+addEventListener("pagehide", () => clearTimeout(timer));

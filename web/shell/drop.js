@@ -1,11 +1,11 @@
 // Dropped files, folders and links, taken before the canvas sees them.
+import { refuse } from "./changes.js";
 import { byId, dialog, isDialogOpen } from "./dom.js";
 import { EMPTY_FOLDER } from "./open-dialog.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
-import { isStageEmpty, refuse, session } from "./session.js";
+import { isStageEmpty, program } from "./running.js";
 
-/** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 /** @typedef {import("./types.d.ts").Role} Role */
 
@@ -30,7 +30,7 @@ function showSheet({ clientX, clientY }) {
   clearTimeout(timer);
   timer = setTimeout(hideSheet, SHEET_TIMEOUT_MS);
   const [open, borrow] = [byId("drop-open"), byId("drop-borrow")];
-  borrow.hidden = session.app === null || panel() !== null || isDialogOpen() || isStageEmpty();
+  borrow.hidden = program.app === null || panel() !== null || isDialogOpen() || isStageEmpty();
   byId("drop").hidden = false;
   const { left, top } = borrow.getBoundingClientRect();
   const isBorrowed = !borrow.hidden && clientX >= left && clientY >= top;
@@ -66,7 +66,7 @@ for (const type of /** @type {const} */ (["dragenter", "dragover", "dragleave", 
 /**
  * Returns what a drop carries: files, the files of folders with their paths, or the URL of a link.
  * @param {DataTransfer} transfer
- * @returns {Promise<Item[]>}
+ * @returns {Promise<(string | NamedFile)[]>}
  */
 async function droppedItems(transfer) {
   // The list is empty after the first await, so everything is taken out of it now.

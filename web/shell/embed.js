@@ -4,8 +4,8 @@
 import { messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
 import { open } from "./opening.js";
-import { isPrivate, seenPrivate } from "./privacy.js";
-import { whenComplete } from "./session.js";
+import { whenComplete } from "./running.js";
+import { facts } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 /**
@@ -18,7 +18,7 @@ const withheld = () => coded("cross-origin", "withheld: the user has opened loca
 /** @type {Record<string, Call>} */
 const CALLS = {
   ready: async () => void (await window.gaitway.ready),
-  open: (items, { as } = {}) => open(items, { as, isPrivate: false }),
+  open: (items, { as } = {}) => open(items, { as, by: "frame" }),
   apply: (partial) => window.gaitway.apply(partial),
   ...Object.fromEntries(READS.map((call) => [call, () => window.gaitway[call]()])),
 };
@@ -30,10 +30,10 @@ const CALLS = {
 async function answer(call, given) {
   if (!Object.hasOwn(CALLS, call)) throw coded("malformed", `${call}: there is no such call; expected one of ${Object.keys(CALLS).join(", ")}`);
   const reads = READS.some((name) => name === call);
-  const [wasPrivate, seen] = [isPrivate(), seenPrivate()];
+  const { isPrivate: wasPrivate, seenPrivate: seen } = facts();
   if (wasPrivate && reads) throw withheld();
   // A file may have been dropped meanwhile, and closed again.
-  const isPrivateNow = () => wasPrivate || isPrivate() || seenPrivate() !== seen;
+  const isPrivateNow = () => wasPrivate || facts().isPrivate || facts().seenPrivate !== seen;
   let result;
   try {
     result = await CALLS[call](...given);

@@ -1,7 +1,7 @@
 // The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page
 // and what the user opens hide them until they are asked for. So does a low screen, which has no room for both.
 import { byId, button, focusCanvas } from "./dom.js";
-import { mostSimilarLink } from "./links.js";
+import { program } from "./running.js";
 
 const gallery = byId("gallery");
 /** Phones held sideways: LOW_HEIGHT in src/ui/mod.rs, also in shell.css. */
@@ -59,7 +59,7 @@ export function setInert(isInert) {
  */
 export function markCard(link, isLocal) {
   if (isLocal) setShown(false);
-  const shown = mostSimilarLink(link, cards.map(({ hash }) => hash.slice(1)));
+  const shown = program.app?.most_similar_link(link, cards.map(({ hash }) => hash.slice(1)));
   for (const [index, card] of cards.entries()) card.setAttribute("aria-current", String(index === shown));
 }
 

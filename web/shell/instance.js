@@ -1,33 +1,27 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
 import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
-import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus } from "./dom.js";
 import { coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
-import { followAsked, showMissing, showMissingImages, takeAsked } from "./following.js";
 import { setInert, showGallery } from "./gallery.js";
-import { heldFor } from "./held.js";
-import { withMissing } from "./history.js";
-import { linkWithoutMissing, readLinksWith } from "./links.js";
-import { readOrReport } from "./load.js";
 import { Mirror } from "./mirror.js";
 import { keepOffline } from "./offline.js";
 import { showOpenDialog } from "./open-dialog.js";
+import { readAgain } from "./opening.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
-import { arePrivate } from "./privacy.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { cancelRecording, download, record } from "./recording.js";
 import { programs } from "./request.js";
-import { session } from "./session.js";
-import { addressOf, share } from "./share.js";
+import { endWaiting, program, unlessEnded } from "./running.js";
+import { continueWith, facts, performs, send } from "./session.js";
 import { validate } from "./validation.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
-/** @typedef {import("./types.d.ts").ReadItem} ReadItem */
+/** @typedef {import("./types.d.ts").Effect} Effect */
 /** @typedef {import("./types.d.ts").ShellCalls} ShellCalls */
 
 /**
@@ -50,34 +44,31 @@ let mirror = null;
 
 const report = byId("stopped-report", HTMLTextAreaElement);
 
-/**
- * Aborts a start that is under way.
- * @type {((reason: Error) => void) | null}
- */
-let abortStart = null;
+/** What the session has the next instance show. @typedef {Effect & { effect: "run" }} View */
+
+/** @type {View | null} */
+let view = null;
 
 /**
  * Starts an instance that shows the current view.
  * @param {Backend | null} renderer Null: whichever works.
  */
 export function launch(renderer) {
-  session.started = start(renderer);
+  program.started = start(renderer);
   // `ready` passes the error on; the panel shows it in any case.
-  session.started.catch(() => {});
-  return session.started;
+  program.started.catch(() => {});
+  return program.started;
 }
 
 /** @param {Backend | null} renderer */
 async function start(renderer) {
-  session.stopReason = null;
+  send({ event: "launch" });
   showPanel("loading");
-  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link: session.link, isLocal: session.isLocal } }));
+  const { link, isLocal } = facts();
+  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link, isLocal } }));
   showProgress("Loading Gaitway", 0, 0);
   const lacking = missingCapabilities();
-  if (lacking !== null) {
-    showCannotRun(lacking.missing, lacking.attempts);
-    throw coded("unsupported", lacking.missing.join(" "));
-  }
+  if (lacking !== null) throw cannotRun("unsupported", lacking.missing, lacking.attempts);
   const problems = [];
   let hasProgram = false;
   for (const attempt of renderer === null ? await backendsToTry() : [renderer]) {
@@ -91,30 +82,29 @@ async function start(renderer) {
     }
     hasProgram = true;
     shareFont(bindings);
-    readLinksWith(bindings);
-    const asked = takeAsked();
-    session.link = asked === null ? linkToRestore() : (asked.entry.link ?? asked.link);
-    awaitFiles(session.link);
-    const { items, motionItems } = heldFor(session.link);
-    const files = await Promise.all([items, motionItems].map((items) => readOrReport(items, sayProblem)));
-    const problem = await startOn(bindings, attempt, files);
+    continueWith(bindings);
+    send({ event: "loaded" });
+    const problem = await startOn(bindings, attempt, /** @type {View} */ (view));
     if (problem === null) {
-      session.completed.then(() => keepOffline(programFiles(attempt)));
+      program.completed.then(() => keepOffline(programFiles(attempt)));
       return;
     }
     problems.push(problem);
   }
-  showCannotRun(problems, hasProgram ? graphicsToTry(renderer) : TRY_DOWNLOAD);
-  throw coded(hasProgram ? "unsupported" : "not-found", problems.join(" "));
+  throw hasProgram ? cannotRun("unsupported", problems, graphicsToTry(renderer)) : cannotRun("not-found", problems, TRY_DOWNLOAD);
 }
 
 /**
- * Returns the link that the next instance shows: of the current view, with the files that it lacks, or, if something stands in for
- * them, the link that asked for them.
+ * Shows why no instance can be started. Returns the error.
+ * @param {import("./types.d.ts").ErrorCode} code
+ * @param {string[]} problems
+ * @param {string[]} attempts What to try.
  */
-function linkToRestore() {
-  const whole = withMissing(session.link);
-  return whole === session.link ? (awaited()?.link ?? whole) : whole;
+function cannotRun(code, problems, attempts) {
+  showCannotRun(problems, attempts);
+  const message = problems.join(" ");
+  send({ event: "cannotRun", failure: { code, message } });
+  return coded(code, message);
 }
 
 /**
@@ -130,9 +120,10 @@ function graphicsToTry(renderer) {
  * Starts on one back end; returns the problem if it can't be used.
  * @param {Bindings} bindings
  * @param {Backend} renderer
- * @param {ReadItem[][]} files Local files of the model, and of its motions.
+ * @param {View} view
  */
-async function startOn(bindings, renderer, [items, motionItems]) {
+async function startOn(bindings, renderer, { link, model, motion, isPrivate }) {
+  const [items, motionItems] = await Promise.all([model, motion].map(readAgain));
   const canvas = newCanvas();
   mirror = new Mirror(bindings);
   byId("stage").replaceChildren(canvas, mirror.root);
@@ -140,32 +131,23 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   byId("stage").inert = isGuest();
   [backend, current] = [renderer, bindings];
   canvas.addEventListener("webglcontextlost", () => current === bindings && stopped("The browser took the graphics context away."));
-  /** @type {Promise<never>} */
-  const aborted = new Promise((_, reject) => (abortStart = reject));
-  aborted.catch(() => {});
   const presentFrames = drawOffScreen(canvas, renderer);
-  const link = linkWithoutMissing(session.link);
   /** @type {string[]} */
-  let missing;
+  let problems;
   try {
-    const isPrivate = arePrivate(Object.values(heldFor(link)).flat());
-    const run = bindings.run(canvas, session.link, items, motionItems, isPrivate, callsFor(bindings));
-    missing = JSON.parse(await Promise.race([run, aborted]));
+    problems = JSON.parse(await unlessEnded(bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings))));
   } catch (error) {
     if (panel() === "stopped") throw error;
     end(bindings);
     return `${BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
   }
-  session.app = bindings;
-  await showFirstFrame(canvas, aborted, bindings, presentFrames);
+  program.app = bindings;
+  await unlessEnded(showFirstFrame(canvas, bindings, presentFrames));
   // Not before it moves: decoding and uploading images would delay that.
-  const images = frames(2).then(() => bindings.complete());
-  awaitImages(bindings, images, aborted);
+  awaitImages(bindings, frames(2).then(() => bindings.complete()));
   showPanel(null);
   summarize();
-  showMissing(missing, awaited()?.link ?? link);
-  showAwaited();
-  followAsked();
+  send({ event: "started", problems });
   return null;
 }
 
@@ -173,14 +155,10 @@ async function startOn(bindings, renderer, [items, motionItems]) {
  * Waits for the images of a model that is shown without them.
  * @param {Bindings} bindings
  * @param {Promise<string>} images
- * @param {Promise<never>} aborted
  */
-function awaitImages(bindings, images, aborted) {
-  session.completed = Promise.race([images, aborted]).catch(() => "");
-  session.completed.then((problem) => {
-    if (session.app !== bindings || problem === "") return;
-    showMissingImages(problem, () => awaitImages(bindings, bindings.complete_again(), aborted));
-  });
+function awaitImages(bindings, images) {
+  program.completed = unlessEnded(images).catch(() => "");
+  program.completed.then((problem) => program.app === bindings && problem !== "" && send({ event: "imagesFailed", problem }));
 }
 
 function newCanvas() {
@@ -195,18 +173,17 @@ function newCanvas() {
 /**
  * Draws the first frame and then shows the canvas.
  * @param {HTMLCanvasElement} canvas
- * @param {Promise<never>} aborted
  * @param {Bindings} bindings
  * @param {() => void} presentFrames Ends drawing off screen.
  */
-async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
+async function showFirstFrame(canvas, bindings, presentFrames) {
   // One for the panels, one for the scene, and one to be sure that both came before it.
   await frames(3);
-  await Promise.race([bindings.drawn(), aborted]);
+  await bindings.drawn();
   presentFrames();
   // The same image is presented, before it is seen. Time stands still until then: moving images would queue up behind it.
   await frames(2);
-  if (session.stopReason !== null) throw coded("lost-device", session.stopReason);
+  if (program.app !== bindings) return;
   canvas.style.visibility = "";
   bindings.begin();
   // egui makes its canvas a stop of the Tab key, and receives text through a hidden input while it has the keyboard.
@@ -223,6 +200,8 @@ async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
  */
 function callsFor(bindings) {
   const isCurrent = () => current === bindings;
+  // The session asks the program, which can't answer during its own calls.
+  const later = (/** @type {import("./types.d.ts").SessionEvent} */ event) => queueMicrotask(() => isCurrent() && send(event));
   return {
     choose: showOpenDialog,
     gallery: showGallery,
@@ -231,14 +210,14 @@ function callsFor(bindings) {
     record: (name, width, height, framesPerSec, frameCount, isTransparent, format) => record(name, { width, height, framesPerSec, frameCount, isTransparent, format, frame: bindings.video_frame }),
     cancelRecording,
     validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),
-    share,
-    visit: (address) => void open(address.startsWith("#") ? addressOf(address.slice(1)) : address, "_blank", "noopener"),
+    share: (link) => later({ event: "share", link }),
+    visit: (address) => (address.startsWith("#") ? later({ event: "visit", link: address.slice(1) }) : void open(address, "_blank", "noopener")),
     hasFullscreen,
     toggleFullscreen,
     theme,
     setTheme,
     progress: showProgress,
-    changed: (link) => isCurrent() && viewChanged(link),
+    changed: (link) => queueMicrotask(() => isCurrent() && viewChanged(link)),
     warn: (message) => {
       console.warn(message);
       sayProblem(message);
@@ -255,8 +234,9 @@ function callsFor(bindings) {
  */
 function stopped(message, stack = new Error().stack) {
   if (panel() === "stopped" || panel() === "cannot-run") return;
-  abortStart?.(coded("lost-device", message));
-  session.stopReason = message;
+  endWaiting(message);
+  // Not from inside the instance's own call.
+  queueMicrotask(() => send({ event: "stopped", reason: message }));
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
   // The program's name tells its version.
   report.value = [message, programs[backend].wasm, navigator.userAgent, stack].join("\n");
@@ -266,11 +246,10 @@ function stopped(message, stack = new Error().stack) {
   button("stopped-other").onclick = () => launch(other);
   button("stopped-other").hidden = !hasBackend(other);
   const ended = current;
-  session.app = current = null;
+  current = null;
   showPanel("stopped");
   for (const dialog of document.querySelectorAll("dialog")) dialog.close();
   takeFocus(button("stopped-again"));
-  // Not from inside the instance's own call.
   setTimeout(() => {
     end(ended);
     byId("stage").replaceChildren();
@@ -280,7 +259,7 @@ function stopped(message, stack = new Error().stack) {
 /** @param {Bindings | null} instance */
 function end(instance) {
   cancelRecording();
-  if (session.app === instance) session.app = null;
+  if (program.app === instance) program.app = null;
   if (current === instance) current = null;
   // A modal dialog of the instance ends with it.
   setInert(false);
@@ -291,10 +270,15 @@ function end(instance) {
   }
 }
 
-session.restart = () => {
-  end(current);
-  launch(backend);
-};
+performs({
+  run: (effect) => void (view = effect),
+  restart() {
+    endWaiting("it was restarted");
+    end(current);
+    launch(backend);
+  },
+  loadImages: () => program.app !== null && awaitImages(program.app, program.app.complete_again()),
+});
 
 /** @param {unknown} error */
 function stopOnTrap(error) {
@@ -310,7 +294,7 @@ function passToCanvas(event) {
   const { key, target, defaultPrevented } = event;
   // The key may have closed what had the focus.
   const isNobodys = target === document.body && document.activeElement === document.body && !defaultPrevented;
-  if (!isNobodys || key === "Tab" || session.app === null || panel() !== null || isDialogOpen()) return;
+  if (!isNobodys || key === "Tab" || program.app === null || panel() !== null || isDialogOpen()) return;
   focusCanvas();
   // Nothing inert takes the focus.
   const { activeElement } = document;

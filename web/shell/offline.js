@@ -2,7 +2,7 @@
 // that the system hands it.
 import { button, byId } from "./dom.js";
 import { openByHand } from "./opening.js";
-import { session } from "./session.js";
+import { program } from "./running.js";
 
 /** In a frame of another site nobody visits this page, so nothing is stored; a sandboxed one may not even ask. */
 const isStored = parent === window && "serviceWorker" in navigator;
@@ -10,7 +10,7 @@ const isStored = parent === window && "serviceWorker" in navigator;
 export function install() {
   window.launchQueue?.setConsumer(async ({ files }) => openByHand(await Promise.all(files.map((handle) => handle.getFile()))));
   // Don't delay the first image.
-  if (isStored) session.started.then(register, register);
+  if (isStored) program.started.then(register, register);
 }
 
 /**

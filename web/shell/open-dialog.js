@@ -1,10 +1,10 @@
-// The dialog in which files, folders and URLs are chosen, its keyboard shortcut, and how a link's files are chosen.
-import { awaited, needOf } from "./awaited.js";
+// The dialog in which files, folders and URLs are chosen, and its keyboard shortcut.
+import { refuse } from "./changes.js";
 import { button, byId, dialog, field, focusCanvas, isDialogOpen } from "./dom.js";
 import { showGallery } from "./gallery.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
-import { refuse, session } from "./session.js";
+import { facts } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Openable} Openable */
 /** @typedef {import("./types.d.ts").Role} Role */
@@ -36,8 +36,8 @@ export function showOpenDialog(kind = "any") {
   byId("open-form", HTMLFormElement).reset();
   const { title, what, example, sample } = TEXTS[kind];
   byId("open-title").textContent = title;
-  const asking = kind === "any" ? awaited() : null;
-  byId("open-what").textContent = asking !== null && asking.missing.length > 0 ? `${needOf(asking)} ${what}` : what;
+  const { need } = facts();
+  byId("open-what").textContent = kind === "any" && need !== null ? `${need} ${what}` : what;
   field("open-url").placeholder = example;
   byId("open-sample").textContent = sample;
   dialog("open").showModal();
@@ -76,23 +76,6 @@ byId("open-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const url = field("open-url").value.trim();
   if (url !== "") openChosen([url]);
-});
-// The dialog that asks for a link's files, or says what is missing. Escape leaves its value empty.
-button("bring-choose").addEventListener("click", () => field("bring-chosen").click());
-field("bring-chosen").addEventListener("change", () => {
-  const files = filesOf("bring-chosen");
-  // Choosing them again is a change, too.
-  field("bring-chosen").value = "";
-  if (files.length === 0) return;
-  dialog("bring").close("chosen");
-  openByHand(files);
-});
-dialog("bring").addEventListener("close", () => {
-  const [{ returnValue }, asking] = [dialog("bring"), awaited()];
-  // The empty stage says what it waits for.
-  const isSaid = asking?.missing.some(({ role }) => role === "model");
-  if ((returnValue === "later" || returnValue === "") && asking !== null && !isSaid) session.app?.notify(needOf(asking));
-  if (document.activeElement === document.body) focusCanvas();
 });
 
 addEventListener(

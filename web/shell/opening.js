@@ -1,126 +1,87 @@
-// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
-// complete it.
-import { askForRest, awaited, completable, forgetAwaited, passOver, showAwaited } from "./awaited.js";
-import { forgetProblem, summarize, summarizeSoon } from "./changes.js";
-import { withCompanions } from "./companions.js";
-import { byId, focusCanvas, frames, listOf, messageOf } from "./dom.js";
+// Opening: what a script or the user gives becomes items of the session, and its tasks are done: files are read, and the program
+// shows them. The page keeps the files; the session knows their numbers and names.
+import { summarize } from "./changes.js";
+import { messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
-import { fileName, heldFor, holdLast, isGltf, isPartOfGltf, nameOf } from "./held.js";
-import { follow } from "./following.js";
 import { hideGallery } from "./gallery.js";
-import { beginFollowing, endFollowing } from "./history.js";
-import { linkWithFiles } from "./links.js";
-import { keep, load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
-import { running, session } from "./session.js";
+import { program } from "./running.js";
+import { performs, send } from "./session.js";
 
+/** @typedef {import("./types.d.ts").Bindings} Bindings */
 /** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
 /** @typedef {import("./types.d.ts").Item} Item */
+/** @typedef {import("./types.d.ts").Kind} Kind */
+/** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 /** @typedef {import("./types.d.ts").Openable} Openable */
+/** @typedef {import("./types.d.ts").ReadItem} ReadItem */
 /** @typedef {import("./types.d.ts").Role} Role */
 
 /**
- * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
- * one learns nothing. `isByHand`: the user opens them, not a script.
- * @param {Openable | Openable[] | FileList} items
- * @param {{ as?: Role, isPrivate?: boolean, isByHand?: boolean }} [options]
- * @returns {Promise<InspectDocument>}
+ * Files by their numbers.
+ * @type {Map<number, NamedFile["content"]>}
  */
-export async function open(items, { as, isPrivate = true, isByHand = false } = {}) {
-  const given = asAwaited(toItems(items));
-  // The page around this one completes none of the user's models.
-  const { items: wanted, as: role } = isPrivate ? await withCompanions(given, as) : { items: given, as };
-  await running();
-  // What a link waits for is shown as the link says, in the link's entry of the history.
-  const isAwaited = completable()?.wanted.some((file) => fileAmong(wanted, file) !== undefined) ?? false;
-  const isInEntry = isAwaited && awaited() !== null;
-  if (isInEntry) beginFollowing();
-  const { motions, others } = splitAwaited(wanted);
-  // They follow once the link's model is there.
-  if (motions.length > 0 && others.length > 0) (isPrivate ? keep : holdLast)(motions);
-  try {
-    const isMotion = others.length === 0;
-    const { shown, document } = await load(isMotion ? motions : others, isMotion ? "motion" : role, isPrivate, isByHand && !isAwaited);
-    forgetProblem();
-    const hint = await completeLink(wanted, shown);
-    announce(shown, summarize(), document);
-    if (isByHand && hint !== undefined) session.app?.notify(hint);
-    return document;
-  } catch (error) {
-    const code = codeOf(error);
-    // A motion may have arrived before its model. Without all of its files, nothing completes a link.
-    if (code === "not-found") showAwaited(namesOf(wanted));
-    else if (code !== "cancelled") await completeLink(wanted);
-    throw error;
-  } finally {
-    if (isInEntry) {
-      endFollowing();
-      summarizeSoon();
-    }
-  }
-}
-
-/** How often the user has opened something. */
-let openedCount = 0;
-
-/** Resolves once what the user opened last is there or has failed. */
-let lastOpened = Promise.resolve();
+const files = new Map();
+let lastFile = 0;
 
 /**
- * Whether it has a motion and never a model.
- * @param {Item} item
+ * What tasks have read.
+ * @type {Map<number, ReadItem[]>}
  */
-const isMotion = (item) => /\.(bvh|vrma|npz)$/i.test(bareName(item));
+const read = new Map();
+
+/**
+ * Descriptions of what tasks have opened.
+ * @type {Map<number, InspectDocument>}
+ */
+const documents = new Map();
+
+/**
+ * Those who wait for an answer.
+ * @type {Map<number, { resolve: (document: InspectDocument) => void, reject: (error: unknown) => void }>}
+ */
+const requests = new Map();
+let lastRequest = 0;
+
+/**
+ * Opens what a script gives, or the page around this one, which may learn of its own files.
+ * @param {Openable | Openable[] | FileList} given
+ * @param {{ as?: Role, by?: "script" | "frame" }} [options]
+ * @returns {Promise<InspectDocument>}
+ */
+export async function open(given, { as, by = "script" } = {}) {
+  const items = toItems(given);
+  return await new Promise((resolve, reject) => {
+    lastRequest += 1;
+    requests.set(lastRequest, { resolve, reject });
+    // Without any program, there is no session to answer.
+    program.started.catch(reject);
+    send({ event: "open", request: lastRequest, by, items, role: roleOf(as) });
+  });
+}
 
 /**
  * Opens what the user dropped or chose. The app shows errors itself.
- * @param {Openable[]} items
+ * @param {Openable[]} given
  * @param {{ as?: Role }} [options]
  */
-export async function openByHand(items, options) {
-  if (items.length === 0) return;
-  const link = ownLink(items);
-  if (link !== undefined && options?.as !== "motion") {
+export function openByHand(given, { as } = {}) {
+  if (given.length === 0) return;
+  const link = ownLink(given);
+  if (link !== undefined && as !== "motion") {
     location.hash = link;
-    return hideGallery();
+    hideGallery();
+  } else {
+    send({ event: "open", request: null, by: "hand", items: toItems(given), role: roleOf(as) });
   }
-  if (options?.as === "motion" || toItems(items).every(isMotion)) {
-    // It is for the model that is on its way, and others may be opened meanwhile.
-    let awaitedOpening;
-    while (awaitedOpening !== lastOpened) {
-      awaitedOpening = lastOpened;
-      await awaitedOpening;
-    }
-  }
-  lastOpened = openNow(items, options);
-  await lastOpened;
-  // The dialog has given the focus back to the control that opened it, if that is still there.
-  if (!byId("stage").contains(document.activeElement)) focusCanvas();
 }
 
-/**
- * Opens what the user gives, without waiting for what is being opened.
- * @param {Openable[]} items
- * @param {{ as?: Role }} [options]
- */
-async function openNow(items, options) {
-  openedCount += 1;
-  const number = openedCount;
-  try {
-    if (!(await keptForModel(asAwaited(toItems(items))))) await open(items, { ...options, isByHand: true });
-    hideGallery();
-  } catch (error) {
-    // The app learns of it in its next frame and may announce an older error first.
-    await frames(2);
-    // What was opened since has its own result; that this wasn't opened is told as well.
-    if (number === openedCount) sayProblem(messageOf(error));
-    else if (codeOf(error) === "cancelled") session.app?.notify(`${messageOf(error)}.`);
-  }
-}
+/** @param {Role} as Scripts may give anything. */
+const roleOf = (as) => (as === "motion" ? as : "any");
 
 /**
  * Returns the link if the user gives a URL of this page, such as a card of the gallery.
- * @param {Openable[]} items
+ * @param {Openable[]} given
  */
 function ownLink([item]) {
   if (typeof item !== "string" || !URL.canParse(item)) return undefined;
@@ -129,99 +90,133 @@ function ownLink([item]) {
 }
 
 /**
- * Keeps what a link needs besides its model until the model arrives: nothing can be shown of it before. Returns whether that is so.
- * @param {Item[]} items
+ * Turns anything that `gaitway.open` takes, alone or in a list, into items, and keeps the files.
+ * @param {Openable | Openable[] | FileList} given
  */
-async function keptForModel(items) {
-  const missing = awaited()?.missing ?? [];
-  const roles = missing.filter((file) => fileAmong(items, file) !== undefined).map(({ role }) => role);
-  if (roles.length === 0 || roles.includes("model") || !missing.some(({ role }) => role === "model")) return false;
-  keep(items);
-  await completeLink(items);
-  return true;
+function toItems(given) {
+  const isList = Array.isArray(given) || given instanceof FileList;
+  return (isList ? [...given] : [given]).flatMap(named).map(kept);
 }
 
 /**
- * Gives copies of files that a link waits for the names that it knows them by: clips may be named after their file.
- * @param {Item[]} items
- * @returns {Item[]}
+ * @param {Openable} item
+ * @returns {(string | NamedFile)[]}
  */
-function asAwaited(items) {
-  const names = (completable()?.wanted ?? []).map(({ name }) => fileName(name));
-  const missing = names.filter((name) => items.every((item) => bareName(item) !== name));
-  return items.map((item) => {
-    const at = missing.findIndex((name) => withoutCopy(name) === withoutCopy(bareName(item)));
-    if (at < 0 || typeof item === "string") return item;
-    const [name] = missing.splice(at, 1);
-    return { ...item, name: item.name.slice(0, item.name.lastIndexOf("/") + 1) + name };
-  });
-}
-
-/**
- * Separates what a link waits for as a motion, with its files: a character, opened together with the link's own, would be another model.
- * @param {Item[]} items
- * @returns {{ motions: Item[], others: Item[] }}
- */
-function splitAwaited(items) {
-  const files = completable()?.wanted ?? [];
-  const [models, lent] = ["model", "motion"].map((wanted) => files.flatMap((file) => (file.role === wanted ? [fileAmong(items, file)] : [])));
-  const motions = items.filter((item) => lent.includes(item) && !models.includes(item));
-  if (motions.length === 0) return { motions, others: items };
-  const others = items.filter((item) => !motions.includes(item));
-  const parts = motions.some(isGltf) ? others.filter(isPartOfGltf) : [];
-  return { motions: [...motions, ...parts], others: others.length > parts.length ? others : [] };
-}
-
-/**
- * Returns a file of a link among items, by its bare name.
- * @param {Item[]} items
- * @param {import("./types.d.ts").LinkedFile} file
- */
-const fileAmong = (items, { name }) => items.find((item) => bareName(item) === fileName(name));
-
-/** @param {Item} item */
-const bareName = (item) => fileName(nameOf(item));
-
-/**
- * Removes what browsers and systems add to the names of copies: “walk (1).bvh”, “walk copy.bvh”, “walk - Copy (2).bvh”.
- * @param {string} name
- */
-const withoutCopy = (name) => name.replace(/(?: - Copy| copy(?: \d+)?)?(?: ?\(\d+\))?(?=\.[^.]*$)/, "");
-
-/**
- * Turns anything that `gaitway.open` takes, alone or in a list, into items.
- * @param {Openable | Openable[] | FileList} items
- * @returns {Item[]}
- */
-function toItems(items) {
-  const isList = Array.isArray(items) || items instanceof FileList;
-  return (isList ? [...items] : [items]).flatMap(/** @returns {Item[]} */ (item) => {
-    if (typeof item === "string") return [item];
-    if (item instanceof URL) return [item.href];
-    if (item instanceof File) return [{ name: item.webkitRelativePath || item.name, content: item }];
-    if (isNamedFile(item)) return [item];
-    if (item === null || typeof item !== "object") throw coded("malformed", "open: expected URLs, files, or an object with a buffer for each name");
-    return Object.entries(item).map(([name, content]) => {
-      if (content instanceof Blob || content instanceof ArrayBuffer) return { name, content };
-      if (ArrayBuffer.isView(content)) return { name, content: new Uint8Array(/** @type {ArrayBuffer} */ (content.buffer), content.byteOffset, content.byteLength) };
-      throw coded("malformed", `open: ${name}: expected an ArrayBuffer`);
-    });
+function named(item) {
+  if (typeof item === "string") return [item];
+  if (item instanceof URL) return [item.href];
+  if (item instanceof File) return [{ name: item.webkitRelativePath || item.name, content: item }];
+  if (isNamedFile(item)) return [item];
+  if (item === null || typeof item !== "object") throw coded("malformed", "open: expected URLs, files, or an object with a buffer for each name");
+  return Object.entries(item).map(([name, content]) => {
+    if (content instanceof Blob || content instanceof ArrayBuffer) return { name, content };
+    if (ArrayBuffer.isView(content)) return { name, content: new Uint8Array(/** @type {ArrayBuffer} */ (content.buffer), content.byteOffset, content.byteLength) };
+    throw coded("malformed", `open: ${name}: expected an ArrayBuffer`);
   });
 }
 
 /**
  * @param {Openable} item
- * @returns {item is import("./types.d.ts").NamedFile}
+ * @returns {item is NamedFile}
  */
 const isNamedFile = (item) => item !== null && typeof item === "object" && "name" in item && typeof item.name === "string" && "content" in item && item.content instanceof Blob;
 
 /**
+ * @param {string | NamedFile} item
+ * @returns {Item}
+ */
+function kept(item) {
+  if (typeof item === "string") return item;
+  lastFile += 1;
+  files.set(lastFile, item.content);
+  return { id: lastFile, name: item.name };
+}
+
+/**
+ * Reads an item into the form that the app takes.
+ * @param {Item} item
+ * @returns {Promise<ReadItem>}
+ */
+async function readItem(item) {
+  if (typeof item === "string") return item;
+  const content = /** @type {NamedFile["content"]} */ (files.get(item.id));
+  try {
+    return [item.name, new Uint8Array(content instanceof Blob ? await content.arrayBuffer() : content)];
+  } catch {
+    throw coded("not-found", `${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
+  }
+}
+
+/**
+ * Reads files for a new instance; one that can't be read any more is announced and left out.
+ * @param {Item[]} items
+ */
+export async function readAgain(items) {
+  const results = await Promise.allSettled(items.map(readItem));
+  const problems = results.flatMap((result) => (result.status === "rejected" ? [messageOf(result.reason)] : []));
+  if (problems.length > 0) sayProblem(problems.join(" "));
+  return results.flatMap((result) => (result.status === "fulfilled" ? [result.value] : []));
+}
+
+/**
+ * Returns what does a task with the program, and tells the session how it has ended. An instance that has ended has nothing more to
+ * tell.
+ * @template {{ task: number }} Task
+ * @param {(app: Bindings, effect: Task) => Promise<import("./types.d.ts").TaskResult>} work
+ */
+const task = (work) => async (/** @type {Task} */ effect) => {
+  const { app } = program;
+  if (app === null) return;
+  const result = await work(app, effect).catch((error) => ({ event: /** @type {const} */ ("failed"), failure: { code: codeOf(error) ?? null, message: messageOf(error) } }));
+  if (program.app === app) send({ ...result, task: effect.task });
+};
+
+performs({
+  read: task(async (app, { task, items }) => {
+    const given = await Promise.all(items.map(readItem));
+    if (program.app === app) read.set(task, given);
+    return { event: "read" };
+  }),
+  show: task(async (app, { task, items, role, isPrivate, isByHand }) => {
+    const given = read.get(task) ?? /** @type {string[]} */ (items);
+    read.delete(task);
+    /** @type {{ shown: Kind, document: InspectDocument }} */
+    const { shown, document } = JSON.parse(await app.open(given, role, isPrivate, isByHand));
+    if (program.app === app) documents.set(task, document);
+    return { event: "opened", kind: shown };
+  }),
+  follow: task(async (app, { link, reload }) => {
+    const { loaded, problems } = JSON.parse(await app.follow_link(link, reload));
+    return { event: "followed", read: loaded, problems };
+  }),
+  findReferences: task(async (app, { items }) => {
+    // Of the others, the names are enough.
+    const given = items.map((item) => (typeof item === "string" || /\.gltf$/i.test(item.name) ? readItem(item) : /** @type {ReadItem} */ ([item.name, new Uint8Array()])));
+    return { event: "lacking", names: app.missing_files(await Promise.all(given)) };
+  }),
+  forget({ task }) {
+    read.delete(task);
+    documents.delete(task);
+  },
+  release: (released) => released.files.forEach((id) => files.delete(id)),
+  reply({ request, task }) {
+    requests.get(request)?.resolve(/** @type {InspectDocument} */ (documents.get(task)));
+    requests.delete(request);
+  },
+  reject({ request, failure: { code, message } }) {
+    requests.get(request)?.reject(code === null ? new Error(message) : coded(code, message));
+    requests.delete(request);
+  },
+  announce: ({ task, kind }) => announce(kind, summarize(), /** @type {InspectDocument} */ (documents.get(task))),
+});
+
+/**
  * Tells screen readers what the app says about what was opened, and what can be seen of it.
- * @param {"model" | "motion" | "light" | "map"} shown
+ * @param {Kind} kind
  * @param {{ model: string, notice: string | null }} summary
  * @param {InspectDocument} document
  */
-function announce(shown, { model, notice }, { clips, borrowed_clips: borrowed, joints, triangles }) {
+function announce(kind, { model, notice }, { clips, borrowed_clips: borrowed, joints, triangles }) {
   /** @type {(count: number, noun: string) => string} */
   const counted = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
   // None where a motion shows its own skeleton.
@@ -232,35 +227,6 @@ function announce(shown, { model, notice }, { clips, borrowed_clips: borrowed, j
     light: ["The image lights the scene."],
     map: ["Joint map applied."],
   };
-  const [opened, ...contents] = texts[shown];
+  const [opened, ...contents] = texts[kind];
   sayNews([notice ?? opened, ...contents].join(" "));
 }
-
-/**
- * Shows a link with files that it waits for among these, as far as that is possible without the rest, which the page goes on
- * asking for. Returns what to tell the user who opened another model instead.
- * @param {Item[]} items
- * @param {"model" | "motion" | "light" | "map"} [shown] What it was, unless it couldn't be opened.
- */
-async function completeLink(items, shown) {
-  const waiting = completable();
-  if (waiting === null) return;
-  const arrived = waiting.wanted.map((file) => fileAmong(items, file));
-  if (arrived.every((item) => item === undefined)) {
-    if (shown === "model") return passOver();
-    return void showAwaited(shown === undefined ? namesOf(items) : undefined);
-  }
-  const link = linkWithFiles(waiting.marked, arrived.map((item) => (item === undefined ? "" : nameOf(item))));
-  const rest = waiting.wanted.filter((_, index) => arrived[index] === undefined);
-  if (rest.some(({ role }) => role === "model")) {
-    askForRest(waiting, link, rest);
-    return void showAwaited();
-  }
-  // They are still awaited: one of them is damaged.
-  if (shown === undefined) return void showAwaited(namesOf(items));
-  forgetAwaited();
-  await follow(link, { link, ...heldFor(link), isOwn: waiting.isOwn });
-}
-
-/** @param {Item[]} items */
-const namesOf = (items) => listOf(items.map(bareName));

@@ -1,89 +1,121 @@
-// What outlives an instance of the program: the link of the current view, and the instance that runs now.
-import { messageOf } from "./dom.js";
-import { coded } from "./errors.js";
-import { sayProblem } from "./panels.js";
+// The session: what is shown, where that came from and what was asked for since (crates/session). It is a text, which outlives
+// the instances of the program: the one that was loaded last makes the next text of each event. Events are passed on here, one
+// after the other; what follows from them is done by the modules that import this one.
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
+/** @typedef {import("./types.d.ts").Effect} Effect */
+/** @typedef {import("./types.d.ts").Facts} Facts */
+/** @typedef {import("./types.d.ts").Performers} Performers */
+/** @typedef {import("./types.d.ts").SessionEvent} SessionEvent */
+
+/** What an entry's state holds. Older versions of the page wrote it too, so its keys stay. */
+/** @typedef {{ gaitway?: number, own?: boolean } | null} EntryState */
 
 /** The first scene of the gallery; empty in a build without samples. */
 const FIRST_LINK = /** @type {HTMLAnchorElement | null} */ (document.querySelector("#gallery-scenes a"))?.hash.slice(1) ?? "";
 
-/** The link in the address bar, or that of the first screen. */
-export const linkOfAddress = () => location.hash.slice(1) || FIRST_LINK;
+/**
+ * Returns what the session knows of an entry of the history that the browser shows.
+ * @param {EntryState} state
+ */
+const shownEntry = (state) => ({
+  /** The link in the address bar, or that of the first screen. */
+  link: location.hash.slice(1) || FIRST_LINK,
+  state: { number: state?.gaitway ?? null, own: state?.own === true },
+});
 
-export const session = {
-  /** The current view, which a new instance shows again. */
-  link: linkOfAddress(),
-  /** Whether the current view shows local files. */
-  isLocal: false,
-  /**
-   * Bindings of the running instance; null while none runs.
-   * @type {Bindings | null}
-   */
-  app: null,
-  /**
-   * Resolves once the first image is on screen. Each start replaces it.
-   * @type {Promise<void>}
-   */
-  started: Promise.resolve(),
-  /**
-   * Resolves once the first model has its images, which may arrive after the first image is on screen, or to why it hasn't
-   * got them. Each start replaces it.
-   * @type {Promise<string>}
-   */
-  completed: Promise.resolve(""),
-  /** Why the last instance stopped. */
-  stopReason: /** @type {string | null} */ (null),
-  /**
-   * Ends the running instance and starts another one; set by instance.js, which depends on the modules that call it.
-   */
-  restart: () => {},
-  /**
-   * The entry of the history that was gone to while no instance could show it.
-   * @type {{ link: string, visit: import("./history.js").Visit | undefined, wasPrivate: boolean } | null}
-   */
-  asked: null,
-};
-
-/** Whether an instance runs that shows no model. */
-export const isStageEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
-
-/** Returns the bindings once they run. */
-export async function running() {
-  await session.started;
-  if (session.app === null) throw coded("lost-device", `Gaitway has stopped: ${session.stopReason}`);
-  return session.app;
-}
-
-/** Resolves once the first image is on screen and its model is complete. */
-export const whenComplete = () => session.started.then(() => session.completed).then(() => {});
+/** The entry in which the page was opened. */
+const first = shownEntry(history.state);
 
 /**
- * Returns an answer of the running instance, or rejects when the instance stops before it can give one.
- * @template T
- * @param {Bindings} current
- * @param {Promise<T>} answer
- * @returns {Promise<T>}
+ * The session; null before the first program has been loaded.
+ * @type {string | null}
  */
-export async function unlessStopped(current, answer) {
-  /** @type {ReturnType<typeof setInterval> | undefined} */
-  let timer;
-  const stopped = new Promise((_, reject) => {
-    const check = () => session.app !== current && reject(coded("lost-device", `Gaitway has stopped: ${session.stopReason ?? "it was restarted"}`));
-    timer = setInterval(check, 100);
-  });
+let text = null;
+
+/** @type {Facts} */
+let known = { link: first.link, isLocal: false, need: null, isPrivate: first.state.own, seenPrivate: 0 };
+
+/** What may be read of the session at any time. */
+export const facts = () => known;
+
+/**
+ * The instance that makes the next session; it may have stopped otherwise. Null while there is none.
+ * @type {Bindings | null}
+ */
+let maker = null;
+
+/**
+ * Has the session go on in an instance.
+ * @param {Bindings} bindings
+ */
+export function continueWith(bindings) {
+  maker = bindings;
+  text ??= bindings.session_of(first.link, first.state.number ?? undefined, first.state.own);
+}
+
+/** @type {Partial<Performers>} */
+const performers = {
+  push: ({ state, link }) => history.pushState(entryState(state), "", `#${link}`),
+  replace: ({ state, link }) => history.replaceState(entryState(state), "", link === null ? undefined : `#${link}`),
+};
+
+/** @type {(state: { number: number, own: boolean }) => EntryState} */
+const entryState = ({ number, own }) => ({ gaitway: number, own });
+
+/**
+ * Has effects done by these functions.
+ * @param {Partial<Performers>} given
+ */
+export const performs = (given) => void Object.assign(performers, given);
+
+/**
+ * Events that haven't been handled: they wait for a program, or for the effects of those before them.
+ * @type {SessionEvent[]}
+ */
+const events = [];
+let isHandling = false;
+
+/**
+ * Tells the session what has happened, and does what follows.
+ * @param {SessionEvent} event
+ */
+export function send(event) {
+  events.push(event);
+  if (isHandling) return;
+  isHandling = true;
+  while (maker !== null && text !== null && events.length > 0) handle(maker, text, /** @type {SessionEvent} */ (events.shift()));
+  isHandling = false;
+}
+
+/**
+ * @param {Bindings} bindings
+ * @param {string} session
+ * @param {SessionEvent} event
+ */
+function handle(bindings, session, event) {
+  /** @type {{ session: string, effects: Effect[], facts: Facts }} */
+  let after;
   try {
-    return await Promise.race([answer, /** @type {Promise<never>} */ (stopped)]);
-  } finally {
-    clearInterval(timer);
+    after = JSON.parse(bindings.session_after(session, JSON.stringify(event)));
+  } catch (error) {
+    // The event is lost. An instance that has trapped may do so again: the next one goes on.
+    if (error instanceof WebAssembly.RuntimeError) maker = null;
+    else reportError(error);
+    return;
+  }
+  ({ session: text, facts: known } = after);
+  for (const effect of after.effects) perform(effect);
+}
+
+/** @param {Effect} effect */
+function perform(effect) {
+  try {
+    /** @type {(effect: Effect) => void} */ (performers[effect.effect])(effect);
+  } catch (error) {
+    // The others don't depend on it.
+    reportError(error);
   }
 }
 
-/**
- * Shows an error about something that never reached the app.
- * @param {unknown} error
- */
-export function refuse(error) {
-  sayProblem(messageOf(error));
-  session.app?.refuse(messageOf(error));
-}
+addEventListener("popstate", ({ state }) => send({ event: "moved", ...shownEntry(state) }));

@@ -1,45 +1,34 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
 import { byId, button, copyText, dialog, field, listOf, messageOf, showList } from "./dom.js";
-import { companionsOf, localFiles, shareableLink } from "./held.js";
-import { withMissing } from "./history.js";
-import { embeddedLink, linkedFiles } from "./links.js";
 import { parts } from "./parts.js";
-import { session } from "./session.js";
+import { program } from "./running.js";
+import { performs } from "./session.js";
 
 /**
- * Returns the address of the page with a link that others can open.
+ * Returns the address of the page with a link.
  * @param {string} link
  */
-export function addressOf(link) {
+function addressOf(link) {
   const page = new URL(location.href);
   // The back end is a matter of this machine.
   page.searchParams.delete("renderer");
   page.hash = "";
-  return `${page.href}#${shareableLink(link)}`;
+  return `${page.href}#${link}`;
 }
 
 /**
  * Shows the dialog for a link and copies it.
- * @param {string} link
+ * @param {{ link: string, embedded: string, files: string[] }} shared
  */
-export function share(link) {
-  if (session.app === null) return;
-  link = withMissing(link);
+function share({ link, embedded, files }) {
   const address = addressOf(link);
-  // Others lack the files that are missing here, too.
-  const local = [...localFiles(link), ...linkedFiles(link).filter(({ isToBring }) => isToBring)];
-  byId("share-local").hidden = local.length === 0;
-  const lines = local.map(({ role, name }) => {
-    const companions = companionsOf(name);
-    return `${name} (${role})${companions.length === 0 ? "" : `, with ${listOf(companions)}`}`;
-  });
-  showList("share-files", lines);
-  // The app can't be asked during its own call.
-  queueMicrotask(tellUnlisted);
+  byId("share-local").hidden = files.length === 0;
+  showList("share-files", files);
+  tellUnlisted();
   field("share-link").value = address;
-  field("share-frame").value = frameHtml(addressOf(embeddedLink(link)));
+  field("share-frame").value = frameHtml(addressOf(embedded));
   // A phone that scans the code hardly has the files, and there is no room for both.
-  byId("share-code", HTMLDetailsElement).open = local.length === 0;
+  byId("share-code", HTMLDetailsElement).open = files.length === 0;
   showCode(address);
   byId("share-said").textContent = "";
   if (!dialog("share").open) dialog("share").showModal();
@@ -48,9 +37,9 @@ export function share(link) {
 
 /** Tells which open models the link leaves out. */
 function tellUnlisted() {
-  if (session.app === null) return;
+  if (program.app === null) return;
   /** @type {{ model: string, unlisted: string[] }} */
-  const { model, unlisted } = JSON.parse(session.app.summary());
+  const { model, unlisted } = JSON.parse(program.app.summary());
   byId("share-unlisted").hidden = unlisted.length === 0;
   byId("share-unlisted").textContent = `The link shows ${model}, without ${listOf(unlisted)}.`;
 }
@@ -107,6 +96,8 @@ function codeImage(code) {
 async function copy(id, done, failed) {
   byId("share-said").textContent = (await copyText(field(id), failed !== "")) ? done : failed;
 }
+
+performs({ share, visit: ({ link }) => void window.open(addressOf(link), "_blank", "noopener") });
 
 button("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "Couldn't copy the link. It is selected: copy it with the keyboard."));
 button("share-copy-frame").addEventListener("click", () => copy("share-frame", "Embed code copied.", "Couldn't copy the embed code. It is selected: copy it with the keyboard."));

@@ -1,8 +1,7 @@
-// Types shared by the page's scripts: the program's exports, what it calls back, and `window.gaitway`.
+// Types shared by the page's scripts: the program's exports, what it calls back, the session's events and effects, and
+// `window.gaitway`.
 
-/** What the program is asked to open: a URL, or a named file. */
-export type Item = string | NamedFile;
-
+/** A file that is opened. */
 export interface NamedFile {
   /** Path inside the folder that was chosen or dropped, or the file's own name. */
   name: string;
@@ -11,6 +10,9 @@ export interface NamedFile {
 
 /** Anything `gaitway.open` takes. */
 export type Openable = string | URL | File | NamedFile | Record<string, Blob | ArrayBuffer | ArrayBufferView>;
+
+/** What the session knows of something that is opened: a URL, or a file that the page keeps by this number. */
+export type Item = string | { id: number; name: string };
 
 /** An item as the program takes it. */
 export type ReadItem = string | [name: string, bytes: Uint8Array<ArrayBuffer>];
@@ -28,12 +30,66 @@ export interface GaitwayError extends Error {
   code: ErrorCode;
 }
 
-/** A `model`, `motion` or `light` of a link; see `LinkedFile` in crates/session/src/link.rs. */
-export interface LinkedFile {
-  role: "model" | "motion" | "light";
-  name: string;
-  member: string;
-  isToBring: boolean;
+/** What was opened. */
+export type Kind = "model" | "motion" | "light" | "map";
+
+export interface Failure {
+  code: ErrorCode | null;
+  message: string;
+}
+
+/** How a task of the session has ended; see crates/session/src/event.rs. */
+export type TaskResult =
+  | { event: "read" }
+  | { event: "opened"; kind: Kind }
+  | { event: "followed"; read: string[]; problems: string[] }
+  | { event: "lacking"; names: string[] }
+  | { event: "failed"; failure: Failure };
+
+/** What the page tells the session; see crates/session/src/event.rs. */
+export type SessionEvent =
+  | { event: "launch" | "loaded" | "settled" | "tryAgain" | "later" }
+  | { event: "started"; problems: string[] }
+  | { event: "stopped"; reason: string }
+  | { event: "cannotRun"; failure: Failure }
+  | { event: "open"; request: number | null; by: "hand" | "script" | "frame"; items: Item[]; role: "any" | "motion" }
+  | { event: "moved"; link: string; state: { number: number | null; own: boolean } }
+  | { event: "changed" | "share" | "visit"; link: string }
+  | { event: "applied"; read: string[] }
+  | { event: "imagesFailed"; problem: string }
+  | (TaskResult & { task: number });
+
+/** What the session has the page do; see crates/session/src/effect.rs. */
+export type Effect =
+  | { effect: "run"; link: string; model: Item[]; motion: Item[]; isPrivate: boolean }
+  | { effect: "restart" | "loadImages" | "closeAsk" | "closeReport" | "forgetProblem" | "hideGallery" | "focus" | "settleSoon" }
+  | { effect: "read" | "findReferences"; task: number; items: Item[] }
+  | { effect: "show"; task: number; items: Item[]; role: "any" | "motion"; isPrivate: boolean; isByHand: boolean }
+  | { effect: "forget"; task: number }
+  | { effect: "follow"; task: number; link: string; reload: boolean }
+  | { effect: "push"; state: { number: number; own: boolean }; link: string }
+  | { effect: "replace"; state: { number: number; own: boolean }; link: string | null }
+  | { effect: "ask"; files: string[]; others: string | null; isOwn: boolean }
+  | { effect: "report"; problems: string[]; title: string; rest: string; without: string }
+  | { effect: "notify"; text: string }
+  | { effect: "sayProblem" | "refuse"; message: string }
+  | { effect: "announce"; task: number; kind: Kind }
+  | { effect: "reply"; request: number; task: number }
+  | { effect: "reject"; request: number; failure: Failure }
+  | { effect: "share"; link: string; embedded: string; files: string[] }
+  | { effect: "visit"; link: string }
+  | { effect: "release"; files: number[] };
+
+/** What does each effect. */
+export type Performers = { [Name in Effect["effect"]]: (effect: Effect & { effect: Name }) => void };
+
+/** What the page may read of the session at any time; see crates/session/src/effect.rs. */
+export interface Facts {
+  link: string;
+  isLocal: boolean;
+  need: string | null;
+  isPrivate: boolean;
+  seenPrivate: number;
 }
 
 /** What the program calls; see src/web/shell.rs. */
@@ -101,13 +157,12 @@ export interface Bindings {
   mirror_act(id: string, action: "focus" | "blur" | "click" | "more" | "less" | "set", value?: number | string): void;
   mirror_key(name: string, code: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
   mirror_focus(hasFocus: boolean): void;
-  open(items: ReadItem[], role: Role, isPrivate: boolean, isByHand: boolean): Promise<string>;
+  open(items: ReadItem[], role: "any" | "motion", isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
   missing_files(items: ReadItem[]): string[];
   refuse(problem: string): void;
   notify(notice: string): void;
-  is_private(): boolean;
   state(): string;
   pose(): string;
   stats(): string;
@@ -115,13 +170,8 @@ export interface Bindings {
   screenshot(): Promise<Uint8Array<ArrayBuffer>>;
   video_frame(index: number): Promise<Uint8Array<ArrayBuffer>>;
   gltf_file(model: number, uri?: string): Uint8Array<ArrayBuffer>;
-  linked_files(link: string): string;
-  shown_files(link: string): string;
-  public_link(link: string, local: string[]): string;
-  embedded_link(link: string): string;
-  link_without_missing(link: string): string;
-  link_with_missing(link: string, asking: string): string;
-  link_with_files(link: string, names: string[]): string;
+  session_of(link: string, number: number | undefined, own: boolean): string;
+  session_after(session: string, event: string): string;
   most_similar_link(link: string, others: string[]): number | undefined;
   /** Only in a build for benches/web. */
   bench_characters?(bytes: Uint8Array, clip: string, characters: number, frames: number): number;

@@ -164,12 +164,7 @@ impl Session {
 
     /// Returns what to do about an event. `shown` is what the program shows now, if it can be asked.
     pub fn handle(&mut self, event: Event, shown: Option<Shown>) -> Vec<Effect> {
-        match shown {
-            Some(shown) => self.shown = shown,
-            // After a trap, what it has shown last counts; a program that is busy may have shown anything since.
-            None if matches!(event, Event::Stopped { .. }) => {}
-            None => self.shown.is_private |= self.program == Program::Running,
-        }
+        self.take_shown(shown, &event);
         match event {
             Event::Launch => self.launch(),
             Event::Loaded => self.run(),
@@ -195,6 +190,18 @@ impl Session {
         self.advance();
         self.release_files();
         std::mem::take(&mut self.effects)
+    }
+
+    fn take_shown(&mut self, shown: Option<Shown>, event: &Event) {
+        // Until it has started, it shows what it was told to.
+        let has_started = self.program == Program::Running || matches!(event, Event::Started { .. });
+        let has_ended = matches!(event, Event::Stopped { .. });
+        match shown {
+            Some(shown) if has_started => self.shown = shown,
+            // It may have shown anything since. What ends has shown what it said last.
+            None if has_started && !has_ended => self.shown.is_private = true,
+            _ => {}
+        }
     }
 
     /// Returns what the page reads at any time.
@@ -246,6 +253,7 @@ impl Session {
         self.started_with = link.without_missing();
         let files = self.held.of_link(&link);
         let is_private = files.iter().any(|item| self.is_own(item));
+        self.shown = Shown { is_private, ..Shown::default() };
         self.effects.push(Effect::Run { link, model: files.model, motion: files.motion, is_private });
     }
 

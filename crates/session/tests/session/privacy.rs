@@ -1,10 +1,10 @@
 //! What a page around this one must not learn: anything of the user's own files.
 
-use gaitway_session::Event;
+use gaitway_session::{Event, Shown};
 
 use crate::orders::in_every_order;
 use crate::program::Content;
-use crate::world::{Act, World};
+use crate::world::{Act, Due, World};
 
 const MINE: Act = Act::Drop(&[("Mine.glb", Content::Model("mine"))]);
 const GIVEN: Act = Act::Frame(&[("Fox.glb", Content::Model("fox"))]);
@@ -103,6 +103,16 @@ fn a_restart_keeps_files_private() {
 fn a_program_that_traps_is_as_private_as_what_it_has_shown() {
     assert!(!start().then(Act::Crash).is_private());
     assert!(start().then(MINE).then(Act::Crash).is_private());
+}
+
+#[test]
+fn a_program_that_starts_is_as_private_as_what_it_will_show() {
+    let mut world = start();
+    world.then(MINE).then(Act::Crash).act(Act::Launch);
+    world.first(|due| *due == Due::Loaded);
+    // Its stage is still empty.
+    world.session.handle(Event::Settled, Some(Shown::default()));
+    assert!(world.is_private());
 }
 
 #[test]

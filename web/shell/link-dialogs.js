@@ -1,0 +1,47 @@
+// The dialogs about a link: which of its files the user has to bring, and what of it couldn't be loaded.
+import { button, byId, dialog, field, focusCanvas, showDialog, showList } from "./dom.js";
+import { openByHand } from "./opening.js";
+import { panel, sayProblem } from "./panels.js";
+import { performs, send } from "./session.js";
+
+performs({
+  ask({ files, others, isOwn }) {
+    if (panel() !== null || dialog("bring").open) return;
+    dialog("bring").returnValue = "";
+    showList("bring-files", files);
+    byId("bring-others").hidden = others === null;
+    byId("bring-others").textContent = others === null ? "" : `${others} couldn't be opened.`;
+    byId("bring-again").hidden = !isOwn;
+    byId("bring-sender").hidden = isOwn;
+    showDialog("bring", button("bring-choose"));
+  },
+  closeAsk: () => dialog("bring").close("link"),
+  report({ problems, title, rest, without }) {
+    sayProblem(problems.join(" "));
+    showList("missing-parts", problems);
+    byId("missing-title").textContent = title;
+    byId("missing-rest").textContent = rest;
+    byId("missing-continue").textContent = without;
+    if (panel() === null && !dialog("missing").open) showDialog("missing", button("missing-again"));
+  },
+  closeReport: () => dialog("missing").close(),
+});
+
+button("bring-choose").addEventListener("click", () => field("bring-chosen").click());
+field("bring-chosen").addEventListener("change", () => {
+  const files = [...(field("bring-chosen").files ?? [])];
+  // Choosing them again is a change, too.
+  field("bring-chosen").value = "";
+  if (files.length === 0) return;
+  dialog("bring").close("chosen");
+  openByHand(files);
+});
+dialog("bring").addEventListener("close", () => {
+  // Escape leaves it empty.
+  if (["later", ""].includes(dialog("bring").returnValue)) send({ event: "later" });
+  if (document.activeElement === document.body) focusCanvas();
+});
+button("missing-again").addEventListener("click", () => {
+  dialog("missing").close();
+  send({ event: "tryAgain" });
+});
