@@ -1,5 +1,6 @@
 // Links on the page: shared and opened elsewhere, with parts that can't be loaded, back and forward, and the page
-// embedded in another one, which never learns what the user dropped.
+// embedded in another one, which never learns what the user dropped. What happens in which order is tested without a browser, in
+// crates/session.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -9,7 +10,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, PIXEL_RATIO, apply, drop, eventually, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -184,22 +185,6 @@ for (const renderer of BACK_ENDS)
       fs.rmSync(path.join(folder, "late.glb"));
     });
 
-    const goneFox = () =>
-      fragment([["model", `${servers.own.origin}/gone/Fox.glb?v=1`], ["clip", "Run"], ["t", 0.5], ["play", 0]]);
-    onPage("applies the link to a dropped copy of a model that can't be loaded", goneFox, async (page) => {
-      await whenMissing(page);
-      assert.match((await missing(page)).join(), /Fox\.glb\?v=1: .*404/);
-      await page.locator("#missing-continue").click();
-      assert.equal(await page.locator("#bring").isVisible(), false, "the page doesn't ask for it");
-      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
-      // The file is shown by itself for a moment, and the view has the link's time all along.
-      await until(page, async () => (await window.gaitway.pose()).clip === "Run");
-      await whenShown(page, FOX_VERTICES);
-      const { clip, time_secs } = await pose(page);
-      assert.deepEqual([clip, time_secs], ["Run", 0.5]);
-      assert.deepEqual((await state(page)).model, ["Fox.glb"]);
-    });
-
     onPage("takes a GitHub page for the file that it shows", () => "", async (page) => {
       await page.route("https://raw.githubusercontent.com/**", (route) =>
         route.fulfill({ path: dataFile(FOX), headers: { "access-control-allow-origin": "*" } }),
@@ -307,22 +292,6 @@ for (const renderer of BACK_ENDS)
       for (const part of ["motion=file:walk.bvh", "clip=run", "fov=30", "camera=10,5,30,9,1,9"]) assert.ok(link.includes(part), `${part} in ${link}`);
     });
 
-    const LACKING = "model=sample:pilot&motion=file:walk.bvh&clip=run&fov=20&play=0";
-    onPage("keeps what is set while it lacks a file, over a restart and a reload", () => LACKING, async (page) => {
-      await page.keyboard.press("Escape");
-      await apply(page, { exposure: 1 });
-      await until(page, () => location.hash.includes("exposure=1"));
-      assert.ok(page.url().includes("motion=file:walk.bvh"), page.url());
-      await stopAndRestart(page);
-      assert.equal((await state(page)).exposure, 1);
-      await page.locator("#bring").waitFor({ state: "visible" });
-      assert.match(await page.locator("#bring-files").innerText(), /^walk\.bvh \(motion\)$/);
-      await page.reload();
-      await whenReady(page);
-      assert.equal((await state(page)).exposure, 1);
-      await page.locator("#bring").waitFor({ state: "visible" });
-    });
-
     onPage("goes back from a program that has stopped to files that the page holds", () => "model=sample:walker&play=0", async (page) => {
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenModel(page, "Fox.glb");
@@ -340,35 +309,6 @@ for (const renderer of BACK_ENDS)
       await whenModel(page, "Man.glb");
       await stopAndRestart(page);
       assert.deepEqual((await state(page)).model, ["Man.glb"]);
-    });
-
-    onPage("gives way to what is opened or gone to while it loads", () => fragment([["model", site.data(FOX)], ["play", 0]]), async (page) => {
-      /** @type {(() => void)[]} */
-      const waiting = [];
-      await page.route("https://slow.example/**", async (route) => {
-        await new Promise((resolve) => void waiting.push(() => resolve(undefined)));
-        await route.fulfill({ path: dataFile(XBOT), headers: { "access-control-allow-origin": "*" } });
-      });
-      const followSlow = async () => {
-        await page.evaluate(() => void (location.hash = "model=https://slow.example/Xbot.glb"));
-        await eventually(() => waiting.length > 0, "the server should be asked");
-      };
-      const answer = async () => {
-        waiting.splice(0).forEach((release) => release());
-        await page.waitForTimeout(1000);
-        assert.equal(await page.locator("#missing").isVisible(), false);
-      };
-      await followSlow();
-      await page.goBack();
-      await answer();
-      assert.deepEqual((await state(page)).model, [site.data(FOX)]);
-      assert.ok(page.url().includes(encodeURIComponent(site.data(FOX))) || page.url().includes(site.data(FOX)), page.url());
-      await followSlow();
-      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
-      await whenModel(page, "CesiumMan.glb");
-      await answer();
-      assert.deepEqual((await state(page)).model, ["CesiumMan.glb"]);
-      await until(page, () => location.hash.includes("CesiumMan.glb"));
     });
 
     onPage("waits for an archive that the user has to bring and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
@@ -422,20 +362,6 @@ for (const renderer of BACK_ENDS)
       await page.finish();
     });
 
-    onPage("follows another link in the address bar", () => fragment([["model", site.data(FOX)]]), async (page) => {
-      await page.evaluate((hash) => void (location.hash = hash), fragment([["model", site.data(CESIUM_MAN)], ["t", 0.5], ["play", 0]]));
-      await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.equal((await pose(page)).time_secs, 0.5);
-      await page.evaluate((hash) => void (location.hash = hash), fragment([["model", site.data("nothing.glb")]]));
-      await whenMissing(page);
-      assert.match((await missing(page)).join(), /nothing\.glb: .*404/);
-      await page.locator("#missing-continue").click();
-      assert.equal((await pose(page)).meshes[0].positions.length, 3 * CESIUM_MAN_VERTICES, "the view stays as it was");
-      await page.goBack();
-      await page.goBack();
-      await whenShown(page, FOX_VERTICES);
-    });
-
     const TWO_LOCAL = () => fragment([["model", "file:Fox.glb"], ["model", "file:CesiumMan.glb"], ["clip", "Run"], ["t", 0.5], ["play", 0]]);
     onPage("waits for two models and shows the first", TWO_LOCAL, async (page) => {
       await page.locator("#bring-later").click();
@@ -445,70 +371,6 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual((await state(page)).model, ["Fox.glb", "CesiumMan.glb"]);
       assert.equal((await pose(page)).time_secs, 0.5);
       assert.equal(await page.locator("#missing").isVisible(), false);
-    });
-
-    const borrowing = () => fragment([["model", site.data(XBOT)], ["play", 0]]);
-    onPage("goes back from a model that the earlier motion doesn't fit", borrowing, async (page) => {
-      await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
-      await whenBorrowed(page, 1);
-      await apply(page, { t: 1, play: 0 });
-      await until(page, () => location.hash.includes("t=1"));
-      await page.evaluate(() => void (location.hash = "model=sample:morphs"));
-      await whenModel(page, "sample:morphs");
-      await page.goBack();
-      await whenModel(page, site.data(XBOT));
-      await until(page, async () => (await window.gaitway.state()).motion.join() === "dance.bvh");
-      assert.equal((await state(page)).t, 1);
-      assert.equal(await page.locator("#missing").isVisible(), false);
-      assert.equal(await page.locator("#bring").isVisible(), false);
-    });
-
-    onPage("shows the open files when the address is edited", () => fragment([["model", site.data(FOX)], ["play", 0]]), async (page) => {
-      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
-      await whenShown(page, CESIUM_MAN_VERTICES);
-      await apply(page, { t: 0.5, play: 0 });
-      await until(page, () => location.hash.includes("t=0.5"));
-      assert.ok(page.url().includes("model=file:CesiumMan.glb"), page.url());
-      await page.evaluate(() => void (location.hash = location.hash.replace("t=0.5", "t=1&exposure=1")));
-      await until(page, async () => (await window.gaitway.state()).exposure === 1);
-      const { model, t } = await state(page);
-      assert.deepEqual([model, t], [["CesiumMan.glb"], 1]);
-      assert.equal((await pose(page)).meshes[0].positions.length, 3 * CESIUM_MAN_VERTICES);
-      assert.equal(await page.locator("#bring").isVisible(), false);
-      // Nobody has opened this one.
-      await page.evaluate(() => void (location.hash = location.hash.replace("CesiumMan", "CesiumWoman")));
-      await page.locator("#bring").waitFor({ state: "visible" });
-      assert.match(await page.locator("#bring-files").innerText(), /^CesiumWoman\.glb \(model\)$/);
-      await page.keyboard.press("Escape");
-      await page.goBack();
-      await page.goBack();
-      await until(page, async () => (await window.gaitway.state()).t === 0.5);
-      await whenShown(page, CESIUM_MAN_VERTICES);
-      // Another model has been opened since.
-      const { hash } = new URL(page.url());
-      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
-      await until(page, () => location.hash.includes("Fox.glb"));
-      await page.evaluate((hash) => void (location.hash = `${hash}&exposure=1`), hash);
-      await until(page, async () => (await window.gaitway.state()).exposure === 1);
-      await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.equal(await page.locator("#bring").isVisible(), false);
-    });
-
-    onPage("lends a motion to the model that is on its way", () => fragment([["model", "sample:walker"], ["play", 0]]), async (page) => {
-      /** @type {() => void} */
-      let release = () => {};
-      const released = new Promise((resolve) => void (release = () => resolve(undefined)));
-      await page.route("https://slow.example/**", async (route) => {
-        await released;
-        await route.fulfill({ path: dataFile(XBOT), headers: { "access-control-allow-origin": "*" } });
-      });
-      await drop(page, [{ link: "https://slow.example/Xbot.glb" }]);
-      await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
-      await page.waitForTimeout(500);
-      assert.deepEqual((await state(page)).motion, []);
-      release();
-      await whenModel(page, "https://slow.example/Xbot.glb");
-      await until(page, async () => (await window.gaitway.state()).motion.join() === "dance.bvh");
     });
 
     const NOTHING = { result: undefined, error: undefined, code: undefined };

@@ -201,7 +201,7 @@ async function showFirstFrame(canvas, bindings, presentFrames) {
 function callsFor(bindings) {
   const isCurrent = () => current === bindings;
   // The session asks the program, which can't answer during its own calls.
-  const later = (/** @type {import("./types.d.ts").SessionEvent} */ event) => queueMicrotask(() => isCurrent() && send(event));
+  const tell = (/** @type {import("./types.d.ts").SessionEvent} */ event) => queueMicrotask(() => isCurrent() && send(event));
   return {
     choose: showOpenDialog,
     gallery: showGallery,
@@ -210,8 +210,8 @@ function callsFor(bindings) {
     record: (name, width, height, framesPerSec, frameCount, isTransparent, format) => record(name, { width, height, framesPerSec, frameCount, isTransparent, format, frame: bindings.video_frame }),
     cancelRecording,
     validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),
-    share: (link) => later({ event: "share", link }),
-    visit: (address) => (address.startsWith("#") ? later({ event: "visit", link: address.slice(1) }) : void open(address, "_blank", "noopener")),
+    share: (link) => tell({ event: "share", link }),
+    visit: (address) => (address.startsWith("#") ? tell({ event: "visit", link: address.slice(1) }) : void open(address, "_blank", "noopener")),
     hasFullscreen,
     toggleFullscreen,
     theme,

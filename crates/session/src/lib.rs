@@ -14,11 +14,12 @@
 //! | effects | do |
 //! | --- | --- |
 //! | `Run`, `Restart`, `LoadImages` | start the program |
-//! | `Read`, `Show`, `Forget`, `Follow`, `FindReferences` | tasks: they take time, and one event answers each, in any order |
+//! | `Read`, `Show`, `Follow`, `FindReferences` | tasks: they take time, and one event answers each, in any order |
 //! | `Push`, `Replace`, `SettleSoon` | keep the browser's history |
 //! | `Ask`, `CloseAsk`, `Report`, `CloseReport`, `Share`, `Visit` | dialogs |
 //! | `Notify`, `SayProblem`, `Refuse`, `ForgetProblem`, `Announce`, `HideGallery`, `Focus` | tell the user |
-//! | `Reply`, `Reject`, `Release` | answer scripts, and forget files |
+//! | `Reply`, `Reject` | answer scripts |
+//! | `Forget`, `Release` | forget what tasks have read and opened, and files |
 //!
 //! **The latest wins.** What is asked for is numbered, whether it opens or follows, and what has begun later overtakes
 //! what began before: that does nothing more, and the program cancels what it is still loading for it. Reading files comes before
