@@ -380,10 +380,7 @@ impl World {
                 };
                 self.load(task, Load::Items { items, role, is_private });
             }
-            Effect::Forget { task } => {
-                let is_known = self.read.remove(&task).is_some() | self.documents.remove(&task);
-                assert!(is_known, "the task has read or opened something");
-            }
+            Effect::Forget { task } => self.forget(task),
             Effect::Follow { task, link, reload } => self.follow(task, link, reload),
             Effect::FindReferences { task, items } => self.find_references(task, &items),
             Effect::Push { state, link } => {
@@ -408,24 +405,32 @@ impl World {
                 self.due.retain(|due| *due != Due::Settle);
                 self.due.push(Due::Settle);
             }
-            Effect::Reply { request, task } => {
-                assert!(self.documents.contains(&task), "the answer is known");
-                self.answers.get_mut(&request).expect("a request").push(Ok(task));
-            }
-            Effect::Announce { task, .. } => {
-                assert!(self.documents.contains(&task), "it is known what was opened");
-                self.told.push(effect);
-            }
-            Effect::Reject { request, failure } => {
-                self.answers.get_mut(&request).expect("a request").push(Err(failure));
-            }
+            Effect::Reply { request, task } => self.answer(request, Ok(task)),
+            Effect::Reject { request, failure } => self.answer(request, Err(failure)),
             Effect::Release { files } => {
                 for file in files {
                     self.files.remove(&file).expect("a file that the page keeps");
                 }
             }
-            other => self.told.push(other),
+            other => {
+                if let Effect::Announce { task, .. } = other {
+                    assert!(self.documents.contains(&task), "it is known what was opened");
+                }
+                self.told.push(other);
+            }
         }
+    }
+
+    fn answer(&mut self, request: RequestId, answer: Result<TaskId, Failure>) {
+        if let Ok(task) = &answer {
+            assert!(self.documents.contains(task), "it is known what was opened");
+        }
+        self.answers.get_mut(&request).expect("a request").push(answer);
+    }
+
+    fn forget(&mut self, task: TaskId) {
+        let is_known = self.read.remove(&task).is_some() | self.documents.remove(&task);
+        assert!(is_known, "the task has read or opened something");
     }
 
     fn load(&mut self, task: TaskId, load: Load) {
