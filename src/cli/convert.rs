@@ -8,8 +8,8 @@ use super::{ConvertArguments, Unit, open, print_warnings};
 use crate::asset::Asset;
 use crate::editor::{ClipFormat, Export, write_clip};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
-use crate::formats::{LoadOptions, convert_named, load_named, write_model};
-use crate::library::Model;
+use crate::formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_renamed_model};
+use crate::library::{ClipEdits, ClipId, Library, Model, ModelClip};
 use crate::retarget::ChangedClip;
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
@@ -56,16 +56,7 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         }
         print_warnings(&name, &asset.warnings);
         let extensions = model_extensions(&asset);
-        let model = Model::new(name.clone(), asset, Vec::new());
-        let changed = changed_clip(&model, arguments)?;
-        let clip = if arguments.edits.name.is_some() { changed.clip } else { changed.renamed() };
-        if !clip.properties().is_empty() {
-            warn(&format!(
-                "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
-            ));
-        }
-        let bytes = write_model(&set, &name, &model.asset.skeleton, &[&clip])?;
-        return Ok((bytes, extensions));
+        return Ok((edited(&set, name, asset, arguments)?, extensions));
     }
     if let Some(clip) = &arguments.clip {
         let failure = Failure::expected("a .bvh or .vrma for one clip", format!("clip {clip} of a .glb"));
@@ -78,6 +69,33 @@ fn unposed(arguments: &ConvertArguments, disk: &Disk) -> Outcome<(Vec<u8>, Vec<&
         write_model(&set, &name, &asset.skeleton, &[])?
     };
     Ok((bytes, model_extensions(&asset)))
+}
+
+/// Writes a model with one of its clips renamed, or with the clip added as it is changed.
+fn edited(set: &FileSet, name: String, asset: Asset, arguments: &ConvertArguments) -> Outcome<Vec<u8>> {
+    let clip = ClipId::Own(choose_clip(&name, &asset, arguments.clip.as_deref())?);
+    let mut library = Library::default();
+    library.add(Model::new(name, asset, Vec::new()));
+    let names = arguments.edits.name.iter().map(|name| (clip.clone(), name.clone()));
+    library.edit_clips(&ClipEdits { names: names.collect(), ..ClipEdits::default() });
+    let Some(model) = library.active() else { return Err(Failure::new("there is no model")) };
+    let (name, clips) = (&model.source, model.clips());
+    if let (Some(asked), Some(title)) = (&arguments.edits.name, clips.get(&clip).map(ModelClip::title))
+        && asked != title
+    {
+        warn(&format!("{name}: another clip is called “{asked}”; this one is written as “{title}”"));
+    }
+    if arguments.edits.is_name_only() {
+        return Ok(write_renamed_model(set, name, &model.asset.skeleton, &clips.saved_names(None).own, &[])?);
+    }
+    let names = clips.saved_names(Some(&clip));
+    let added = changed_clip(model, arguments)?.clip.with_name(names.added);
+    if !added.properties().is_empty() {
+        warn(&format!(
+            "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
+        ));
+    }
+    Ok(write_renamed_model(set, name, &model.asset.skeleton, &names.own, &[&added])?)
 }
 
 /// Writes one clip with its skeleton.

@@ -14,6 +14,7 @@ use crate::state::one_line;
 #[derive(Debug, Args)]
 pub(super) struct EditOptions {
     /// The name of the written clip [default: its own, that of its file if it has none, or “NAME (changed)” beside the original].
+    /// `convert` to .glb replaces the name of a clip that is otherwise unchanged.
     #[arg(long, value_name = "NAME", value_parser = read_name)]
     pub name: Option<String>,
     #[command(flatten)]
@@ -32,7 +33,12 @@ fn read_name(text: &str) -> Result<String, String> {
 impl EditOptions {
     /// Returns whether the clip stays as it is.
     pub(super) fn is_none(&self) -> bool {
-        self.name.is_none() && self.changes.changes().is_none() && self.layers.layers.is_empty() && self.pins.is_empty()
+        self.name.is_none() && self.is_name_only()
+    }
+
+    /// Returns whether the clip stays as it is except for its name.
+    pub(super) fn is_name_only(&self) -> bool {
+        self.changes.changes().is_none() && self.layers.layers.is_empty() && self.pins.is_empty()
     }
 
     /// Returns the clip with its changes, layers, pins and name. `is_looped` says that the number of loops was given: none are added

@@ -8,10 +8,9 @@ use glam::Vec3;
 use super::names::stem;
 use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::anim::Clip;
-use crate::formats::{write_model, write_motion};
+use crate::formats::{write_model, write_motion, write_renamed_model};
 use crate::frame::{Frame, evaluate};
 use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
-use crate::retarget::ChangedClip;
 use crate::state::{ViewerState, active_clip, active_map, take_of, written_skeleton};
 
 /// Why a model without its images isn't written or recorded.
@@ -77,10 +76,15 @@ pub fn derived_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a Mod
     active_clip(model, state).filter(|clip| is_derived(model, state, clip))
 }
 
-/// Whether a clip as it plays is not in the model's file: it is retargeted, changed, below layers or what is set manually, or
-/// pinned.
+/// Whether a clip as it plays is not in the model's file, or under another name.
 fn is_derived(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
-    clip.is_derived() || take_of(model, Some(clip), state).is_more_than_clip()
+    clip.is_renamed() || !is_in_file(model, state, clip)
+}
+
+/// Whether a clip as it plays is in the model's file, perhaps under another name: it is not retargeted, changed, below layers or what
+/// is set manually, nor pinned.
+fn is_in_file(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
+    clip.is_in_file() && !take_of(model, Some(clip), state).is_more_than_clip()
 }
 
 const NO_SUCH_CLIP: &str = "there is no such clip";
@@ -173,30 +177,39 @@ impl Editor {
         Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
     }
 
-    /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
+    /// Writes the model's own file, with the clip appended if it isn't there except for its name; without a file, only skeleton and
+    /// clip.
     fn export_model(&self, clip: &ClipId) -> Result<ExportedFile, String> {
         let model = self.complete_model()?;
         let clip = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
         if !is_derived(model, &self.state, clip) {
             return Err("the model's file already contains this clip".to_owned());
         }
-        let mut baked = self.baked_clip(model, clip);
-        if clip.is_from_file() && !clip.is_renamed() {
-            baked.clip = ChangedClip { clip: baked.clip, seam: None }.renamed();
-        }
-        let clips = [&baked.clip];
-        baked.remarks.extend(about_properties(clips[0]).map(Cow::from));
         let skeleton = written_skeleton(model, &self.state, None);
-        let bytes = match self.files_of(model) {
-            Some(ModelFiles { set, name }) => write_model(set, name, &skeleton, &clips),
-            None => {
-                baked.remarks.push("Skeleton and clip only: this model has no file to add a clip to.".into());
-                write_motion(&model.asset, &skeleton, &clips)
+        let files = self.files_of(model);
+        let mut remarks = Vec::new();
+        let bytes = match files {
+            Some(ModelFiles { set, name }) if is_in_file(model, &self.state, clip) => {
+                write_renamed_model(set, name, &skeleton, &model.clips().saved_names(None).own, &[])
+            }
+            _ => {
+                let names = model.clips().saved_names(Some(clip.id()));
+                let baked = self.baked_clip(model, clip);
+                let added = baked.clip.with_name(names.added);
+                remarks = baked.remarks;
+                remarks.extend(about_properties(&added).map(Cow::from));
+                match files {
+                    Some(ModelFiles { set, name }) => write_renamed_model(set, name, &skeleton, &names.own, &[&added]),
+                    None => {
+                        remarks.push("Skeleton and clip only: this model has no file to add a clip to.".into());
+                        write_motion(&model.asset, &skeleton, &[&added])
+                    }
+                }
             }
         };
         let name = format!("{}.glb", self.stem_with_clip(Some(clip)));
         let bytes = bytes.map_err(|error| error.to_string())?;
-        Ok(ExportedFile::new(name, bytes).with_remarks(&baked.remarks))
+        Ok(ExportedFile::new(name, bytes).with_remarks(&remarks))
     }
 
     fn baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {

@@ -5,7 +5,7 @@ use super::clip_names::look_up_clip;
 use super::playhead::active_clip;
 use super::{ClipChoice, Playhead, ViewerState};
 use crate::anim::{TimeRange, clip_time};
-use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip};
+use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip, free_name};
 use crate::retarget::ClipChanges;
 
 /// Drops edits and layers of clips whose motion was removed.
@@ -84,16 +84,14 @@ fn remove_copy(state: &mut ViewerState, model: &Model, copy: &ModelClip) {
 
 fn rename(state: &mut ViewerState, model: &Model, clip: &ModelClip, name: &str) {
     let names = &mut state.character.edits.clips.names;
-    let is_free = |name: &String| model.clips().iter().all(|other| other.id() == clip.id() || other.title() != name);
-    let numbered = (2..).map(|number: u32| format!("{name} ({number})"));
-    let free = std::iter::once(name.to_owned()).chain(numbered).find(is_free);
+    let is_free = |name: &str| model.clips().iter().all(|other| other.id() == clip.id() || other.title() != name);
     let restores = name.is_empty() || (clip.is_renamed() && name == clip.unchanged().name());
     match (restores, clip.is_copy()) {
         // Copies have no other name.
         (true, true) => {}
         (true, false) => drop(names.remove(clip.id())),
         (false, _) if name == clip.title() => {}
-        (false, _) => names.extend(free.map(|free| (clip.id().clone(), free))),
+        (false, _) => drop(names.insert(clip.id().clone(), free_name(name, is_free))),
     }
 }
 

@@ -510,11 +510,18 @@ fn a_written_clip_has_the_name_that_was_asked_for_or_that_of_its_file() {
     assert!(run(&[&retarget[..], &[&motion, "--name", "Stroll: 1"]].concat()).status.success());
     assert_eq!(clip_names(&out), ["Stroll: 1"]);
     assert!(run(&["convert", &motion, "--name", "Stroll", "--out", &out]).status.success());
-    assert_eq!(clip_names(&out), ["walk", "Stroll"], "a whole model keeps its own");
+    assert_eq!(clip_names(&out), ["Stroll"]);
+    assert!(run(&["convert", &motion, "--name", "Stroll", "--turn", "10", "--out", &out]).status.success());
+    assert_eq!(clip_names(&out), ["walk", "Stroll"], "a whole model keeps the original of a changed clip");
+    let pilot = ["convert", "sample:pilot", "--out", &out, "--clip", "0"];
+    let own = clip_names("sample:pilot");
+    let output = run(&[&pilot[..], &["--name", &own[1]]].concat());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("another clip"), "{output:?}");
+    assert_eq!(clip_names(&out), [&[format!("{} (2)", own[1])], &own[1..]].concat());
     check_fails(&["convert", &motion, "--name", " ", "--out", &out], 2, "not empty");
     // The name that Mixamo gives to every clip says nothing.
     let mixamo = path("Samba.glb");
     assert!(run(&["convert", &motion, "--name", "mixamo.com", "--out", &mixamo]).status.success());
     assert!(run(&[&retarget[..], &[&mixamo, "--clip", "mixamo.com"]].concat()).status.success());
-    assert_eq!(clip_names(&out), ["Samba 1"]);
+    assert_eq!(clip_names(&out), ["Samba"]);
 }

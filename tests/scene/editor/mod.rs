@@ -9,6 +9,7 @@ mod maps;
 mod motions;
 mod open;
 mod reduced_motion;
+mod saved_names;
 mod undo;
 mod validation;
 

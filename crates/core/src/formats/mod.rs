@@ -33,7 +33,7 @@ mod obj;
 mod part;
 mod prepare;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub use error::LoadError;
 pub use file_set::FileSet;
@@ -130,13 +130,29 @@ pub fn load_noticing_images(
 /// first buffer is the beginning of the new one, and its JSON only grows. Other formats take joint names and rest pose from
 /// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    write_renamed_model(files, name, skeleton, &BTreeMap::new(), clips)
+}
+
+/// Like [`write_model`], with other names for some of the model's own clips, by their index.
+pub fn write_renamed_model(
+    files: &FileSet,
+    name: &str,
+    skeleton: &Skeleton,
+    clip_names: &BTreeMap<usize, String>,
+    clips: &[&Clip],
+) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, name)?;
     if !is_converted(name, bytes) {
-        return gltf::write_model(files, name, skeleton, clips);
+        return gltf::write_model(files, name, skeleton, clip_names, clips);
     }
     let asset = read(files, name, bytes, &LoadOptions::default(), &mut |_| ())?;
     check_skeleton(name, &asset, skeleton)?;
-    let all: Vec<&Clip> = asset.clips.iter().chain(clips.iter().copied()).collect();
+    let renamed = |(index, clip): (usize, &Clip)| match clip_names.get(&index) {
+        Some(name) => clip.clone().with_name(name.clone()),
+        None => clip.clone(),
+    };
+    let own: Vec<Clip> = asset.clips.iter().enumerate().map(renamed).collect();
+    let all: Vec<&Clip> = own.iter().chain(clips.iter().copied()).collect();
     gltf::write_asset(&asset, skeleton, &all)
 }
 
@@ -196,7 +212,7 @@ pub fn convert_named(files: &FileSet, name: &str, options: &LoadOptions) -> Resu
     if is_converted(name, bytes) {
         return gltf::write_asset(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
-    gltf::write_model(files, name, &asset.skeleton, &[])
+    gltf::write_model(files, name, &asset.skeleton, &BTreeMap::new(), &[])
 }
 
 fn read(

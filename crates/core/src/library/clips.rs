@@ -283,9 +283,14 @@ impl ModelClip {
         self.is_renamed
     }
 
-    /// Whether it is retargeted, changed, renamed or a copy, so that the model's file lacks it.
+    /// Whether the model's file has it as it is, perhaps under another name.
+    pub fn is_in_file(&self) -> bool {
+        self.is_from_file() && self.changed.is_none()
+    }
+
+    /// Whether it is retargeted, changed, renamed or a copy, so that the model's file lacks it or has it under another name.
     pub fn is_derived(&self) -> bool {
-        self.borrowed.is_some() || self.changed.is_some() || self.is_copy() || self.is_renamed
+        !self.is_in_file() || self.is_renamed
     }
 
     /// The root-motion joint, which carries the character: the topmost translated joint of the skin, else the topmost translated
@@ -303,6 +308,15 @@ impl ModelClip {
     pub fn duration_secs(&self) -> f64 {
         f64::from(self.clip().duration_secs())
     }
+}
+
+/// What clips are called in a copy of the model's file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SavedNames {
+    /// The names that replace those in the file, by the indices of its clips.
+    pub own: BTreeMap<usize, String>,
+    /// The name of the clip that is added; empty if none is.
+    pub added: String,
 }
 
 /// The clips of a model: its own, then the retargeted ones by motion, then copies.
@@ -333,8 +347,11 @@ impl Clips {
             let title = titles.unique(name.unwrap_or(untitled));
             clips.list.push(ModelClip { id, title, is_renamed, ..clip });
         };
-        for (index, clip) in asset.clips.iter().enumerate() {
-            let root = roots.get(index).copied().flatten();
+        // Names that are given in a link yield to those of the file.
+        let own = || (0..asset.clips.len()).map(|index| (index, edits.names.contains_key(&ClipId::Own(index))));
+        let in_file = own().filter(|(_, is_renamed)| !is_renamed);
+        for (index, _) in in_file.chain(own().filter(|(_, is_renamed)| *is_renamed)) {
+            let (clip, root) = (&asset.clips[index], roots.get(index).copied().flatten());
             let untitled = match clip.name().trim() {
                 "" => format!("Clip {index}"),
                 _ if is_named(clip) => clip.name().to_owned(),
@@ -342,6 +359,7 @@ impl Clips {
             };
             add(&mut clips, ClipId::Own(index), untitled, ModelClip::of(clip.clone(), root, None));
         }
+        clips.list.sort_by(|first, second| first.id.cmp(&second.id));
         for borrowed in borrowed {
             let id = ClipId::Borrowed(borrowed.motion.clone(), borrowed.source_clip);
             let named = is_named(&borrowed.clip);
@@ -420,6 +438,39 @@ impl Clips {
         self.list.iter().filter(|clip| !clip.is_copy()).filter_map(|clip| Some((clip, clip.borrowed()?)))
     }
 
+    /// Returns the names of clips in a copy of the model's file that `added` is added to; `None` if nothing is. A renamed clip that the
+    /// file has is called so there. The file has the originals of changed clips under their own names, with a number if those are
+    /// taken now.
+    pub fn saved_names(&self, added: Option<&ClipId>) -> SavedNames {
+        let is_added = |clip: &ModelClip| added == Some(&clip.id);
+        // The name of the clip is not that of its original, which the file has.
+        let has_original = |clip: &ModelClip| clip.is_renamed && (!clip.is_in_file() || is_added(clip));
+        let is_taken = |clip: &&ModelClip| is_added(clip) || (clip.is_from_file() && !has_original(clip));
+        let mut taken: BTreeSet<String> =
+            self.list.iter().filter(is_taken).map(|clip| clip.file_name().to_owned()).collect();
+        let mut own = BTreeMap::new();
+        for clip in &self.list {
+            let ClipId::Own(index) = clip.id else { continue };
+            if clip.is_renamed && !has_original(clip) {
+                own.insert(index, clip.title.clone());
+            }
+        }
+        for clip in self.list.iter().filter(|clip| has_original(clip)) {
+            let (ClipId::Own(index), name) = (&clip.id, clip.original.name()) else { continue };
+            if !name.is_empty() && !taken.insert(name.to_owned()) {
+                let free = free_name(name, |name| !taken.contains(name));
+                taken.insert(free.clone());
+                own.insert(*index, free);
+            }
+        }
+        let added =
+            self.list.iter().find(|clip| is_added(clip)).map(|clip| match clip.is_from_file() && !clip.is_renamed {
+                true => free_name(&format!("{} (changed)", clip.file_name()), |name| !taken.contains(name)),
+                false => clip.file_name().to_owned(),
+            });
+        SavedNames { own, added: added.unwrap_or_default() }
+    }
+
     /// The display names, in the order of the list.
     pub fn titles(&self) -> impl Iterator<Item = &str> {
         self.list.iter().map(ModelClip::title)
@@ -463,6 +514,17 @@ fn is_named(clip: &Clip) -> bool {
 pub fn clip_file_name(source: &str, clip: usize, asset: &Asset) -> Option<String> {
     let named = asset.clips.get(clip)?;
     Some(if is_named(named) { named.name().to_owned() } else { file_title(source, clip, asset.clips.len()) })
+}
+
+/// Returns a name, with a number if it isn't free.
+pub fn free_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
+    let mut free = name.to_owned();
+    let mut number = 2;
+    while !is_free(&free) {
+        free = format!("{name} ({number})");
+        number += 1;
+    }
+    free
 }
 
 /// Makes titles unique.

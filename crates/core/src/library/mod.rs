@@ -12,7 +12,9 @@ mod rig;
 mod take;
 
 pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expressions};
-pub use clips::{ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, clip_file_name};
+pub use clips::{
+    ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, SavedNames, clip_file_name, free_name,
+};
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;

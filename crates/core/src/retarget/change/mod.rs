@@ -98,14 +98,6 @@ pub struct ChangedClip {
     pub seam: Option<Seam>,
 }
 
-impl ChangedClip {
-    /// Returns the clip under a name of its own, for a file that has the original as well.
-    pub fn renamed(self) -> Clip {
-        let name = format!("{} (changed)", self.clip.name());
-        self.clip.with_name(name)
-    }
-}
-
 /// Changes a clip of an asset. `symmetry` is only called to mirror.
 pub fn change_clip(
     asset: &Asset,

@@ -1,6 +1,7 @@
-//! Writes a glTF model as one GLB, with clips added after its own.
+//! Writes a glTF model as one GLB, with clips added after its own, which may get other names.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use base64::Engine;
 use gltf::json::Root;
@@ -23,10 +24,17 @@ use crate::formats::{FileSet, extension, named};
 const BASISU: &str = "KHR_texture_basisu";
 
 /// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the
-/// same file) added after its own. Its first buffer is the beginning of the new one; indices, numbers and everything
-/// unknown are preserved. Only nodes whose matrix a clip animates get translation, rotation and scale instead, because
-/// the specification forbids animating a matrix. A GLB without anything to add or embed is returned unchanged.
-pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+/// same file) added after its own, of which some get the `names` at their indices. Its first buffer is the beginning of
+/// the new one; indices, numbers and everything unknown are preserved. Only nodes whose matrix an added clip animates get
+/// translation, rotation and scale instead, because the specification forbids animating a matrix. A GLB without anything
+/// to add, rename or embed is returned unchanged.
+pub fn model(
+    files: &FileSet,
+    file: &str,
+    skeleton: &Skeleton,
+    names: &BTreeMap<usize, String>,
+    clips: &[&Clip],
+) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
     let root = Document::read(file, &container)?.root;
@@ -38,7 +46,8 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
     }
     let outside = Outside::new(&root, container.is_glb);
-    if container.is_glb && clips.is_empty() && !outside.buffers && outside.images.is_empty() {
+    let is_unchanged = clips.is_empty() && names.is_empty();
+    if container.is_glb && is_unchanged && !outside.buffers && outside.images.is_empty() {
         return Ok(bytes.to_vec());
     }
     let mut warnings = Warnings::default();
@@ -54,6 +63,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     let added = clip::add(clips, 0, skeleton, true, counts, &mut binary)?;
     json.extend("accessors", added.accessors);
     json.extend("bufferViews", added.buffer_views);
+    rename_animations(&mut json, names);
     json.extend("animations", added.animations);
     for clip in clips {
         split_matrices(&mut json, clip, skeleton);
@@ -223,6 +233,19 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
         _ => "application/octet-stream",
     };
     by_content.map(str::to_owned).or(said).or_else(in_uri).unwrap_or_else(|| by_extension().to_owned())
+}
+
+fn rename_animations(json: &mut Object, names: &BTreeMap<usize, String>) {
+    if names.is_empty() {
+        return;
+    }
+    let mut animations: Vec<Object> = json.read("animations").unwrap_or_default();
+    for (index, name) in names {
+        if let Some(animation) = animations.get_mut(*index) {
+            animation.set("name", name);
+        }
+    }
+    json.set("animations", &animations);
 }
 
 /// Inserts the GLB's binary chunk before the first buffer, which has no data and must stay that way: only the file's
