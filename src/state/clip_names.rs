@@ -26,7 +26,18 @@ pub fn look_up_clip<'a>(model: &'a Model, clip: &ClipId) -> Option<&'a ModelClip
 /// Returns what a view that asks for an unknown clip should have asked for.
 pub(super) fn unknown_name(model: &Model, clip: &ClipId) -> UnknownName {
     let name = clip.name().map_or_else(|| clip.to_string(), str::to_owned);
-    UnknownName { kind: NameKind::Clip, name, names: model.clips().titles().map(str::to_owned).collect() }
+    let names = model.clips().iter().map(|clip| name_in_link(model, clip)).collect();
+    UnknownName { kind: NameKind::Clip, name, names }
+}
+
+/// Returns what people can call a clip in a link: its name if that is unambiguous, otherwise its title, or its index if it is renamed.
+fn name_in_link(model: &Model, clip: &ModelClip) -> String {
+    let refers = |name: &str| clip_called(model, name).is_some_and(|found| found.id() == clip.id());
+    let name = clip.unchanged().name();
+    let title = if clip.is_renamed() { None } else { Some(clip.title()) };
+    let found = [name].into_iter().chain(title).find(|name| refers(name));
+    let index = || model.clips().iter().position(|other| other.id() == clip.id()).unwrap_or_default();
+    found.map_or_else(|| index().to_string(), str::to_owned)
 }
 
 /// Returns what a link calls a clip of the active model: its name if that is unambiguous, otherwise its index, or its title if

@@ -5,7 +5,7 @@ use super::clip_names::look_up_clip;
 use super::playhead::active_clip;
 use super::{ClipChoice, Playhead, ViewerState};
 use crate::anim::{TimeRange, clip_time};
-use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip, free_name};
+use crate::library::{ClipCopy, ClipEdits, ClipId, Library, Model, ModelClip};
 use crate::retarget::ClipChanges;
 
 /// Drops edits and layers of clips whose motion was removed.
@@ -29,7 +29,7 @@ pub enum ClipEdit {
     Copy(Box<ClipChanges>),
     /// Removes it, if it is a copy. If it is active, the original plays.
     RemoveCopy,
-    /// Renames it, with a number if another clip has the name; an empty name restores the file's. Control characters are removed, and
+    /// Renames it, with a number if another clip or the rest pose has the name; an empty name restores the file's. Control characters are removed, and
     /// everything after [`MAX_NAME_CHARS`](super::MAX_NAME_CHARS).
     Rename(String),
 }
@@ -84,14 +84,13 @@ fn remove_copy(state: &mut ViewerState, model: &Model, copy: &ModelClip) {
 
 fn rename(state: &mut ViewerState, model: &Model, clip: &ModelClip, name: &str) {
     let names = &mut state.character.edits.clips.names;
-    let is_free = |name: &str| model.clips().iter().all(|other| other.id() == clip.id() || other.title() != name);
     let restores = name.is_empty() || (clip.is_renamed() && name == clip.unchanged().name());
     match (restores, clip.is_copy()) {
         // Copies have no other name.
         (true, true) => {}
         (true, false) => drop(names.remove(clip.id())),
         (false, _) if name == clip.title() => {}
-        (false, _) => drop(names.insert(clip.id().clone(), free_name(name, is_free))),
+        (false, _) => drop(names.insert(clip.id().clone(), model.clips().free_title(clip.id(), name))),
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a view asks for that its model can't show, one key at a time.
 
-use gaitway::library::Library;
+use gaitway::library::{ClipEdits, ClipId, Library};
 use gaitway::state::{from_link, view_problems};
 
 use crate::data::walker;
@@ -82,6 +82,22 @@ fn names_that_the_model_lacks_are_told_with_those_it_has() {
     let expression =
         "expression: expected the name of an expression, found “grin”; there are no expressions; it is left out";
     check(&library, "expression=grin:1", &[expression]);
+}
+
+#[test]
+fn clips_are_listed_as_links_call_them_whatever_they_are_renamed_to() {
+    let mut library = walker();
+    let renamed = [(ClipId::Own(0), "Stroll".to_owned())].into();
+    library.edit_clips(&ClipEdits { names: renamed, ..ClipEdits::default() });
+    let clip = "expected the name or index of a clip, found “Stroll!”; its clips are “Walk”, “Idle”, “Wave”";
+    for key in ["rename", "change", "copy"] {
+        let value = match key {
+            "rename" => "Stroll!:March",
+            "change" => "Stroll!:reverse",
+            _ => "March:Stroll!",
+        };
+        check(&library, &format!("{key}={value}"), &[&format!("{key}: {clip}; it is left out")]);
+    }
 }
 
 #[test]

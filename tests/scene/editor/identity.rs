@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gaitway::editor::{ClipFormat, Editor, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::{ClipId, LayeredClip, Model};
+use gaitway::library::{ClipId, LayeredClip, Model, REST_POSE};
 use gaitway::retarget::{ClipChanges, ClipLayer, JointMap};
 use gaitway::state::{ClipChoice, ClipEdit, Command, from_link, to_link};
 
@@ -174,6 +174,7 @@ fn no_two_clips_get_the_same_name_and_an_empty_one_restores_the_files() {
         title(editor).expect("plays").to_owned()
     };
     assert_eq!(rename(&mut editor, "Wave"), "Wave (2)", "another clip has the name");
+    assert_eq!(rename(&mut editor, REST_POSE), "Rest pose (2)", "the list has one");
     assert_eq!(rename(&mut editor, "Stroll"), "Stroll");
     assert_eq!(rename(&mut editor, &"x".repeat(100)), "x".repeat(80));
     assert_eq!(rename(&mut editor, " \n"), "Walk");

@@ -438,6 +438,12 @@ impl Clips {
         self.list.iter().filter(|clip| !clip.is_copy()).filter_map(|clip| Some((clip, clip.borrowed()?)))
     }
 
+    /// Returns a title for a clip: this name, with a number if another clip or the rest pose has it.
+    pub fn free_title(&self, clip: &ClipId, name: &str) -> String {
+        let others = || self.list.iter().filter(|other| other.id != *clip).map(ModelClip::title);
+        free_name(name, |name| others().chain([REST_POSE]).all(|other| other != name))
+    }
+
     /// Returns the names of clips in a copy of the model's file that `added` is added to; `None` if nothing is. A renamed clip that the
     /// file has is called so there. The file has the originals of changed clips under their own names, with a number if those are
     /// taken now.
@@ -502,6 +508,9 @@ impl ModelClip {
     }
 }
 
+/// What lists of clips call the rest pose. No clip has this title.
+pub const REST_POSE: &str = "Rest pose";
+
 /// The name of every clip that Mixamo exports, alone or within a longer one such as `Armature|mixamo.com|Layer0`.
 const MIXAMO_CLIP: &str = "mixamo.com";
 
@@ -517,7 +526,7 @@ pub fn clip_file_name(source: &str, clip: usize, asset: &Asset) -> Option<String
 }
 
 /// Returns a name, with a number if it isn't free.
-pub fn free_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
+fn free_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
     let mut free = name.to_owned();
     let mut number = 2;
     while !is_free(&free) {
@@ -528,8 +537,14 @@ pub fn free_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
 }
 
 /// Makes titles unique.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Titles(BTreeMap<String, usize>);
+
+impl Default for Titles {
+    fn default() -> Self {
+        Self(BTreeMap::from([(REST_POSE.to_owned(), 1)]))
+    }
+}
 
 impl Titles {
     /// Numbers a title that was taken before.

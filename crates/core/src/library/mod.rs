@@ -13,7 +13,7 @@ mod take;
 
 pub use borrowed::{BorrowError, BorrowedClip, map_for, proposal_for, with_expressions};
 pub use clips::{
-    ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, SavedNames, clip_file_name, free_name,
+    ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, REST_POSE, SavedNames, clip_file_name,
 };
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
