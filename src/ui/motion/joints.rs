@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui::{Align2, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
-use super::rows::{BodyPart, Filter, Row, State};
+use super::rows::{Filter, Row, State, TableSection};
 use super::{Contents, MotionTab, Pairing, detail};
 use crate::retarget::JointMap;
 use crate::state::Command;
@@ -33,7 +33,7 @@ pub(super) struct TableView {
     pub tree: bool,
     /// The first row gets the focus.
     pub takes_focus: bool,
-    folded: HashSet<BodyPart>,
+    folded: HashSet<TableSection>,
     lines: Option<Rc<Lines>>,
     /// The joint last scrolled to.
     scrolled_to: Option<usize>,
@@ -99,10 +99,10 @@ enum Line {
     Row(usize),
 }
 
-/// Heading of a part of the body.
+/// Heading of a section.
 #[derive(Debug)]
 struct Heading {
-    part: BodyPart,
+    section: TableSection,
     /// How many of its joints have a source and how many need review.
     counts: String,
     label: String,
@@ -128,11 +128,11 @@ impl Lines {
         let shown: Vec<usize> = (0..rows.len()).filter(|&row| is_shown(&rows[row])).collect();
         let mut lines = Vec::new();
         if by_body {
-            for part in BodyPart::ALL {
-                let of_part = || shown.iter().copied().filter(|&row| rows[row].part == part);
-                if of_part().next().is_some() {
-                    lines.push(Line::Heading(Heading::new(part, of_part().map(|row| &rows[row]), chosen)));
-                    lines.extend(of_part().map(Line::Row));
+            for section in TableSection::ALL {
+                let of_section = || shown.iter().copied().filter(|&row| rows[row].section == section);
+                if of_section().next().is_some() {
+                    lines.push(Line::Heading(Heading::new(section, of_section().map(|row| &rows[row]), chosen)));
+                    lines.extend(of_section().map(Line::Row));
                 }
             }
         } else {
@@ -155,7 +155,7 @@ impl Lines {
 }
 
 impl Heading {
-    fn new<'a>(part: BodyPart, rows: impl Iterator<Item = &'a Row> + Clone, chosen: Option<usize>) -> Self {
+    fn new<'a>(section: TableSection, rows: impl Iterator<Item = &'a Row> + Clone, chosen: Option<usize>) -> Self {
         let follow = rows.clone().filter(|row| row.source.is_some()).count();
         let to_review = rows.clone().filter(|row| row.needs_review).count();
         let has_chosen = rows.clone().any(|row| Some(row.number) == chosen);
@@ -164,8 +164,8 @@ impl Heading {
             let need = if to_review == 1 { "needs" } else { "need" };
             counts = format!("{to_review} {need} review · {counts}");
         }
-        let label = format!("{}, {counts}", part.title());
-        Self { part, counts, label, needs_review: to_review > 0, has_chosen }
+        let label = format!("{}, {counts}", section.title());
+        Self { section, counts, label, needs_review: to_review > 0, has_chosen }
     }
 }
 
@@ -219,17 +219,17 @@ impl Table<'_, '_> {
     /// Returns whether the rows below are shown.
     fn heading(&mut self, ui: &mut Ui, heading: &Heading, tab: &mut MotionTab) -> bool {
         let folded = &mut tab.table.folded;
-        let part = heading.part;
+        let section = heading.section;
         let has_to_open = (heading.has_chosen && self.scroll) || !self.lines.search.is_empty();
         if has_to_open {
-            folded.remove(&part);
+            folded.remove(&section);
         }
-        let open = !folded.contains(&part);
+        let open = !folded.contains(&section);
         if show_heading(ui, heading, open) {
             if open {
-                folded.insert(part)
+                folded.insert(section)
             } else {
-                folded.remove(&part)
+                folded.remove(&section)
             };
         }
         open
@@ -290,7 +290,7 @@ fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
     let role = egui::accesskit::Role::Button;
     response.widget_info(|| WidgetInfo::labeled(role, true, &heading.label));
     // A row of the table, so that headings don't divide it. No joint has a number as large.
-    accessible::cell(&response, u32::MAX as usize - heading.part as usize);
+    accessible::cell(&response, u32::MAX as usize - heading.section as usize);
     accessible::set_expanded(&response, open);
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
@@ -306,7 +306,7 @@ fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
         let at = rect.right_center() - vec2(8.0, 0.0);
         let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, &heading.counts, style::SMALL, color);
         let left = Rect::from_min_max(pos2(rect.left() + 22.0, rect.top()), pos2(drawn.left() - 6.0, rect.bottom()));
-        controls::elided(ui, left, heading.part.title(), palette.text);
+        controls::elided(ui, left, heading.section.title(), palette.text);
     }
     response.clicked()
 }

@@ -1,4 +1,4 @@
-//! Contents of the joint table: each joint's source, how certain it is, and the part of the body the joint belongs to.
+//! Contents of the joint table: each joint's source, how certain it is, and the section that the joint is in.
 //! Independent of drawing.
 
 use std::collections::BTreeMap;
@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::namespace::namespace;
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
-use crate::asset::{Asset, Slot};
-use crate::retarget::{Contradiction, JointMap, Recognized, Unmapped};
+use crate::asset::{Asset, Side, Slot};
+use crate::retarget::{BodyPart, Contradiction, JointMap, Recognized, Unmapped};
 use crate::state::muted_properties;
 use crate::ui::text;
 
@@ -34,7 +34,7 @@ pub(super) struct Row {
     pub follows: String,
     /// Needs review: something contradicts it and the user has not set it.
     pub needs_review: bool,
-    pub part: BodyPart,
+    pub section: TableSection,
     /// Number of its ancestors in the table.
     pub depth: usize,
 }
@@ -92,25 +92,26 @@ impl Filter {
     }
 }
 
+/// A section of the table when it is ordered by body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum BodyPart {
+pub(super) enum TableSection {
     Trunk,
     LeftArm,
-    LeftHand,
+    LeftFingers,
     RightArm,
-    RightHand,
+    RightFingers,
     LeftLeg,
     RightLeg,
     Other,
 }
 
-impl BodyPart {
+impl TableSection {
     pub const ALL: [Self; 8] = [
         Self::Trunk,
         Self::LeftArm,
-        Self::LeftHand,
+        Self::LeftFingers,
         Self::RightArm,
-        Self::RightHand,
+        Self::RightFingers,
         Self::LeftLeg,
         Self::RightLeg,
         Self::Other,
@@ -120,9 +121,9 @@ impl BodyPart {
         match self {
             Self::Trunk => "Trunk and head",
             Self::LeftArm => text::LEFT_ARM,
-            Self::LeftHand => "Left fingers",
+            Self::LeftFingers => "Left fingers",
             Self::RightArm => text::RIGHT_ARM,
-            Self::RightHand => "Right fingers",
+            Self::RightFingers => "Right fingers",
             Self::LeftLeg => "Left leg",
             Self::RightLeg => "Right leg",
             Self::Other => "Other joints",
@@ -130,46 +131,15 @@ impl BodyPart {
     }
 
     fn of(slot: Slot) -> Self {
-        let name = slot.name();
-        let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
-        let is_left = name.starts_with("left");
-        if side(slot).is_none() || has(&["Eye"]) {
-            Self::Trunk
-        } else if has(&["Leg", "Foot", "Toes"]) {
-            if is_left { Self::LeftLeg } else { Self::RightLeg }
-        } else if has(&["Thumb", "Index", "Middle", "Ring", "Little"]) {
-            if is_left { Self::LeftHand } else { Self::RightHand }
-        } else if is_left {
-            Self::LeftArm
-        } else {
-            Self::RightArm
+        match (BodyPart::of(slot), slot.is_finger()) {
+            (BodyPart::Hips | BodyPart::Torso | BodyPart::Head, _) => Self::Trunk,
+            (BodyPart::LeftArm, false) => Self::LeftArm,
+            (BodyPart::LeftArm, true) => Self::LeftFingers,
+            (BodyPart::RightArm, false) => Self::RightArm,
+            (BodyPart::RightArm, true) => Self::RightFingers,
+            (BodyPart::LeftLeg, _) => Self::LeftLeg,
+            (BodyPart::RightLeg, _) => Self::RightLeg,
         }
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Left,
-    Right,
-}
-
-impl Side {
-    fn other(self) -> Self {
-        match self {
-            Self::Left => Self::Right,
-            Self::Right => Self::Left,
-        }
-    }
-}
-
-fn side(slot: Slot) -> Option<Side> {
-    let name = slot.name();
-    if name.starts_with("left") {
-        Some(Side::Left)
-    } else if name.starts_with("right") {
-        Some(Side::Right)
-    } else {
-        None
     }
 }
 
@@ -186,8 +156,8 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
     let given: Vec<Option<Option<JointIndex>>> =
         skeleton.joints().map(|joint| pairing.source_in(map, skeleton.source_index(joint))).collect();
     let whole = PairFacts::new(pairing, &given);
-    // By joint; a joint without a slot belongs to the part of its parent.
-    let mut parts: Vec<BodyPart> = Vec::with_capacity(skeleton.len());
+    // By joint; a joint without a slot belongs to the section of its parent.
+    let mut sections: Vec<TableSection> = Vec::with_capacity(skeleton.len());
     let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
     let mut rows = Vec::new();
     for joint in skeleton.joints() {
@@ -195,13 +165,13 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
         let matters = given.is_some() || !has_skins || in_skin[joint.get()];
         let parent = skeleton.parent(joint);
         let slot = whole.target_slots.get(&joint).copied();
-        let above = parent.map_or(BodyPart::Other, |parent| parts[parent.get()]);
-        parts.push(slot.map_or(above, BodyPart::of));
+        let above = parent.map_or(TableSection::Other, |parent| sections[parent.get()]);
+        sections.push(slot.map_or(above, TableSection::of));
         let depth = parent.map_or(0, |parent| depths[parent.get()]);
         depths.push(depth + usize::from(matters));
         if matters {
             let mut row = whole.row(pairing, map, joint, slot, given);
-            (row.part, row.depth) = (parts[joint.get()], depth);
+            (row.section, row.depth) = (sections[joint.get()], depth);
             rows.push(row);
         }
     }
@@ -264,7 +234,7 @@ impl<'a> PairFacts<'a> {
     }
 
     fn sides(&self, target: JointIndex, source: JointIndex) -> Option<(Side, Side)> {
-        let of = |slots: &BTreeMap<JointIndex, Slot>, joint| slots.get(&joint).copied().and_then(side);
+        let of = |slots: &BTreeMap<JointIndex, Slot>, joint| slots.get(&joint).copied().and_then(Slot::side);
         Some((of(&self.target_slots, target)?, of(&self.source_slots, source)?))
     }
 
@@ -374,7 +344,7 @@ impl<'a> PairFacts<'a> {
             state,
             why,
             needs_review,
-            part: BodyPart::Other,
+            section: TableSection::Other,
             depth: 0,
         }
     }

@@ -61,15 +61,74 @@ impl Slot {
         Self::ALL.iter().copied().find(|slot| slot.name() == name)
     }
 
+    /// Left slots with those opposite.
+    pub const PAIRS: [(Self, Self); 24] = [
+        (Self::LeftEye, Self::RightEye),
+        (Self::LeftUpperLeg, Self::RightUpperLeg),
+        (Self::LeftLowerLeg, Self::RightLowerLeg),
+        (Self::LeftFoot, Self::RightFoot),
+        (Self::LeftToes, Self::RightToes),
+        (Self::LeftShoulder, Self::RightShoulder),
+        (Self::LeftUpperArm, Self::RightUpperArm),
+        (Self::LeftLowerArm, Self::RightLowerArm),
+        (Self::LeftHand, Self::RightHand),
+        (Self::LeftThumbMetacarpal, Self::RightThumbMetacarpal),
+        (Self::LeftThumbProximal, Self::RightThumbProximal),
+        (Self::LeftThumbDistal, Self::RightThumbDistal),
+        (Self::LeftIndexProximal, Self::RightIndexProximal),
+        (Self::LeftIndexIntermediate, Self::RightIndexIntermediate),
+        (Self::LeftIndexDistal, Self::RightIndexDistal),
+        (Self::LeftMiddleProximal, Self::RightMiddleProximal),
+        (Self::LeftMiddleIntermediate, Self::RightMiddleIntermediate),
+        (Self::LeftMiddleDistal, Self::RightMiddleDistal),
+        (Self::LeftRingProximal, Self::RightRingProximal),
+        (Self::LeftRingIntermediate, Self::RightRingIntermediate),
+        (Self::LeftRingDistal, Self::RightRingDistal),
+        (Self::LeftLittleProximal, Self::RightLittleProximal),
+        (Self::LeftLittleIntermediate, Self::RightLittleIntermediate),
+        (Self::LeftLittleDistal, Self::RightLittleDistal),
+    ];
+
+    /// Returns the side of the body; `None` for a slot in the middle.
+    pub fn side(self) -> Option<Side> {
+        let is_left = Self::PAIRS.iter().any(|(left, _)| *left == self);
+        let is_right = Self::PAIRS.iter().any(|(_, right)| *right == self);
+        if is_left { Some(Side::Left) } else { is_right.then_some(Side::Right) }
+    }
+
     /// Returns the slot on the other side; a slot in the middle mirrors to itself.
     pub fn mirrored(self) -> Self {
-        let name = self.name();
-        let other = match (name.strip_prefix("left"), name.strip_prefix("right")) {
-            (Some(rest), _) => format!("right{rest}"),
-            (_, Some(rest)) => format!("left{rest}"),
-            _ => return self,
+        let other = |(left, right): &(Self, Self)| match self {
+            slot if slot == *left => Some(*right),
+            slot if slot == *right => Some(*left),
+            _ => None,
         };
-        Self::from_name(&other).unwrap_or(self)
+        Self::PAIRS.iter().find_map(other).unwrap_or(self)
+    }
+
+    /// Whether it is in a finger or thumb.
+    pub fn is_finger(self) -> bool {
+        // They come last.
+        self >= Self::LeftThumbMetacarpal
+    }
+}
+
+/// A side of the body, the character's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+}
+
+impl Side {
+    /// The opposite side.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
     }
 }
 
@@ -86,5 +145,25 @@ impl Humanoid {
     /// Returns the slot of a joint, the first in [`Slot::ALL`] if it has several.
     pub fn slot(&self, joint: JointIndex) -> Option<Slot> {
         self.0.iter().find(|&(_, &other)| other == joint).map(|(&slot, _)| slot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_and_pairs_agree_with_the_names() {
+        for &slot in Slot::ALL {
+            let name = slot.name();
+            let sides = [("left", "right", Side::Left), ("right", "left", Side::Right)];
+            let named = sides
+                .iter()
+                .find_map(|(here, there, side)| Some((format!("{there}{}", name.strip_prefix(here)?), *side)));
+            assert_eq!(slot.side(), named.as_ref().map(|(_, side)| *side), "{name}");
+            assert_eq!(slot.mirrored().name(), named.map_or(name.to_owned(), |(other, _)| other));
+            let fingers = ["Thumb", "Index", "Middle", "Ring", "Little"];
+            assert_eq!(slot.is_finger(), fingers.iter().any(|finger| name.contains(finger)), "{name}");
+        }
     }
 }

@@ -20,7 +20,7 @@ use crate::avatar::{Avatar, LookAtKind};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
-pub use humanoid::{Humanoid, Slot};
+pub use humanoid::{Humanoid, Side, Slot};
 pub use panorama::Panorama;
 pub use scene_joints::SceneJoints;
 pub use warning::{Warning, Warnings};

@@ -6,9 +6,9 @@ use super::error::MapError;
 use super::file::SourceRef;
 use super::resolve::source_joint;
 use crate::anim::{Clip, JointIndex, Skeleton};
-use crate::asset::Asset;
+use crate::asset::{Asset, Side};
 use crate::mesh::Skin;
-use crate::retarget::recognize::{Name, Side};
+use crate::retarget::recognize::Name;
 
 /// Maximum number of similar names to suggest for one that is not found.
 const MAX_SUGGESTIONS: usize = 3;

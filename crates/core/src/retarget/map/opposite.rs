@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::anim::{JointIndex, Skeleton};
-use crate::retarget::recognize::{Name, Recognized, Side};
+use crate::asset::Side;
+use crate::retarget::recognize::{Name, Recognized};
 
 /// Returns for each joint its counterpart on the other side of the body; None for joints in the middle and ambiguous ones.
 pub fn opposite_joints(skeleton: &Skeleton, recognized: &Recognized) -> Vec<Option<JointIndex>> {

@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::known::{self, Known};
-use super::names::Side;
 use super::tree::Tree;
 use super::words::Word;
 use super::{Reason, RecognizedJoint};
 use crate::anim::JointIndex;
+use crate::asset::Side;
 use crate::asset::Slot::{self, *};
 
 /// Confidence by reason.
@@ -47,7 +47,7 @@ impl Search<'_> {
     /// A vocabulary wins over single words.
     fn read(&self, joint: JointIndex) -> Option<(Word, Option<Side>)> {
         match self.known.and_then(|known| known.slots.get(&joint)) {
-            Some(&slot) => Some((known::word_of(slot), known::side_of(slot))),
+            Some(&slot) => Some((known::word_of(slot), slot.side())),
             None => self.tree.word(joint).map(|word| (word, self.tree.names[joint.get()].side)),
         }
     }

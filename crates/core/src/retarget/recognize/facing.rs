@@ -5,13 +5,11 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::evidence;
-use super::known::side_of;
-use super::names::Side;
 use super::tree::Tree;
 use super::{Contradiction, Facing, Reason, RecognizedJoint};
 use crate::anim::JointIndex;
-use crate::asset::Asset;
 use crate::asset::Slot::{self, *};
+use crate::asset::{Asset, Side};
 
 /// Joints whose two sides are far enough apart to compare.
 const LIMBS: [Slot; 8] =
@@ -144,7 +142,7 @@ pub(super) fn contradictions(
         let (Some(part), Some(other)) = (parts.get(&slot), parts.get(&slot.mirrored())) else { continue };
         let sideways = (tree.position(part.joint) - tree.position(other.joint)).dot(left);
         let lies_left = sideways > 0.0;
-        if part.reason != Reason::Geometry && sideways != 0.0 && lies_left != (side_of(slot) == Some(Side::Left)) {
+        if part.reason != Reason::Geometry && sideways != 0.0 && lies_left != (slot.side() == Some(Side::Left)) {
             found.push(Contradiction::Side {
                 slot,
                 joint: part.joint,

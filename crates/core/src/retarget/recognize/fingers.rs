@@ -1,10 +1,9 @@
 //! Which of the chains on a hand is which finger, by their place in the palm.
 
 use super::known::finger_slots;
-use super::names::Side;
 use super::shape::Shape;
 use crate::anim::JointIndex;
-use crate::asset::Slot;
+use crate::asset::{Side, Slot};
 
 const CONFIDENCE: f32 = 0.6;
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use super::names::{Name, Side};
+use super::names::Name;
 use super::tree::Tree;
 use super::vocabulary::{FINGERS, VOCABULARIES, Vocabulary};
 use super::words::Word;
 use crate::anim::JointIndex;
-use crate::asset::Slot;
+use crate::asset::{Side, Slot};
 
 /// The slots of one vocabulary.
 #[derive(Debug, Default)]
@@ -26,7 +26,7 @@ pub(super) fn find(tree: &Tree) -> Option<Known> {
     let mut best: Option<(i32, Known)> = None;
     for (vocabulary, slots) in VOCABULARIES.iter().zip(&*SLOTS) {
         let (known, misfits) = read(tree, &keys, vocabulary, slots);
-        let found = known.slots.values().filter(|slot| !is_finger(**slot)).count();
+        let found = known.slots.values().filter(|slot| !slot.is_finger()).count();
         if found < MIN_SLOTS {
             continue;
         }
@@ -96,47 +96,33 @@ fn fingers(vocabulary: &Vocabulary) -> Vec<(&'static str, Slot)> {
 
 /// The word for a slot.
 pub(super) fn word_of(slot: Slot) -> Word {
-    let name = slot.name();
-    let part = name.strip_prefix("left").or_else(|| name.strip_prefix("right")).unwrap_or(name);
-    match part {
-        "hips" => Word::Pelvis,
-        "neck" => Word::Neck,
-        "head" => Word::Head,
-        "jaw" => Word::Jaw,
-        "Eye" => Word::Eye,
-        "Shoulder" => Word::Clavicle,
-        "UpperArm" => Word::UpperArm,
-        "LowerArm" => Word::LowerArm,
-        "Hand" => Word::Hand,
-        "UpperLeg" => Word::UpperLeg,
-        "LowerLeg" => Word::LowerLeg,
-        "Foot" => Word::Foot,
-        "Toes" => Word::Toes,
-        _ => match FINGERS.iter().position(|finger| finger.name().ends_with(part)) {
+    use Slot::*;
+    let left = if slot.side() == Some(Side::Right) { slot.mirrored() } else { slot };
+    match left {
+        Hips => Word::Pelvis,
+        Neck => Word::Neck,
+        Head => Word::Head,
+        Jaw => Word::Jaw,
+        LeftEye => Word::Eye,
+        LeftShoulder => Word::Clavicle,
+        LeftUpperArm => Word::UpperArm,
+        LeftLowerArm => Word::LowerArm,
+        LeftHand => Word::Hand,
+        LeftUpperLeg => Word::UpperLeg,
+        LeftLowerLeg => Word::LowerLeg,
+        LeftFoot => Word::Foot,
+        LeftToes => Word::Toes,
+        _ => match FINGERS.iter().position(|finger| *finger == left) {
             Some(at) => Word::Finger((at / 3) as u8),
             None => Word::Torso,
         },
     }
 }
 
-pub(super) fn side_of(slot: Slot) -> Option<Side> {
-    if slot.name().starts_with("left") {
-        Some(Side::Left)
-    } else if slot.name().starts_with("right") {
-        Some(Side::Right)
-    } else {
-        None
-    }
-}
-
-pub(super) fn is_finger(slot: Slot) -> bool {
-    FINGERS.contains(&slot) || FINGERS.contains(&slot.mirrored())
-}
-
 /// The parent slot in VRM 1.0, including optional ones.
 pub(super) fn parent_of(slot: Slot) -> Option<Slot> {
     use Slot::*;
-    if side_of(slot) == Some(Side::Right) {
+    if slot.side() == Some(Side::Right) {
         let left = parent_of(slot.mirrored())?;
         return Some(left.mirrored());
     }

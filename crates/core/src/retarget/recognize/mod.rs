@@ -27,8 +27,8 @@ use evidence::Evidence;
 use tree::Tree;
 
 pub(in crate::retarget) use creature::chains;
+pub use names::Name;
 pub(crate) use names::words;
-pub use names::{Name, Side};
 
 /// The result of [`recognize`]; empty for anything but a human body.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -218,7 +218,7 @@ fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTre
             .filter_map(|slot| parts.get(&slot))
             .next()
             .is_some_and(|above| tree.is_under(part.joint, above.joint));
-        if known::is_finger(slot) && !parts.contains_key(&slot) && parts.values().all(is_free) && is_under_its_parent {
+        if slot.is_finger() && !parts.contains_key(&slot) && parts.values().all(is_free) && is_under_its_parent {
             parts.insert(slot, part);
         }
     }

@@ -1,12 +1,7 @@
 //! Reads a joint's name: undoes what exporters did to it, splits it into words at separators, case changes and digits, and
 //! takes out the word for the side. `mixamorig1:LeftUpLeg`, `Left_UpLeg` and `UpLeg.L` read the same.
 
-/// Left and right are the character's own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Side {
-    Left,
-    Right,
-}
+use crate::asset::Side;
 
 /// A name split into words.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::asset::Slot;
+use crate::asset::{Side, Slot};
 use crate::retarget::Body;
 
 /// A part of the body. Every joint belongs to one: that of the nearest joint with a slot at or above it.
@@ -47,7 +47,7 @@ impl BodyPart {
             Neck | Head | LeftEye | RightEye | Jaw => Self::Head,
             LeftUpperLeg | LeftLowerLeg | LeftFoot | LeftToes => Self::LeftLeg,
             RightUpperLeg | RightLowerLeg | RightFoot | RightToes => Self::RightLeg,
-            other if other.name().starts_with("left") => Self::LeftArm,
+            other if other.side() == Some(Side::Left) => Self::LeftArm,
             _ => Self::RightArm,
         }
     }
