@@ -152,6 +152,21 @@ for (const renderer of BACK_ENDS)
       assert.equal(await leave(), undone);
     });
 
+    onPage("what an input method enters comes after what was typed", () => "model=sample:pilot&play=0", async (page) => {
+      const field = control(page, "textbox", /^Search/);
+      const box = (await field.boundingBox()) ?? assert.fail("a field");
+      await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+      await until(page, () => document.activeElement?.parentElement?.id === "stage" && document.activeElement instanceof HTMLInputElement);
+      const method = await page.context().newCDPSession(page);
+      await page.keyboard.type("le");
+      await method.send("Input.insertText", { text: "ft" });
+      await page.keyboard.type(" h");
+      await method.send("Input.imeSetComposition", { text: "a", selectionStart: 1, selectionEnd: 1 });
+      await method.send("Input.insertText", { text: "an" });
+      await page.keyboard.type("d");
+      await eventually(async () => (await field.inputValue()) === "left hand");
+    });
+
     onPage("keys reach the program while nothing has the focus", () => "play=0", async (page) => {
       assert.equal(await focused(page), null);
       await page.keyboard.press("Space");
