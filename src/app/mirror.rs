@@ -148,10 +148,10 @@ impl Plugin for Mirror {
 /// (left, top, width and height in points), and where they apply: `in` (the `id` of the innermost group, section or dialog around
 /// it), `value`, `description`, `now`, `min` and `max`, `checked` (`true`, `false` or `mixed`), `expanded`, `disabled`, `focusable`,
 /// `level`, `at` and `of` (its place in a list and the list's length, from 1), `row` (equal in the cells of a table's row), `list`
-/// (the name of the group of radio buttons that it is in).
+/// (the name of the list that it is in: tabs, a tree, a table or a group of radio buttons).
 pub fn entries(update: &TreeUpdate) -> Vec<Value> {
     let nodes = update.nodes.iter().map(|(id, node)| (*id, node)).collect();
-    let mut list = List { nodes, entries: Vec::new(), row: None, radio_group: None };
+    let mut list = List { nodes, entries: Vec::new(), row: None, list: None };
     if let Some(tree) = &update.tree {
         list.add(tree.root, None, false);
     }
@@ -184,8 +184,8 @@ struct List<'a> {
     /// Bounds of the last tree row in the same layout. ARIA allows no controls in a row, so its buttons are left out; keys replace
     /// them: arrows expand the row, others act on the selection.
     row: Option<Rect>,
-    /// Name of the radio group around.
-    radio_group: Option<&'a str>,
+    /// The innermost list around: the ARIA role of what is in it, and its name.
+    list: Option<(&'static str, &'a str)>,
 }
 
 impl<'a> List<'a> {
@@ -213,12 +213,12 @@ impl<'a> List<'a> {
             Some(_) => (group, true),
             None => (group, is_in_control),
         };
-        let (row, radio_group) = (self.row, self.radio_group);
-        if node.role() == Role::RadioGroup {
-            self.radio_group = node.label();
+        let (row, list) = (self.row, self.list);
+        if let Some(role) = role_in(node.role()) {
+            self.list = node.label().map(|name| (role, name));
         }
         node.children().iter().for_each(|child| self.add(*child, group, is_in_control));
-        self.radio_group = radio_group;
+        self.list = list;
         if role.is_none() {
             // The last row of a scrolled tree reaches under what comes below the tree.
             self.row = row;
@@ -268,7 +268,7 @@ impl<'a> List<'a> {
         set("at", node.position_in_set().map(|at| (at + 1).into()));
         set("of", node.size_of_set().map(Value::from));
         set("row", node.row_index().map(Value::from));
-        set("list", self.radio_group.filter(|_| role == "radio").map(Value::from));
+        set("list", self.list.filter(|(of, _)| *of == role).map(|(_, name)| name.into()));
         set("rect", node.bounds().map(|rect| json!([rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0])));
         entry
     }
@@ -278,6 +278,17 @@ impl<'a> List<'a> {
 fn decimals_in(text: &str) -> usize {
     let (_, fraction) = text.split_once('.').unwrap_or_default();
     fraction.bytes().take_while(u8::is_ascii_digit).count()
+}
+
+/// Returns the ARIA role of what a list consists of; `None` for anything else.
+fn role_in(list: Role) -> Option<&'static str> {
+    Some(match list {
+        Role::RadioGroup => "radio",
+        Role::TabList => "tab",
+        Role::Tree => "treeitem",
+        Role::Grid => "gridcell",
+        _ => return None,
+    })
 }
 
 /// Returns the ARIA role of a node that users read or operate; `None` for layout and decoration, of which only the children count.

@@ -205,6 +205,26 @@ fn what_is_typed_reaches_the_field_that_is_left() {
 }
 
 #[test]
+fn tabs_trees_and_tables_are_in_lists_with_names() {
+    let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
+    let tree = Arc::new(Mutex::new(None));
+    harness.ctx.add_plugin(Spy(tree.clone()));
+    for (tab, role, name) in [
+        (Tab::Info, "tab", text::INSPECTOR),
+        (Tab::Scene, "treeitem", text::NODES),
+        (Tab::Motion, "gridcell", text::JOINTS_AND_SOURCES),
+    ] {
+        harness.state_mut().panels.layout.tab = tab;
+        harness.run();
+        let update: TreeUpdate = tree.lock().expect("one thread").take().expect("a tree");
+        let entries = entries(&update);
+        let names: BTreeSet<_> =
+            entries.iter().filter(|entry| entry["role"] == role).map(|entry| entry["list"].as_str()).collect();
+        assert_eq!(names, BTreeSet::from([Some(name)]), "{role}");
+    }
+}
+
+#[test]
 fn radio_buttons_are_in_a_group_named_by_its_topic() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);
     let tree = Arc::new(Mutex::new(None));

@@ -10,8 +10,6 @@ import { takeFocus } from "./dom.js";
 const TAGS = { slider: "input", spinbutton: "input", textbox: "input", text: "span", group: "div", section: "div", dialog: "div", img: "div", progressbar: "div" };
 /** The role that ARIA requires around another one. */
 const LISTS = /** @type {const} */ ({ tab: "tablist", treeitem: "tree", radio: "radiogroup", gridcell: "grid" });
-/** Accessible names of these lists; radio buttons bring their group's. */
-const NAMES = { tablist: "Inspector", tree: "Nodes", grid: "Joints and their sources" };
 const IN_LIST = Object.values(LISTS).map((role) => `[role=${role}]`).join();
 /** Roles of entries that contain others. */
 const CONTAINERS = ["group", "section", "dialog"];
@@ -343,9 +341,9 @@ const nextIn = (parent, ends) => ends.get(parent)?.nextSibling ?? (ends.has(pare
 /**
  * Returns the list of a role at the place where the next element goes.
  * @param {HTMLElement} parent
- * @param {keyof typeof NAMES | "radiogroup" | "row"} role
+ * @param {string} role
  * @param {Ends} ends
- * @param {string} [key] Distinguishes adjacent lists of the same role; the name of a radio group.
+ * @param {string} [key] Distinguishes adjacent lists of the same role: a list's name.
  */
 function listIn(parent, role, ends, key = "") {
   /** @param {Node | null | undefined} node */
@@ -356,7 +354,7 @@ function listIn(parent, role, ends, key = "") {
   const list = asList(next) ?? document.createElement("div");
   list.setAttribute("role", role);
   list.dataset.key = key;
-  if (role !== "row") list.setAttribute("aria-label", role === "radiogroup" ? key : NAMES[role]);
+  if (role !== "row") list.setAttribute("aria-label", key);
   if (list !== next) parent.insertBefore(list, next);
   ends.set(parent, list);
   return list;

@@ -295,7 +295,9 @@ fn body(
 ) {
     let (map, tab) = (pairing.map, &mut local.motion);
     match tab.part {
-        Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
+        Section::Joints => controls::list(ui, controls::List::Table, text::JOINTS_AND_SOURCES, |ui| {
+            joints::show(ui, shown, pairing, map, contents, tab, out);
+        }),
         Section::Options => {
             if shown.clip().is_some_and(|clip| clip.borrowed().is_none()) {
                 controls::hint(ui, text::OWN_CLIP_PLAYS);

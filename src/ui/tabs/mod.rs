@@ -57,7 +57,9 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, corner_width: f
     let badge = |tab| if tab == Tab::Info { problems.clone() } else { None };
     ui.scope(|ui| {
         ui.set_max_width(ui.available_width() - corner_width);
-        if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count], badge) {
+        if let Some(tab) =
+            controls::tabs(ui, text::INSPECTOR, local.layout.open_tab(shown.library), &tabs[..count], badge)
+        {
             local.layout.tab = tab;
         }
     });

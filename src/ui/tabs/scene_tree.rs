@@ -165,7 +165,12 @@ impl SceneTree {
             let rows = self.rows(asset, shown.state);
             Rows { search: self.search.clone(), names: names.clone(), rows }
         });
-        let is_folded = !kept.rows.is_empty() && self.show_rows(ui, shown, model, &kept.rows, out);
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let is_folded = !kept.rows.is_empty()
+            && controls::list(ui, controls::List::Tree, text::NODES, |ui| {
+                self.show_rows(ui, shown, model, &kept.rows, out)
+            });
+        ui.spacing_mut().item_spacing.y = spacing;
         if kept.rows.is_empty() {
             controls::hint(ui, text::no_node_found(&self.search));
         }
@@ -183,7 +188,6 @@ impl SceneTree {
         if let Some(offset) = self.scroll_offset(ui, shown, asset, rows) {
             area = area.vertical_scroll_offset(offset);
         }
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let leap = self.leap.take();
         let scrolled = area.show_rows(ui, row_height(ui), rows.len(), |ui, visible| {
             ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
@@ -228,7 +232,6 @@ impl SceneTree {
             }
         });
         self.offset = scrolled.state.clamped_offset().y;
-        ui.spacing_mut().item_spacing.y = spacing;
         is_folded
     }
 

@@ -9,6 +9,8 @@ use crate::retarget::{RestChoice, Verdict};
 pub const MOTION_PART: &str = "Part of the Motion tab";
 /// Part of the tab: the joint table.
 pub const JOINTS: &str = "Joints";
+/// The joint table.
+pub const JOINTS_AND_SOURCES: &str = "Joints and their sources";
 /// Part of the tab: the retargeting options.
 pub const OPTIONS: &str = "Options";
 /// Part of the tab: edits of the clip, and layers over it.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use super::{ROW_HEIGHT, follow_focus, grouped, row_height, text_width};
+use super::{List, ROW_HEIGHT, follow_focus, grouped, list, row_height, text_width};
 use crate::ui::text;
 use crate::ui::widgets::{accessible, style};
 
@@ -104,15 +104,16 @@ pub fn segmented_about<T: Copy + PartialEq>(
     grouped(ui, Role::RadioGroup, topic, |ui| segments(ui, chosen, choices, row))
 }
 
-/// The tabs of a panel, of which one is open, above a line; returns the one that was pressed. Some have a badge: a text about
-/// them, shown as a dot and its tooltip.
+/// The tabs of a panel with this name, of which one is open, above a line; returns the one that was pressed. Some have a badge: a
+/// text about them, shown as a dot and its tooltip.
 pub fn tabs<T: Copy + PartialEq>(
     ui: &mut Ui,
+    panel: &str,
     open: T,
     tabs: &[(T, &str)],
     badge: impl Fn(T) -> Option<String>,
 ) -> Option<T> {
-    segments(ui, Some(open), tabs, Segments::Tabs { badge: &badge })
+    list(ui, List::Tabs, panel, |ui| segments(ui, Some(open), tabs, Segments::Tabs { badge: &badge }))
 }
 
 /// Minimum gap between the texts of neighbouring segments.

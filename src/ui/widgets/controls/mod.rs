@@ -124,6 +124,27 @@ pub fn group<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) ->
     grouped(ui, Role::Group, name, contents)
 }
 
+/// Makes a list of tabs, of rows of a tree or of cells of a table for assistive technology, with a name.
+pub fn list<R>(ui: &mut Ui, kind: List, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let role = match kind {
+        List::Tabs => Role::TabList,
+        List::Tree => Role::Tree,
+        List::Table => Role::Grid,
+    };
+    grouped(ui, role, name, contents)
+}
+
+/// What a [`list`] consists of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum List {
+    /// Tabs of a panel.
+    Tabs,
+    /// Rows of a tree.
+    Tree,
+    /// Cells of a table.
+    Table,
+}
+
 fn grouped<R>(ui: &mut Ui, role: Role, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let group = egui::UiBuilder::new().accessibility_role(role);
     ui.scope_builder(group, |ui| {
