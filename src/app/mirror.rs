@@ -53,7 +53,14 @@ impl Mirror {
             _ => return,
         };
         let (target_tree, target_node) = (TreeId::ROOT, NodeId(id));
-        self.events.push(Event::AccessKitActionRequest(ActionRequest { action, target_tree, target_node, data }));
+        let request =
+            |action, data| Event::AccessKitActionRequest(ActionRequest { action, target_tree, target_node, data });
+        if matches!(data, Some(ActionData::Value(_))) {
+            // The key that accepts or cancels a text takes the panel's focus away, but not that of the field in which the user goes
+            // on typing.
+            self.events.push(request(Action::Focus, None));
+        }
+        self.events.push(request(action, data));
     }
 
     /// Queues a key that the mirror doesn't handle itself; `name` and `code` are the `key` and `code` of the DOM's event. The code, which
@@ -72,10 +79,14 @@ impl Mirror {
         }
     }
 
-    /// Takes the events of the next frame. In each, egui moves the focus only once, however many keys ask for it.
+    /// Takes the events of the next frame. In each, egui moves the focus only once, however many keys ask for it, and a key that
+    /// accepts or cancels a text only works in a field that had the focus in the frame before.
     fn take_events(&mut self) -> Vec<Event> {
-        let moves = self.events.iter().enumerate().filter(|(_, event)| moves_focus(event));
-        let end = moves.map(|(at, _)| at).nth(1).unwrap_or(self.events.len());
+        let places = |is: fn(&Event) -> bool| self.events.iter().enumerate().filter(move |(_, event)| is(event));
+        let move_at = places(moves_focus).map(|(at, _)| at).nth(1);
+        // Alone in its frame.
+        let leave_at = places(leaves_field).map(|(at, _)| at.max(1)).next();
+        let end = move_at.into_iter().chain(leave_at).min().unwrap_or(self.events.len());
         let rest = self.events.split_off(end);
         std::mem::replace(&mut self.events, rest)
     }
@@ -83,6 +94,10 @@ impl Mirror {
 
 fn is_blur(event: &Event) -> bool {
     matches!(event, Event::AccessKitActionRequest(ActionRequest { action: Action::Blur, .. }))
+}
+
+fn leaves_field(event: &Event) -> bool {
+    matches!(event, Event::Key { key: egui::Key::Enter | egui::Key::Escape, pressed: true, .. })
 }
 
 fn moves_focus(event: &Event) -> bool {

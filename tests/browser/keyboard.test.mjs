@@ -167,6 +167,29 @@ for (const renderer of BACK_ENDS)
       await eventually(async () => (await field.inputValue()) === "left hand");
     });
 
+    onPage("after Enter or Escape, a text field shows what the program has, and typing goes on", () => "model=sample:pilot&play=0", async (page) => {
+      await control(page, "tab", "Motion").press("Enter");
+      const field = control(page, "textbox", "Clip name");
+      const isShown = (/** @type {string} */ name) => eventually(async () => (await field.inputValue()) === name, name);
+      const isNamed = (/** @type {string} */ name) => until(page, async (name) => (await window.gaitway.state()).rename.some((renamed) => renamed.endsWith(`:${name}`)), name);
+      await field.focus();
+      await page.keyboard.press("Control+A");
+      // The spaces around a name don't count.
+      await page.keyboard.type(" Stroll ");
+      await page.keyboard.press("Enter");
+      await isNamed("Stroll");
+      await isShown("Stroll");
+      await page.keyboard.type("s");
+      await page.keyboard.press("Enter");
+      await isNamed("Strolls");
+      await page.keyboard.type("!");
+      await page.keyboard.press("Escape");
+      await isShown("Strolls");
+      await page.keyboard.type("?");
+      await page.keyboard.press("Enter");
+      await isNamed("Strolls?");
+    });
+
     onPage("keys reach the program while nothing has the focus", () => "play=0", async (page) => {
       assert.equal(await focused(page), null);
       await page.keyboard.press("Space");

@@ -204,6 +204,45 @@ fn what_is_typed_reaches_the_field_that_is_left() {
     assert_eq!((entered, context.memory(egui::Memory::focused)), (Some(12.5), Some(ids[1])));
 }
 
+/// A name counts once Enter accepts it. The browser's field keeps the focus, and the user goes on typing, perhaps before the next frame.
+#[test]
+fn what_is_typed_after_enter_reaches_the_field() {
+    for frames_between in [0, 3] {
+        let context = Context::default();
+        context.add_plugin(Mirror::new(|_| ()));
+        let (mut names, mut draft) = (vec!["Walk".to_owned()], None::<String>);
+        let mut frame = || {
+            let mut id = None;
+            let mut output = context.run_ui(RawInput::default(), |ui| {
+                let mut typed = draft.take().or_else(|| names.last().cloned()).unwrap_or_default();
+                let field = ui.text_edit_singleline(&mut typed);
+                id = Some(field.id);
+                if field.has_focus() {
+                    draft = Some(typed);
+                } else if field.lost_focus() && names.last() != Some(&typed) {
+                    names.push(typed);
+                }
+            });
+            output.textures_delta.clear();
+            (id.expect("a field"), names.clone())
+        };
+        let id = frame().0.accesskit_id().0.to_string();
+        context.with_plugin(|mirror: &mut Mirror| mirror.act(&id, "focus", None)).expect("a mirror");
+        (0..3).for_each(|_| drop(frame()));
+        for typed in ["Stroll", "Strolls"] {
+            let enter = |mirror: &mut Mirror| {
+                mirror.act(&id, "set", Some(ActionData::Value(typed.into())));
+                mirror.key("Enter", "Enter", true, egui::Modifiers::NONE);
+                mirror.key("Enter", "Enter", false, egui::Modifiers::NONE);
+            };
+            context.with_plugin(enter).expect("a mirror");
+            (0..frames_between).for_each(|_| drop(frame()));
+        }
+        let named = (0..4).map(|_| frame().1).last();
+        assert_eq!(named, Some(["Walk", "Stroll", "Strolls"].map(str::to_owned).to_vec()), "{frames_between}");
+    }
+}
+
 #[test]
 fn tabs_trees_and_tables_are_in_lists_with_names() {
     let mut harness = motion_bench(WIDE, &["borrowed.bvh"]);

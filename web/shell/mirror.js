@@ -81,7 +81,7 @@ export class Mirror {
     // Before placing: an empty row in front would take the place of the next one.
     for (const row of this.root.querySelectorAll("[role=row]:empty")) row.remove();
     const hadTree = this.root.querySelector("[role=tree]") !== null;
-    const menu = this.#place(entries);
+    const menu = this.#place(entries, focus);
     // Whatever lies under a dialog can't be reached.
     const dialog = this.root.querySelector("[aria-modal=true]");
     for (const element of /** @type {Iterable<HTMLElement>} */ (this.root.children)) element.inert = dialog !== null && !element.contains(dialog);
@@ -109,8 +109,9 @@ export class Mirror {
   /**
    * Puts the element of each entry into its place; returns the last new group: a menu or dialog that was opened.
    * @param {MirrorEntry[]} entries
+   * @param {string} focus
    */
-  #place(entries) {
+  #place(entries, focus) {
     /** @type {HTMLElement | null} */
     let menu = null;
     /** @type {Ends} */
@@ -122,7 +123,7 @@ export class Mirror {
         this.#elements.set(entry.id, element);
         if (entry.role === "group" || entry.role === "dialog") menu = element;
       }
-      update(element, entry);
+      update(element, entry, entry.id === focus || entry.id === this.#wanted);
       let parent = this.#elements.get(entry.in ?? "") ?? this.root;
       const list = LISTS[/** @type {keyof typeof LISTS} */ (entry.role)];
       if (list !== undefined) parent = listIn(parent, list, ends, entry.list);
@@ -166,6 +167,8 @@ export class Mirror {
         for (const type of ["change", "blur"]) element.addEventListener(type, () => void delete element.dataset.typing);
       }
       element.addEventListener(isNumber ? "change" : "input", () => {
+        // The program focuses its field again for a text.
+        if (role === "textbox") this.#wanted = id;
         const value = isNumber ? numberIn(element.value) : element.type === "range" ? element.valueAsNumber : element.value;
         if (Number.isNaN(value)) element.value = element.ariaValueNow ?? "";
         else this.#program.mirror_act(id, "set", value);
@@ -242,8 +245,9 @@ export class Mirror {
 /**
  * @param {HTMLElement} element
  * @param {MirrorEntry} entry
+ * @param {boolean} isFocused Whether the program has focused the entry, or is about to.
  */
-function update(element, entry) {
+function update(element, entry, isFocused) {
   const { role, name, value, now, min, max, checked, rect } = entry;
   const isPicked = role === "tab" || role === "treeitem" || role === "gridcell";
   const state = isPicked ? "aria-selected" : role === "button" ? "aria-pressed" : "aria-checked";
@@ -267,20 +271,21 @@ function update(element, entry) {
     else if (element.getAttribute(attribute) !== String(text)) element.setAttribute(attribute, String(text));
   }
   if (role === "text" && element.textContent !== name) element.textContent = name ?? "";
-  if (element instanceof HTMLInputElement) updateInput(element, entry);
+  if (element instanceof HTMLInputElement) updateInput(element, entry, isFocused);
   for (const [index, side] of ["left", "top", "width", "height"].entries()) if (rect !== undefined) element.style.setProperty(side, `${rect[index]}px`);
 }
 
 /**
  * @param {HTMLInputElement} input
  * @param {MirrorEntry} entry
+ * @param {boolean} isFocused
  */
-function updateInput(input, { role, value, now, min, max }) {
+function updateInput(input, { role, value, now, min, max }, isFocused) {
   const isText = role === "textbox";
   if (role === "slider") [input.min, input.max, input.step] = [String(min ?? ""), String(max ?? ""), "any"];
   const shown = String((isText ? value : now) ?? "");
-  // The program doesn't know yet what is being typed.
-  const isTyping = input === document.activeElement && (isText || input.dataset.typing !== undefined);
+  // The program doesn't know yet what is being typed. A key that accepts or cancels a text takes away its focus, not the element's.
+  const isTyping = input === document.activeElement && (isText ? isFocused : input.dataset.typing !== undefined);
   if (input.value !== shown && !isTyping) input.value = shown;
 }
 
