@@ -14,6 +14,7 @@ mod coursework;
 mod data_folder;
 mod device;
 mod environment;
+mod gallery;
 mod golden;
 mod layouts;
 mod lights;

@@ -6,16 +6,11 @@ import fs from "node:fs";
 import path from "node:path";
 import { build, transform } from "esbuild";
 import sharp from "sharp";
-import { renderScenes } from "./pictures.mjs";
-import { linkOf, readSamples, readScenes } from "./samples.mjs";
+import { PREVIEW, linkOf, readSamples, readScenes, stillOf } from "./samples.mjs";
 
 const [dist, programs, url] = process.argv.slice(2);
 /** What every browser with WebAssembly SIMD understands. */
 const TARGET = "es2022";
-const STILL = "640x480";
-/** The background of transparent images. */
-const STUDIO = "#a3a6ab";
-const PREVIEW = { width: 1200, height: 630 };
 
 /** @type {(...parts: (string | Buffer)[]) => string} */
 const hashOf = (...parts) => parts.reduce((hash, part) => hash.update(part), crypto.createHash("sha256")).digest("hex").slice(0, 16);
@@ -92,21 +87,17 @@ const addresses = Object.fromEntries(
   Object.entries(samples).map(([name, files]) => [name, files.map((file) => put("samples", name, path.extname(file), fs.readFileSync(file)))]),
 );
 
-/** The preview of the page itself; without samples, the generated walker. */
-const preview = { ...(scenes[0] ?? { model: "sample:walker", view: "clip=Walk&t=0.5" }), size: `${PREVIEW.width}x${PREVIEW.height}` };
-const rendered = renderScenes([...scenes.map((scene) => ({ ...scene, size: STILL })), preview], samples);
 /**
  * Each scene as it covers the loading page, and as small as on its card.
  * @type {{ large: string, small: string }[]}
  */
 const stills = [];
-for (const [index, { name }] of scenes.entries()) {
-  /** @param {number} width */
-  const webp = async (width) => put("pictures", `${name}-${width}`, ".webp", await sharp(rendered[index]).flatten({ background: STUDIO }).resize(width).webp({ quality: 82, effort: 6 }).toBuffer());
-  stills.push({ large: await webp(640), small: await webp(320) });
+for (const scene of scenes) {
+  const still = fs.readFileSync(stillOf(scene));
+  const small = await sharp(still).resize(320).webp({ quality: 82, effort: 6 }).toBuffer();
+  stills.push({ large: put("pictures", `${scene.name}-640`, ".webp", still), small: put("pictures", `${scene.name}-320`, ".webp", small) });
 }
-// Not every site that shows previews reads WebP.
-const previewFile = put("pictures", "preview", ".jpg", await sharp(rendered.at(-1)).flatten({ background: STUDIO }).jpeg({ quality: 85, mozjpeg: true }).toBuffer());
+const previewFile = put("pictures", "preview", ".jpg", fs.readFileSync(PREVIEW.file));
 
 const icon = fs.readFileSync("web/icon.svg");
 const whole = icon.toString().replace(' rx="7"', "");

@@ -1,58 +1,64 @@
-// Renders scenes with `gaitway render`. Images are cached in the target folder: one is rendered again only when its
-// samples or the rendering code have changed, and only then is the program built, unless GAITWAY_CLI names one.
+// Renders the pictures that are committed, with the program that GAITWAY_CLI names: those of README and docs/ (docs/pictures.json),
+// the gallery's scenes and the preview of links to the page (assets/gallery). So the page is built without a graphics device.
 import { spawnSync } from "node:child_process";
-import crypto from "node:crypto";
 import fs from "node:fs";
+import os from "node:os";
 import path from "node:path";
-import { linkOf, samplesOf } from "./samples.mjs";
+import sharp from "sharp";
+import { GALLERY, PREVIEW, STILL, linkOf, readScenes, stillOf } from "./samples.mjs";
 
 /** @typedef {import("./samples.mjs").LinkParts} LinkParts */
 
-const TARGET = process.env.CARGO_TARGET_DIR ?? "target";
-const CODE = ["shaders", "crates/core/src", ...["samples", "state", "frame", "render", "files", "editor", "cli"].map((module) => `src/${module}`)];
+/** The background of transparent images. */
+const STUDIO = "#a3a6ab";
 
-function codeHash() {
-  const hash = crypto.createHash("sha256");
-  for (const folder of CODE)
-    for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" }).sort()) {
-      const file = path.join(folder, name);
-      if (fs.statSync(file).isFile()) hash.update(file).update(fs.readFileSync(file));
-    }
-  return hash.digest("hex");
+const program = process.env.GAITWAY_CLI ?? fail("GAITWAY_CLI isn't set; run `cargo xtask pictures`");
+
+/** @type {(LinkParts & { file: string, size: string })[]} */
+const wanted = JSON.parse(fs.readFileSync("docs/pictures.json", "utf8"));
+for (const scene of wanted) await save(path.join("docs", `${scene.file}.webp`), render(scene, scene.size).webp({ quality: 86, effort: 6 }));
+
+fs.rmSync(GALLERY, { recursive: true, force: true });
+const scenes = readScenes();
+for (const scene of scenes)
+  await save(stillOf(scene), render(scene, size(STILL)).flatten({ background: STUDIO }).webp({ quality: 82, effort: 6 }));
+// Not every site that shows previews reads WebP.
+await save(PREVIEW.file, render(scenes[0], size(PREVIEW)).flatten({ background: STUDIO }).jpeg({ quality: 85, mozjpeg: true }));
+
+/** @type {(area: { width: number, height: number }) => string} */
+function size({ width, height }) {
+  return `${width}x${height}`;
 }
 
 /**
- * Renders scenes and returns the paths of the PNG files.
- * @param {(LinkParts & { size: string })[]} wanted Sizes are written like `480x300`.
- * @param {Record<string, string[]>} samples
+ * @param {LinkParts} scene
+ * @param {string} size
  */
-export function renderScenes(wanted, samples) {
-  const code = codeHash();
-  const folder = path.join(TARGET, "pictures");
-  fs.mkdirSync(folder, { recursive: true });
-  const images = wanted.map((scene) => {
-    const link = linkOf(scene);
-    const hash = crypto.createHash("sha256").update(code).update(link).update(scene.size);
-    for (const file of samplesOf(scene).flatMap((name) => samples[name] ?? [])) hash.update(fs.readFileSync(file));
-    return { scene, link, file: path.join(folder, `${hash.digest("hex").slice(0, 32)}.png`) };
-  });
-  const missing = images.filter(({ file }) => !fs.existsSync(file));
-  const given = process.env.GAITWAY_CLI;
-  if (missing.length > 0 && given === undefined) run("cargo", ["build", "--workspace", "--bin", "gaitway"]);
-  const program = given ?? path.join(TARGET, "debug", process.platform === "win32" ? "gaitway.exe" : "gaitway");
-  for (const { scene, link, file } of missing)
-    run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
-  return images.map(({ file }) => file);
-}
-
-/**
- * @param {string} program
- * @param {string[]} args
- */
-function run(program, args) {
+function render(scene, size) {
+  const file = path.join(os.tmpdir(), `gaitway-picture-${process.pid}.png`);
+  const args = ["render", scene.model, "--view", linkOf(scene), "--size", size, "--out", file];
   const { status, error } = spawnSync(program, args, { stdio: ["ignore", "inherit", "inherit"] });
-  if (status === 0) return;
-  console.error(`\nCouldn't render the gallery's images: ${error?.message ?? `\`${path.basename(program)} ${args.join(" ")}\` failed, see above`}.`);
-  console.error("Rendering needs a graphics device or a software driver: mesa-vulkan-drivers on Debian and Ubuntu, which `cargo xtask setup` installs.");
+  if (status !== 0) fail(`${error?.message ?? `\`gaitway ${args.join(" ")}\` failed, see above`}. Rendering needs a graphics device or a software driver: mesa-vulkan-drivers on Debian and Ubuntu`);
+  const image = sharp(fs.readFileSync(file));
+  fs.rmSync(file);
+  return image;
+}
+
+/**
+ * @param {string} file
+ * @param {import("sharp").Sharp} image
+ */
+async function save(file, image) {
+  fs.mkdirSync(path.dirname(file), { recursive: true });
+  await image.toFile(file);
+  console.log(`${file}: ${fs.statSync(file).size} bytes`);
+}
+
+/**
+ * @param {string} why
+ * @returns {never}
+ */
+function fail(why) {
+  console.error(why);
   process.exit(1);
 }

@@ -5,6 +5,12 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 const FOLDER = fileURLToPath(new URL("../../assets/samples", import.meta.url));
+/** Their pictures, which xtask/site/pictures.mjs renders. */
+export const GALLERY = "assets/gallery";
+/** A scene as it covers the loading page. */
+export const STILL = { width: 640, height: 480 };
+/** The preview of links to the page. */
+export const PREVIEW = { file: `${GALLERY}/preview.jpg`, width: 1200, height: 630 };
 /** Generated in code, so part of every program and of the page. */
 const GENERATED = "walker";
 const EXTENSIONS = [".glb", ".bvh", ".obj", ".skel", ".attach"];
@@ -30,6 +36,12 @@ export function readSamples() {
 
 /** @param {LinkParts} parts */
 export const linkOf = ({ model, motion, view }) => `v=1&model=${model}${motion === undefined ? "" : `&motion=${motion}`}&${view}`;
+
+/**
+ * Returns the file of a scene's picture.
+ * @param {Scene} scene
+ */
+export const stillOf = ({ name }) => `${GALLERY}/${name}.webp`;
 
 /**
  * Returns the names of the samples that a scene uses.

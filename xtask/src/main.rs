@@ -20,7 +20,7 @@ cargo xtask build [--url URL]  builds the page into dist/, for any host; link pr
 cargo xtask build --bench      the same, with the hooks that benches/web measures through
 cargo xtask test               runs every check and test, the cheap ones first
 cargo xtask data               downloads the public test models into ../shared/data (or $GAITWAY_DATA)
-cargo xtask pictures           redraws the pictures in README.md and docs/
+cargo xtask pictures           redraws the pictures in README.md, docs/ and the gallery
 cargo xtask setup              installs whatever the other tasks need";
 
 fn main() -> ExitCode {
@@ -42,7 +42,7 @@ fn run() -> anyhow::Result<()> {
         ["build"] => build_page(&[], None),
         ["build", "--url", url] => build_page(&[], Some(&site_url(url)?)),
         ["build", "--bench"] => build_page(&["bench"], None),
-        ["pictures"] => setup::page().and_then(|()| process::run("node", &["xtask/site/docs.mjs"])),
+        ["pictures"] => redraw_pictures(),
         ["test"] => test::run(),
         ["data"] => data::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
@@ -57,7 +57,7 @@ fn run() -> anyhow::Result<()> {
 
 fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(features, url, None)?;
+    page::build(features, url)?;
     sizes::compress_and_print(features.is_empty())
 }
 
@@ -68,8 +68,15 @@ fn site_url(url: &str) -> anyhow::Result<String> {
     Ok(format!("{}/", url.trim_end_matches('/')))
 }
 
+fn redraw_pictures() -> anyhow::Result<()> {
+    setup::page()?;
+    process::run("cargo", &["build", "--workspace", "--bin", "gaitway"])?;
+    let cli = process::target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
+    process::run_with("node", &["xtask/site/pictures.mjs"], &[("GAITWAY_CLI", process::text(&cli)?)])
+}
+
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(&[], None, None)?;
+    page::build(&[], None)?;
     page::serve(port)
 }

@@ -10,7 +10,7 @@ use std::thread;
 use anyhow::{Context, anyhow};
 use wasm_bindgen_cli_support::Bindgen;
 
-use crate::process::{Step, repository, run, run_with, target_folder, text};
+use crate::process::{Step, repository, run, target_folder, text};
 use crate::setup;
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
@@ -48,9 +48,8 @@ pub fn dist() -> PathBuf {
     repository().join("dist")
 }
 
-/// `url` is the site's future URL, for link previews. `cli` is the command line that draws the pictures; without one, it is built
-/// if they have changed.
-pub fn build(features: &[&str], url: Option<&str>, cli: Option<&str>) -> anyhow::Result<()> {
+/// `url` is the site's future URL, for link previews.
+pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     // Cargo spends most of a build on one core, in link-time optimization: meanwhile another runs wasm-opt on the first program.
     thread::scope(|scope| {
         let mut optimizing = Vec::new();
@@ -72,8 +71,7 @@ pub fn build(features: &[&str], url: Option<&str>, cli: Option<&str>) -> anyhow:
     let (dist, programs) = (dist(), programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
-    let variables: Vec<_> = cli.map(|cli| ("GAITWAY_CLI", cli)).into_iter().collect();
-    run_with("node", &arguments, &variables)
+    run("node", &arguments)
 }
 
 /// Serves the built page until the process is stopped.

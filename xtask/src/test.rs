@@ -21,7 +21,7 @@ pub fn run() -> anyhow::Result<()> {
     let cli = cli();
     let cli = text(&cli)?;
     python::test(cli)?;
-    page::build(&[], None, Some(cli))?;
+    page::build(&[], None)?;
     sizes::compress_and_print(true)?;
     node_tests(cli)
 }
@@ -46,7 +46,7 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     test_original_text()?;
     process::run("cargo", &["test", "--workspace"])?;
-    // The other tests run the programs, and one draws the page's pictures: `cargo test` doesn't build all of them. With `--tests`,
+    // The other tests run the programs: `cargo test` doesn't build all of them. With `--tests`,
     // dependencies keep the features that the tests gave them, so nothing is compiled twice.
     process::run("cargo", &["build", "--workspace", "--bins", "--tests"])
 }
