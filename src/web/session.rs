@@ -41,7 +41,7 @@ fn shown() -> Option<Shown> {
     let shown = with_app(&*page().ok()?, |app| Shown {
         is_private: app.editor().is_private(),
         is_empty: app.library().active().is_none_or(Model::is_placeholder),
-        models: app.state().sources.model.clone(),
+        models: app.state().character.sources.model.clone(),
     });
     shown.ok()
 }
