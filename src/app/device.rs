@@ -92,15 +92,17 @@ impl wgpu::rwh::HasDisplayHandle for WebDisplay {
 }
 
 /// Returns the options for the page's canvas, with a device for it. WebGL2 has no asynchronous calls: eframe would block the page
-/// while it requests the context, the adapter and the device, and compiles all that this calls. So we do it, in steps.
+/// while it requests the context, the adapter and the device, and compiles all that this calls. So we do it, in steps. `back_end` is
+/// `webgpu` or `webgl2`.
 ///
 /// # Errors
 /// If there is no adapter or device for the canvas.
 #[cfg(target_arch = "wasm32")]
-pub async fn web_options(canvas: &web_sys::HtmlCanvasElement) -> Result<eframe::WebOptions, String> {
+pub async fn web_options(canvas: &web_sys::HtmlCanvasElement, back_end: &str) -> Result<eframe::WebOptions, String> {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::from_display_handle(WebDisplay);
-    // Both back ends; the program has one of them.
-    setup.instance_descriptor.backends = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
+    // A quick build has both.
+    setup.instance_descriptor.backends =
+        if back_end == "webgpu" { wgpu::Backends::BROWSER_WEBGPU } else { wgpu::Backends::GL };
     let power_preference = setup.power_preference;
     let instance = egui_wgpu::WgpuSetup::from(setup).new_instance().await;
     // WebGL2's adapter is that of a canvas. A canvas has one context: eframe will get the same one.

@@ -161,7 +161,7 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell, image_limi
         context.add_plugin(Mirror::new(shell::mirror));
         Ok(Box::new(App::new(cc, host, |inbox| *start.borrow_mut() = Some((inbox, context)))?))
     });
-    let options = web_options(&canvas).await?;
+    let options = web_options(&canvas, &shell.renderer()).await?;
     runner.start(canvas, options, create).await.map_err(|error| text_of(&error))?;
     if IS_DESTROYED.get() {
         runner.destroy();

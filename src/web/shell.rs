@@ -10,6 +10,10 @@ extern "C" {
     #[derive(Clone)]
     pub type Shell;
 
+    /// The back end that the instance has to draw with: `webgpu` or `webgl2`.
+    #[wasm_bindgen(method, getter)]
+    pub fn renderer(this: &Shell) -> String;
+
     /// Shows the file dialog, for `any` files or for `motion` files.
     #[wasm_bindgen(method)]
     pub fn choose(this: &Shell, role: &str);

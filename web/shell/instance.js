@@ -135,7 +135,7 @@ async function startOn(bindings, renderer, { link, model, motion, isPrivate }) {
   /** @type {string[]} */
   let problems;
   try {
-    problems = JSON.parse(await unlessEnded(bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings))));
+    problems = JSON.parse(await unlessEnded(bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings, renderer))));
   } catch (error) {
     if (panel() === "stopped") throw error;
     end(bindings);
@@ -196,13 +196,15 @@ async function showFirstFrame(canvas, bindings, presentFrames) {
 /**
  * What an instance calls; one that has been replaced no longer changes anything.
  * @param {Bindings} bindings
+ * @param {Backend} renderer
  * @returns {ShellCalls}
  */
-function callsFor(bindings) {
+function callsFor(bindings, renderer) {
   const isCurrent = () => current === bindings;
   // The session asks the program, which can't answer during its own calls.
   const tell = (/** @type {import("./types.d.ts").SessionEvent} */ event) => queueMicrotask(() => isCurrent() && send(event));
   return {
+    renderer,
     choose: showOpenDialog,
     gallery: showGallery,
     setModal: (isOpen) => isCurrent() && setInert(isOpen),

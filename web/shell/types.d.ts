@@ -94,6 +94,7 @@ export interface Facts {
 
 /** What the program calls; see src/web/shell.rs. */
 export interface ShellCalls {
+  readonly renderer: Backend;
   choose(role: "any" | "motion"): void;
   gallery(): void;
   setModal(isOpen: boolean): void;

@@ -13,10 +13,11 @@ mod test;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
+use page::Build;
 
 const USAGE: &str = "\
-cargo xtask serve [--port N]   builds the page and serves it on 127.0.0.1 (port 8080)
-cargo xtask build [--url URL]  builds the page into dist/, for any host; link previews need the URL it will have
+cargo xtask serve [--port N]   builds the page quickly and serves it on 127.0.0.1 (port 8080)
+cargo xtask build [--url URL]  builds the page into dist/, small and fast, for any host; link previews need the URL it will have
 cargo xtask build --bench      the same, with the hooks that benches/web measures through
 cargo xtask test               runs every check and test, the cheap ones first
 cargo xtask data               downloads the public test models into ../shared/data (or $GAITWAY_DATA)
@@ -57,7 +58,7 @@ fn run() -> anyhow::Result<()> {
 
 fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(features, url)?;
+    page::build(Build::Optimized, features, url)?;
     sizes::compress_and_print(features.is_empty())
 }
 
@@ -77,6 +78,7 @@ fn redraw_pictures() -> anyhow::Result<()> {
 
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(&[], None)?;
+    page::build(Build::Quick, &[], None)?;
+    println!("{}", process::time_table());
     page::serve(port)
 }

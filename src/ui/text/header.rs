@@ -34,6 +34,8 @@ pub const GESTURES: &str = "Gestures";
 pub const ABOUT: &str = "About Gaitway";
 /// The version, in that box.
 pub const VERSION: &str = concat!("Version ", env!("CARGO_PKG_VERSION"));
+/// What the page says in that box if it was built without optimization.
+pub const QUICK_BUILD: &str = "A quick build, to try a change: larger and slower than the page that is published.";
 /// The licence, in that box.
 pub const LICENCE: &str = "Free and open source: MIT or Apache 2.0, at your option. Your files stay on your computer.";
 /// Link in that box.

@@ -22,6 +22,9 @@ fn contents(ui: &mut Ui, out: &mut Output) -> bool {
     ui.heading(text::NAME);
     ui.add(egui::Label::new(text::TAGLINE).wrap());
     ui.label(RichText::new(text::VERSION).color(weak));
+    if option_env!("GAITWAY_QUICK_BUILD").is_some() {
+        ui.add(egui::Label::new(text::QUICK_BUILD).wrap());
+    }
     ui.add(egui::Label::new(RichText::new(text::LICENCE).color(weak)).wrap());
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
