@@ -276,6 +276,8 @@ async fn open_state(
     reload: bool,
     about_link: Option<AboutLink>,
 ) -> Result<String, Refusal> {
+    // What has arrived since the last frame is shown first: which files are needed depends on it.
+    page.frames.draw();
     let before = with_app(page, |app| app.state().clone())?;
     if !reload && !needs_files(&before, &state) {
         // What is being loaded for another link is no longer wanted.

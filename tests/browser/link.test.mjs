@@ -349,6 +349,17 @@ for (const renderer of BACK_ENDS)
       await page.goForward();
       await whenModel(page, site.data(XBOT));
       assert.equal(await entries(), before + 2);
+
+      // Forward before anything of what lies behind is drawn.
+      await page.goBack();
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      await page.evaluate(() => {
+        addEventListener("popstate", () => history.forward(), { once: true });
+        history.back();
+      });
+      await page.waitForTimeout(1000);
+      assert.deepEqual((await state(page)).model, ["CesiumMan.glb"]);
+      assert.ok(page.url().includes("CesiumMan.glb"), page.url());
       assert.deepEqual(page.troubles, []);
     });
 
