@@ -9,7 +9,7 @@ use gaitway::files::open_paths;
 use gaitway::library::{ClipId, Held, LayeredClip, Library, Model, ModelClip, Moment, Take, TakeSampler};
 use gaitway::mesh::Bounds;
 use gaitway::retarget::{ClipLayer, LayerMode, Pin, PinGoal};
-use gaitway::state::{CharacterView, Edits, Playhead, UpAxis, ViewerState, resolved_bounds};
+use gaitway::state::{CharacterView, ClipChoice, Edits, Playhead, UpAxis, ViewerState, resolved_bounds};
 use glam::{Affine3A, Vec3};
 
 use crate::data::{moving_box, walker};
@@ -55,6 +55,13 @@ fn what_is_laid_over_a_clip_stays_in_the_picture() {
         let layered = Edits { layers: vec![additive(0.0)], up, ..Edits::default() };
         check_view("a layered jump", &jump, &edits(layered));
     }
+    let playhead = Playhead { clip: ClipChoice::RestPose, ..Playhead::default() };
+    let over_rest = CharacterView {
+        edits: Edits { layers: vec![additive(0.0)], ..Edits::default() },
+        playhead,
+        ..CharacterView::default()
+    };
+    check_view("a jump over the rest pose", &jump, &ViewerState { character: over_rest, ..ViewerState::default() });
     let walker = walker();
     let above = Pin { goal: PinGoal::Point(Vec3::new(0.2, 3.0, 0.3)), times: None };
     let pinned = Edits { pins: BTreeMap::from([(HAND, above)]), ..Edits::default() };

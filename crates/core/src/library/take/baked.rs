@@ -13,7 +13,7 @@ use crate::retarget::{Baking, ClipOverLayers, bake_layers, bake_stack};
 pub struct BakedTake<'a> {
     /// The clip: the take's own where nothing is laid over it.
     pub clip: Cow<'a, Clip>,
-    /// How layers were brought to end together; `None` without layers.
+    /// How loops and layers were brought to end together; `None` for one loop without layers.
     pub baking: Option<Baking>,
     /// Whether joints are held in it.
     pub is_posed: bool,
@@ -31,7 +31,7 @@ impl<'a> Take<'a> {
         };
         let below = self.clip.map_or(&[][..], |over| over.below);
         let period_secs = f64::from(clip.duration_secs());
-        let mut baked = BakedTake { clip, baking: None, is_posed: !self.held.rotations.is_empty() };
+        let mut baked = BakedTake { clip, baking: None, is_posed: false };
         if !below.is_empty() || !over.is_empty() || loops.is_some_and(|loops| loops > 1) {
             let baking = self.baking(&over, loops);
             let layered = bake_layers(&self.model.asset, &baked.clip, below, &baking);
@@ -40,6 +40,7 @@ impl<'a> Take<'a> {
         }
         if let Some(held) = self.held.hold(self.model, &baked.clip) {
             baked.clip = Cow::Owned(held);
+            baked.is_posed = !self.held.rotations.is_empty();
         }
         if !self.pins.is_empty() {
             // Pins repeat with the clip, not with its layers.

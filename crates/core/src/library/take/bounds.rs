@@ -9,7 +9,6 @@ use super::{LookTarget, Moment, Take, TakeSampler};
 use crate::anim::{JointIndex, model_from_joint};
 use crate::asset::SceneJoints;
 use crate::mesh::Bounds;
-use crate::retarget::ClipOverLayers;
 
 impl Take<'_> {
     /// Poses per second that the bounds are made from, besides those of keys.
@@ -48,13 +47,19 @@ impl Take<'_> {
         bounds
     }
 
-    /// Times at which the bounds are looked at: regular ones, and those of the clip's keys, which have the fastest movements' ends.
+    /// Times at which the bounds are looked at: regular ones, and those of the clip's keys, where the fastest movements turn.
     fn bounds_times(&self) -> Vec<f64> {
-        let Some(ClipOverLayers { clip, .. }) = self.clip else { return vec![0.0] };
-        let duration_secs = self.range.length_secs() * self.baking(&self.stacked(), None).loops as f64;
+        let over = self.stacked();
+        let periods = over.iter().filter_map(|over| over.layer.period_secs(over.source.clip));
+        let duration_secs = match self.clip {
+            Some(_) => self.range.length_secs() * self.baking(&over, None).loops as f64,
+            // Layers play over the rest pose, too.
+            None => periods.fold(0.0, f64::max),
+        };
         let [fewest, most] = Self::SAMPLES;
         let samples = (Self::SAMPLES_PER_SEC * duration_secs).clamp(fewest, most);
-        let mut keys: Vec<f32> = clip.timelines().iter().flat_map(|timeline| timeline.iter().copied()).collect();
+        let timelines = self.clip.map_or(&[][..], |over| over.clip.timelines());
+        let mut keys: Vec<f32> = timelines.iter().flatten().copied().collect();
         keys.sort_unstable_by(f32::total_cmp);
         keys.dedup();
         keys.truncate(if keys.len() > most as usize { 0 } else { keys.len() });
