@@ -54,7 +54,12 @@ impl Companions {
             *self = Self::default();
             return Join::Done(Set { items: with_mesh(opening.items, held), ..opening });
         }
-        let main = if has_gltf { opening.clone() } else { self.last.clone() };
+        let main = match &self.last {
+            _ if has_gltf => opening.clone(),
+            // Another model was opened since. The page may have gone back from it, and asks for what the .gltf lacks.
+            last if last.items.is_empty() => Set { items: held.last_gltf().to_vec(), role: Role::Any },
+            last => last.clone(),
+        };
         let opened = opening.items.iter().filter(|_| !has_gltf);
         let candidates: Vec<Item> = self.loose.iter().chain(opened).cloned().collect();
         let is_clear = candidates.is_empty() || main.items.is_empty();

@@ -69,6 +69,11 @@ impl Held {
         self.0.iter().rev().find(|set| set.iter().any(|item| item.name() == name)).map(Vec::as_slice)
     }
 
+    /// Returns the most recent set with a .gltf; empty without one.
+    pub fn last_gltf(&self) -> &[Item] {
+        self.0.iter().rev().find(|set| set.iter().any(Item::is_gltf)).map_or(&[], Vec::as_slice)
+    }
+
     /// Returns the most recent file of this name.
     pub fn item_named(&self, name: &str) -> Option<&Item> {
         self.0.iter().flatten().rev().find(|item| item.name() == name)

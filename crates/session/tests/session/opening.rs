@@ -51,6 +51,17 @@ fn files_of_another_model_are_not_taken_for_those_of_a_gltf() {
 }
 
 #[test]
+fn files_that_a_gltf_lacks_join_it_after_another_model_was_opened() {
+    const GLTF: Act = Act::Drop(&[("own.gltf", Content::Gltf(&["body.bin", "skin.png"]))]);
+    const REST: Act = Act::Drop(&[("body.bin", Content::Part), ("skin.png", Content::Part)]);
+    let mut world = start();
+    world.then(GLTF).then(FOX).then(REST);
+    assert_eq!(world.models(), ["own.gltf"]);
+    world.then(FOX).then(Act::Drop(&[("other.png", Content::Part)]));
+    assert_eq!(world.models(), ["Fox.glb"], "it belongs to neither");
+}
+
+#[test]
 fn a_skeleton_joins_its_obj() {
     let mut world = start();
     world.then(Act::Drop(&[("Man.obj", Content::Model("man"))]));
