@@ -6,8 +6,8 @@ use super::Editor;
 use crate::frame::{current_orbit, travelled};
 use crate::library::ClipId;
 use crate::state::{
-    CameraChoice, Command, OrbitCamera, ViewerState, active_clip, comparison, comparison_ratio, frame_all,
-    resolve_camera,
+    CameraChoice, Command, OrbitCamera, ViewerState, active_clip, automatic_camera, comparison, comparison_ratio,
+    frame_all,
 };
 
 impl Editor {
@@ -15,7 +15,7 @@ impl Editor {
     pub(super) fn automatic_view(&self) -> Option<OrbitCamera> {
         let is_held = |orbit| self.held_camera == Some(orbit);
         match self.state.camera {
-            CameraChoice::Auto => Some(resolve_camera(&self.library, &self.state, self.aspect)),
+            CameraChoice::Auto => Some(automatic_camera(&self.library, &self.state, self.aspect)),
             CameraChoice::Orbit(orbit) if is_held(orbit) => Some(orbit),
             _ => None,
         }
@@ -25,8 +25,7 @@ impl Editor {
     /// again as soon as that is the same.
     pub(super) fn hold_view(&mut self, before: Option<OrbitCamera>) {
         let Some(before) = before else { return };
-        let automatic = ViewerState { camera: CameraChoice::Auto, ..self.state.clone() };
-        let is_same = resolve_camera(&self.library, &automatic, self.aspect) == before;
+        let is_same = automatic_camera(&self.library, &self.state, self.aspect) == before;
         self.held_camera = (!is_same).then_some(before);
         let camera = self.held_camera.map_or(CameraChoice::Auto, CameraChoice::Orbit);
         if self.state.camera != camera {
@@ -122,8 +121,7 @@ impl Editor {
     }
 
     fn automatic_target(&self) -> Vec3 {
-        let automatic = ViewerState { camera: CameraChoice::Auto, ..self.state.clone() };
-        resolve_camera(&self.library, &automatic, self.aspect).target
+        automatic_camera(&self.library, &self.state, self.aspect).target
     }
 
     pub(super) fn notify_follow(&mut self, command: &Command) {

@@ -189,7 +189,7 @@ impl Editor {
             self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map, is_by_hand && !keeps_view)
         } else {
-            self.show_with(motions, map, view, (origin, keeps_view));
+            self.show_with(motions, map, view, origin, keeps_view);
             None
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
@@ -205,7 +205,8 @@ impl Editor {
         motions: Vec<Motion>,
         map: Option<MotionMap>,
         view: Option<ViewerState>,
-        (origin, keeps_view): (String, bool),
+        origin: String,
+        keeps_view: bool,
     ) {
         let problems = self.transact(Change::View, |editor| {
             editor.library.set_motions(motions);

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use gaitway_session::ErrorCode;
+
 use super::SortError;
 use crate::formats::LoadError;
 
@@ -116,40 +118,6 @@ pub enum OpenError {
     /// The files were read, but cannot be used.
     #[error(transparent)]
     Files(#[from] SortError),
-}
-
-/// What kind of failure an error is, for scripts: the `code` of the errors that `window.gaitway` rejects with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ErrorCode {
-    /// A file, sample or server is not there, or did not answer.
-    NotFound,
-    /// The browser does not let this page read the file.
-    CrossOrigin,
-    /// Gaitway cannot read such a file, or cannot show it here.
-    Unsupported,
-    /// A file, an argument or a value is invalid.
-    Malformed,
-    /// A limit on what is read is exceeded.
-    TooLarge,
-    /// The user cancelled it, or something else was opened in the meantime.
-    Cancelled,
-    /// The program or its graphics device has stopped.
-    LostDevice,
-}
-
-impl ErrorCode {
-    /// Returns the code as scripts see it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NotFound => "not-found",
-            Self::CrossOrigin => "cross-origin",
-            Self::Unsupported => "unsupported",
-            Self::Malformed => "malformed",
-            Self::TooLarge => "too-large",
-            Self::Cancelled => "cancelled",
-            Self::LostDevice => "lost-device",
-        }
-    }
 }
 
 impl OpenError {

@@ -30,9 +30,9 @@ pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
 pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, read_paths};
 pub use early::EarlyWatch;
+pub use error::OpenError;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
-pub use error::{ErrorCode, OpenError};
 pub use image_limits::ImageLimits;
 pub use png::encode_png;
 pub use read::Item;

@@ -23,7 +23,7 @@ pub(super) struct Scratch {
     pub travel: Vec3,
     /// Of the start of the clip.
     first: TakeSampler,
-    /// One for each pane with another rest.
+    /// By pane, while they compare rests. The first pane has the character itself.
     rests: Vec<TakeSampler>,
     source: TakeSampler,
     pub model_scene: Scene,
@@ -90,7 +90,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let eye = needs_eye.then(|| camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose)).flatten();
     frame.scratch.sampler.apply_avatar(&take, moment.elapsed_secs, eye);
     let source = source_on_stage(library, state);
-    write_characters(library, &take, (moment, eye), state, source.as_ref(), frame);
+    write_characters(library, &take, moment, eye, state, source.as_ref(), frame);
     frame.bounds = translated(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
@@ -105,7 +105,8 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
 fn write_characters(
     library: &Library,
     take: &Take<'_>,
-    (moment, eye): (Moment<'_>, Option<Vec3>),
+    moment: Moment<'_>,
+    eye: Option<Vec3>,
     state: &ViewerState,
     source: Option<&SourceOnStage>,
     frame: &mut Frame,
@@ -119,9 +120,8 @@ fn write_characters(
     let skeleton = &model.asset.skeleton;
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
-    scratch
-        .rests
-        .resize_with(if matches!(comparison, Some(Comparison::Rests(_))) { count } else { 0 }, TakeSampler::default);
+    let rests = if matches!(comparison, Some(Comparison::Rests(_))) { count } else { 0 };
+    scratch.rests.resize_with(rests, TakeSampler::default);
     for (pane, character) in characters.iter_mut().take(count).enumerate() {
         character.model = model.id;
         character.pane = comparison.is_some().then_some(pane as u32);
@@ -154,6 +154,7 @@ fn write_characters(
 
 /// The source plays its own clip at the same time, always with linear skinning.
 fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, character: &mut Character) {
+    // It doesn't start over where the model's clip was made longer.
     let take = Take { loop_mode: LoopMode::Once, ..source.take() };
     scratch.source.sample_motion(&take, Moment { elapsed_secs: f64::from(time_secs), from: None });
     let TakeSampler { pose, properties, .. } = &scratch.source;

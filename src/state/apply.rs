@@ -9,16 +9,15 @@ use super::clip_names::resolved;
 use super::clips;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps;
-use super::pins;
 use super::playhead::{active_clip, chosen_clip, clip_secs, play_range};
-use super::take::crossfade_secs;
+use super::take::{active_take, crossfade_secs};
 use super::{
     CameraChoice, CameraOptions, Channel, ClipChoice, Command, Display, Edits, Fade, Hidden, KeyLight, OrbitCamera,
     Playback, Selection, VertexChoice, ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{LayeredClip, Library, LookTarget, Model, ModelClip, MotionId};
-use crate::retarget::JointMap;
+use crate::retarget::{JointMap, Pin};
 
 /// Maximum length of a name that the user gives to a joint or a clip.
 pub const MAX_NAME_CHARS: usize = 80;
@@ -53,7 +52,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetSprings(on) => state.display.springs = on,
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
         Command::ClearPose => state.character.edits.pose.clear(),
-        Command::SetPin { joint, pin } => pins::set_pin(state, model, joint, pin),
+        Command::SetPin { joint, pin } => set_pin(state, model, joint, pin),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::EditClip { clip, edit } => clips::edit_clip(state, model, &clip, edit),
         Command::SetLayers(layers) => set_layers(state, model, layers),
@@ -117,7 +116,7 @@ pub(super) fn checked_for(view: &ViewerState, model: &Model) -> ViewerState {
     }
     state.character.edits.pins.clear();
     for (&joint, &pin) in &view.character.edits.pins {
-        pins::set_pin(&mut state, Some(model), joint, Some(pin));
+        set_pin(&mut state, Some(model), joint, Some(pin));
     }
     (state.selection, state.character.sources.scene, state.camera) = (Selection::default(), None, CameraChoice::Auto);
     select_joint(&mut state, Some(model), view.selection.joint);
@@ -165,7 +164,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     }
     state.character.edits.pins.clear();
     for (joint, pin) in wanted.character.edits.pins {
-        pins::set_pin(state, None, joint, Some(pin));
+        set_pin(state, None, joint, Some(pin));
     }
     state.character.edits.names.clear();
     for (joint, name) in wanted.character.edits.names {
@@ -497,6 +496,18 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
 fn set_channel(state: &mut ViewerState, channel: Channel) {
     state.display.channel = channel;
     state.inspect.weights &= channel == Channel::Shaded;
+}
+
+/// Ignores joints that the model can't pin this way.
+fn set_pin(state: &mut ViewerState, model: Option<&Model>, joint: usize, pin: Option<Pin>) {
+    let Some(pin) = pin else {
+        state.character.edits.pins.remove(&joint);
+        return;
+    };
+    let is_allowed = model.is_none_or(|model| active_take(model, state).pinning(None).allows(joint, pin.goal));
+    if let Some(pin) = pin.checked().filter(|_| is_allowed) {
+        state.character.edits.pins.insert(joint, pin);
+    }
 }
 
 fn set_layers(state: &mut ViewerState, model: Option<&Model>, layers: Vec<LayeredClip>) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{ClipChoice, NameKind, UnknownName, ViewerState};
 use crate::anim::{ClipQuery, find_clip};
-use crate::library::{ClipEdits, ClipId, Library, Model, ModelClip, clip_file_name};
+use crate::library::{ClipEdits, ClipId, LayeredClip, Library, Model, ModelClip, clip_file_name};
 
 /// Finds a clip by its name, its index in decimal, or its display title.
 fn clip_called<'a>(model: &'a Model, name: &str) -> Option<&'a ModelClip> {
@@ -38,6 +38,12 @@ fn name_in_link(model: &Model, clip: &ModelClip) -> String {
     let found = [name].into_iter().chain(title).find(|name| refers(name));
     let index = || model.clips().iter().position(|other| other.id() == clip.id()).unwrap_or_default();
     found.map_or_else(|| index().to_string(), str::to_owned)
+}
+
+/// Returns the clips of layers that the model lacks.
+pub fn unknown_layers(model: &Model, layers: &[LayeredClip]) -> impl Iterator<Item = UnknownName> {
+    let unknown = layers.iter().filter(|over| look_up_clip(model, &over.clip).is_none());
+    unknown.map(|over| unknown_name(model, &over.clip))
 }
 
 /// Returns what a link calls a clip of the active model: its name if that is unambiguous, otherwise its index, or its title if

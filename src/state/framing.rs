@@ -41,9 +41,11 @@ pub const DEFAULT_ASPECT: f32 = 1.6;
 /// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). For a camera of the
 /// file, whose position depends on the pose, that is the automatic one; `frame::current_orbit` evaluates the pose.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
-    if let CameraChoice::Orbit(orbit) = state.camera {
-        return orbit;
-    }
+    if let CameraChoice::Orbit(orbit) = state.camera { orbit } else { automatic_camera(library, state, aspect) }
+}
+
+/// Returns the automatic camera for the state, whatever camera it has.
+pub fn automatic_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let aspect = pane_aspect(comparison(library, state), aspect);
     let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
     match library.active() {

@@ -11,7 +11,6 @@ mod edited;
 mod framing;
 mod hidden;
 mod history;
-mod layers;
 mod lighting;
 mod link;
 mod loop_frames;
@@ -19,7 +18,6 @@ mod map_code;
 mod map_edit;
 mod maps;
 mod names;
-mod pins;
 mod playhead;
 mod problems;
 mod stage;
@@ -31,18 +29,17 @@ mod view;
 pub use apply::{MAX_NAME_CHARS, apply, one_line};
 pub use camera::{CameraChoice, OrbitCamera};
 pub use channel::Channel;
-pub use clip_names::{look_up_clip, resolve_clips};
+pub use clip_names::{look_up_clip, resolve_clips, unknown_layers};
 pub use clips::{ClipEdit, drop_orphaned_edits};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use edited::Edited;
 pub use framing::{
-    DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, looks_past, resolve_camera, resolved_bounds,
-    world_from_file_camera,
+    DEFAULT_ASPECT, automatic_camera, camera_eye, frame_all, front_yaw_radians, looks_past, resolve_camera,
+    resolved_bounds, world_from_file_camera,
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;
-pub use layers::unknown_layers;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{Link, MEMBER_SEPARATOR, is_to_bring, with_current_member};
 pub use link::{LinkError, from_link, from_object, read_layer, read_pin, to_link, to_object};

@@ -1,8 +1,7 @@
 //! Compares a view with the model it is for: what is out of range, and what the model doesn't have.
 
 use super::apply::{checked, checked_for};
-use super::clip_names::{look_up_clip, unknown_name};
-use super::layers::unknown_layers;
+use super::clip_names::{look_up_clip, unknown_layers, unknown_name};
 use super::link::differences;
 use super::playhead::unknown_clip;
 use super::variant::unknown_variant;

@@ -6,6 +6,7 @@ use std::pin::pin;
 use std::rc::Rc;
 
 use futures_util::future::{Either, select};
+use gaitway_session::{ErrorCode, Kind};
 use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
@@ -15,7 +16,7 @@ use web_sys::ImageBitmap;
 use super::page::{Cancel, Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
 use crate::editor::{AboutLink, Contents, short_name};
-use crate::files::{ErrorCode, Held, Item, Role, open_items, open_view, within};
+use crate::files::{Held, Item, Role, open_items, open_view, within};
 use crate::formats::{self, FileSet};
 use crate::frame::PoseDocument;
 use crate::library::{Environment, Model, ModelClip, ModelId, Motion, inspect};
@@ -325,8 +326,7 @@ enum Request {
 
 /// What was opened.
 struct Opened {
-    /// `model`, `motion`, `light` or `map`.
-    kind: &'static str,
+    kind: Kind,
     /// What could not be opened.
     problems: Vec<String>,
 }
@@ -451,10 +451,10 @@ async fn show(
     shell_reports: bool,
 ) -> Result<Opened, String> {
     let kind = match &contents {
-        Contents { models, .. } if !models.is_empty() => "model",
-        Contents { motions: Some(_), .. } => "motion",
-        Contents { environment: Some(_), .. } => "light",
-        _ => "map",
+        Contents { models, .. } if !models.is_empty() => Kind::Model,
+        Contents { motions: Some(_), .. } => Kind::Motion,
+        Contents { environment: Some(_), .. } => Kind::Light,
+        _ => Kind::Map,
     };
     if !shell_reports && !contents.problems.is_empty() {
         page.shell.warn(&contents.problems.join("\n"));
@@ -548,7 +548,7 @@ impl From<Refusal> for JsValue {
 fn error(code: ErrorCode, message: &str) -> JsValue {
     let error = js_sys::Error::new(message);
     // Only a frozen object refuses a property.
-    let _ = Reflect::set(&error, &"code".into(), &code.name().into());
+    let _ = Reflect::set(&error, &"code".into(), &json!(code).as_str().into());
     error.into()
 }
 

@@ -104,8 +104,8 @@ impl Laid {
     }
 }
 
-/// Compares a take with its baked clip at times between keys, and its bounds with its poses. Files with an avatar are
-/// compared without it, since it is up to whoever plays the baked clip.
+/// Compares a take with its baked clip at times between keys, and its bounds with its poses. Avatars
+/// aren't baked, so clips are compared without them.
 fn check_take(take: &Take<'_>) -> Result<(), String> {
     let (model, skeleton) = (take.model, &take.model.asset.skeleton);
     let baked = take.bake(None, None).clip;

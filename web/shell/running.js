@@ -32,7 +32,7 @@ let reason = coded("lost-device", "Gaitway has not started yet");
 const waiting = new Set();
 
 /**
- * The instance that runs or starts has ended: whoever waits for it learns why.
+ * The instance that runs or starts has ended: promises that wait for it reject with the reason.
  * @param {string} why
  */
 export function endWaiting(why) {

@@ -72,8 +72,7 @@ fn site_url(url: &str) -> anyhow::Result<String> {
 fn redraw_pictures() -> anyhow::Result<()> {
     setup::page()?;
     process::run("cargo", &["build", "--workspace", "--bin", "gaitway"])?;
-    let cli = process::target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
-    process::run_with("node", &["xtask/site/pictures.mjs"], &[("GAITWAY_CLI", process::text(&cli)?)])
+    process::run_with("node", &["xtask/site/pictures.mjs"], &[("GAITWAY_CLI", process::text(&process::cli())?)])
 }
 
 fn serve_page(port: u16) -> anyhow::Result<()> {

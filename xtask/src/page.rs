@@ -55,7 +55,7 @@ impl Build {
     /// Arguments of cargo.
     fn for_the_page(self) -> anyhow::Result<Vec<String>> {
         let target = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", self.profile()];
-        // Tracked by cargo, unlike a variable of this process: the box about Gaitway says what was built.
+        // The box about Gaitway says so.
         let about = (self == Self::Quick).then(|| ["--config".to_owned(), "env.GAITWAY_QUICK_BUILD='1'".to_owned()]);
         let target = target.map(str::to_owned).into_iter();
         Ok(target.chain(without_folders()?).chain(about.into_iter().flatten()).collect())

@@ -32,6 +32,11 @@ pub fn target_folder() -> PathBuf {
     }
 }
 
+/// Where cargo puts the command line.
+pub fn cli() -> PathBuf {
+    target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX))
+}
+
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.env("CARGO_TARGET_DIR", target_folder()).current_dir(repository());

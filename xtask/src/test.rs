@@ -3,13 +3,12 @@
 use std::fs;
 use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::num::NonZero;
-use std::path::PathBuf;
 use std::process::Stdio;
 use std::thread;
 
 use anyhow::Context;
 
-use crate::process::{self, Step, command, repository, run_with, succeeded, target_folder, text, time_table};
+use crate::process::{self, Step, cli, command, repository, run_with, succeeded, target_folder, text, time_table};
 use crate::{page, python, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
@@ -56,11 +55,6 @@ fn test_original_text() -> anyhow::Result<()> {
     let target = target_folder().join("tmp/original-text");
     let manifest = "crates/epaint-text/original/Cargo.toml";
     process::run("cargo", &["test", "--locked", "--manifest-path", manifest, "--target-dir", text(&target)?])
-}
-
-/// Returns the path of the command line.
-fn cli() -> PathBuf {
-    target_folder().join("debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX))
 }
 
 /// How many of Node's test files run at once at most: each starts browsers.

@@ -175,17 +175,17 @@ pub struct Shown {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
     /// Its kind, for scripts.
-    pub code: Option<Code>,
+    pub code: Option<ErrorCode>,
     /// The message for the user.
     pub message: String,
 }
 
 impl Failure {
-    pub(crate) fn new(code: Code, message: impl Into<String>) -> Self {
+    pub(crate) fn new(code: ErrorCode, message: impl Into<String>) -> Self {
         Self { code: Some(code), message: message.into() }
     }
 
-    pub(crate) fn is(&self, code: Code) -> bool {
+    pub(crate) fn is(&self, code: ErrorCode) -> bool {
         self.code == Some(code)
     }
 
@@ -195,22 +195,22 @@ impl Failure {
     }
 }
 
-/// Kinds of failures, as scripts know them.
+/// What kind of failure an error is, for scripts: the `code` of the errors that `window.gaitway` rejects with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Code {
-    /// A file isn't there or can't be reached.
+pub enum ErrorCode {
+    /// A file, sample or server is not there, or did not answer.
     NotFound,
-    /// A site doesn't let this one read a file.
+    /// The browser does not let this page read the file.
     CrossOrigin,
-    /// The file's kind, or something in it, isn't supported.
+    /// Gaitway cannot read such a file, or cannot show it here.
     Unsupported,
-    /// The file is damaged.
+    /// A file, an argument or a value is invalid.
     Malformed,
-    /// The file is too large.
+    /// A limit on what is read is exceeded.
     TooLarge,
-    /// The user has cancelled it, or something else was asked for since.
+    /// The user cancelled it, or something else was opened in the meantime.
     Cancelled,
-    /// The program has ended.
+    /// The program or its graphics device has stopped.
     LostDevice,
 }

@@ -3,7 +3,7 @@
 use crate::companions::Set;
 use crate::held::Files;
 use crate::job::{Ask, Followed, Following, Job, Opening, Stage, Step};
-use crate::{Code, Effect, Failure, Item, Link, LinkRole, Program, Role, Session, TaskId};
+use crate::{Effect, ErrorCode, Failure, Item, Link, LinkRole, Program, Role, Session, TaskId};
 
 impl Session {
     /// Shows what a link says, with the local files that its entry of the history held.
@@ -110,7 +110,7 @@ impl Session {
     }
 
     pub(crate) fn following_failed(&mut self, ask: Ask, following: &Following, failure: &Failure) {
-        if !failure.is(Code::Cancelled) {
+        if !failure.is(ErrorCode::Cancelled) {
             return self.report_following(ask, following, std::slice::from_ref(&failure.message), true);
         }
         if ask == self.latest_followed {

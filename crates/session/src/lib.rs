@@ -50,7 +50,7 @@ use serde::{Deserialize, Serialize};
 use self::awaited::Awaited;
 use self::companions::{Companions, Set};
 pub use self::effect::{Effect, EntryUpdate, Facts};
-pub use self::event::{By, Code, EntryState, Event, Failure, Kind, Role, Shown};
+pub use self::event::{By, EntryState, ErrorCode, Event, Failure, Kind, Role, Shown};
 use self::held::Held;
 use self::history::{Entry, Visit};
 pub use self::item::{FileId, Item, NamedFile, RequestId, TaskId};
@@ -387,5 +387,5 @@ impl Asked {
 }
 
 fn stopped(reason: &str) -> Failure {
-    Failure::new(Code::LostDevice, format!("Gaitway has stopped: {reason}"))
+    Failure::new(ErrorCode::LostDevice, format!("Gaitway has stopped: {reason}"))
 }

@@ -4,7 +4,7 @@ use crate::companions::{Join, Set};
 use crate::completing::Completion;
 use crate::item::{file_name, has_files, names_of};
 use crate::job::{Job, Load, Opening, Stage};
-use crate::{By, Code, Effect, Failure, Item, Kind, Program, RequestId, Role, Session, TaskId};
+use crate::{By, Effect, ErrorCode, Failure, Item, Kind, Program, RequestId, Role, Session, TaskId};
 
 impl Session {
     pub(crate) fn open(&mut self, request: Option<RequestId>, by: By, set: Set) {
@@ -89,7 +89,7 @@ impl Session {
         self.complete_link(items, None);
         self.effects.extend([Effect::HideGallery, Effect::Focus]);
         let request = job.opening.and_then(|opening| opening.request);
-        let failure = Failure::new(Code::NotFound, need);
+        let failure = Failure::new(ErrorCode::NotFound, need);
         self.effects.extend(request.map(|request| Effect::Reject { request, failure }));
         true
     }
@@ -262,9 +262,9 @@ impl Session {
             }
             Job { stage: Stage::Loading(_, ref given), .. } => {
                 match failure.code {
-                    Some(Code::Cancelled) => {}
+                    Some(ErrorCode::Cancelled) => {}
                     // Without all of its files, nothing completes a link.
-                    Some(Code::NotFound) => self.ask(Some(names_of(given))),
+                    Some(ErrorCode::NotFound) => self.ask(Some(names_of(given))),
                     // A motion may have arrived before its model.
                     _ => _ = self.complete_link(given, None),
                 }
@@ -292,7 +292,7 @@ impl Session {
             let message = failure.message.clone();
             // What was opened since has its own result; that this wasn't opened is told as well.
             let is_overtaken = ask < self.latest_by_hand;
-            match (is_overtaken, failure.is(Code::Cancelled)) {
+            match (is_overtaken, failure.is(ErrorCode::Cancelled)) {
                 (false, _) if is_shown => self.effects.push(Effect::SayProblem { message }),
                 (false, _) => self.effects.push(Effect::Refuse { message }),
                 (true, true) => self.effects.push(Effect::Notify { text: failure.sentence() }),
@@ -311,5 +311,5 @@ impl Session {
 /// Something else was asked for before these items were shown.
 fn overtaken(items: &[Item]) -> Failure {
     let name = items.last().map(|item| format!("{}: ", file_name(item.name()))).unwrap_or_default();
-    Failure::new(Code::Cancelled, format!("{name}something else was opened in the meantime"))
+    Failure::new(ErrorCode::Cancelled, format!("{name}something else was opened in the meantime"))
 }

@@ -339,7 +339,7 @@ impl Clips {
         mut before: Self,
         symmetry: impl Fn() -> Symmetry,
     ) -> Self {
-        let mut titles = Titles::default();
+        let mut titles = Titles::taken([REST_POSE].into_iter());
         let mut clips = Self::default();
         let mut add = |clips: &mut Self, id: ClipId, untitled: String, clip: ModelClip| {
             let name = edits.names.get(&id).cloned();
@@ -440,8 +440,8 @@ impl Clips {
 
     /// Returns a title for a clip: this name, with a number if another clip or the rest pose has it.
     pub fn free_title(&self, clip: &ClipId, name: &str) -> String {
-        let others = || self.list.iter().filter(|other| other.id != *clip).map(ModelClip::title);
-        free_name(name, |name| others().chain([REST_POSE]).all(|other| other != name))
+        let others = self.list.iter().filter(|other| other.id != *clip).map(ModelClip::title);
+        Titles::taken(others.chain([REST_POSE])).unique(name.to_owned())
     }
 
     /// Returns the names of clips in a copy of the model's file that `added` is added to; `None` if nothing is. A renamed clip that the
@@ -452,8 +452,7 @@ impl Clips {
         // The name of the clip is not that of its original, which the file has.
         let has_original = |clip: &ModelClip| clip.is_renamed && (!clip.is_in_file() || is_added(clip));
         let is_taken = |clip: &&ModelClip| is_added(clip) || (clip.is_from_file() && !has_original(clip));
-        let mut taken: BTreeSet<String> =
-            self.list.iter().filter(is_taken).map(|clip| clip.file_name().to_owned()).collect();
+        let mut taken = Titles::taken(self.list.iter().filter(is_taken).map(ModelClip::file_name));
         let mut own = BTreeMap::new();
         for clip in &self.list {
             let ClipId::Own(index) = clip.id else { continue };
@@ -463,15 +462,14 @@ impl Clips {
         }
         for clip in self.list.iter().filter(|clip| has_original(clip)) {
             let (ClipId::Own(index), name) = (&clip.id, clip.original.name()) else { continue };
-            if !name.is_empty() && !taken.insert(name.to_owned()) {
-                let free = free_name(name, |name| !taken.contains(name));
-                taken.insert(free.clone());
+            let free = if name.is_empty() { String::new() } else { taken.unique(name.to_owned()) };
+            if free != name {
                 own.insert(*index, free);
             }
         }
         let added =
             self.list.iter().find(|clip| is_added(clip)).map(|clip| match clip.is_from_file() && !clip.is_renamed {
-                true => free_name(&format!("{} (changed)", clip.file_name()), |name| !taken.contains(name)),
+                true => taken.unique(format!("{} (changed)", clip.file_name())),
                 false => clip.file_name().to_owned(),
             });
         SavedNames { own, added: added.unwrap_or_default() }
@@ -525,28 +523,15 @@ pub fn clip_file_name(source: &str, clip: usize, asset: &Asset) -> Option<String
     Some(if is_named(named) { named.name().to_owned() } else { file_title(source, clip, asset.clips.len()) })
 }
 
-/// Returns a name, with a number if it isn't free.
-fn free_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
-    let mut free = name.to_owned();
-    let mut number = 2;
-    while !is_free(&free) {
-        free = format!("{name} ({number})");
-        number += 1;
-    }
-    free
-}
-
-/// Makes titles unique.
+/// Makes names unique. Holds how often each was asked for.
 #[derive(Debug)]
 struct Titles(BTreeMap<String, usize>);
 
-impl Default for Titles {
-    fn default() -> Self {
-        Self(BTreeMap::from([(REST_POSE.to_owned(), 1)]))
-    }
-}
-
 impl Titles {
+    fn taken<'a>(names: impl Iterator<Item = &'a str>) -> Self {
+        Self(names.map(|name| (name.to_owned(), 1)).collect())
+    }
+
     /// Numbers a title that was taken before.
     fn unique(&mut self, base: String) -> String {
         let mut title = base.clone();

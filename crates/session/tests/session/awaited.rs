@@ -2,13 +2,12 @@
 
 use gaitway_session::{Effect, Event};
 
+use crate::cases::{FOX, MAN};
 use crate::orders::{assert_address_shows_view, in_every_order};
 use crate::program::Content;
 use crate::world::{Act, World};
 
-const FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("fox"))]);
 const WALK: Act = Act::Drop(&[("walk.bvh", Content::Motion)]);
-const MAN: Act = Act::Drop(&[("Man.glb", Content::Model("man"))]);
 const SERVER: &[(&str, Content)] = &[("walker", Content::Model("walker")), ("a.glb", Content::Model("a"))];
 
 /// Lacks its motion, so that the model is shown without it.

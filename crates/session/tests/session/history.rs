@@ -2,14 +2,12 @@
 
 use gaitway_session::{Effect, EntryState};
 
+use crate::cases::{DANCE, FOX, MAN};
 use crate::orders::{assert_address_shows_view, in_every_order, in_some_orders};
 use crate::program::Content;
 use crate::world::{Act, Due, World};
 
-const FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("fox"))]);
 const OTHER_FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("other fox"))]);
-const MAN: Act = Act::Drop(&[("Man.glb", Content::Model("man"))]);
-const DANCE: Act = Act::Drop(&[("dance.bvh", Content::Motion)]);
 const SERVER: &[(&str, Content)] = &[
     ("walker", Content::Model("walker")),
     ("a.glb", Content::Model("a")),
@@ -98,7 +96,7 @@ fn what_could_not_be_loaded_is_tried_again() {
     world.then(Act::Type("model=broken.glb"));
     world.then(Act::TryAgain);
     assert!(world.report.is_some());
-    world.server.insert("broken.glb", Content::Model("mended"));
+    world.server.insert("broken.glb", Content::Model("repaired"));
     in_every_order(&world, &[Act::TryAgain], |world| {
         assert_eq!((world.models(), &world.report), (vec!["broken.glb".to_owned()], &None));
         assert_address_shows_view(world);

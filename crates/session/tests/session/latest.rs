@@ -1,12 +1,10 @@
 //! What was asked for last is what is shown, whatever took how long.
 
+use crate::cases::{DANCE, FOX, MAN};
 use crate::orders::{assert_address_shows_view, in_every_order, in_some_orders};
 use crate::program::Content;
 use crate::world::{Act, World};
 
-const FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("fox"))]);
-const MAN: Act = Act::Drop(&[("Man.glb", Content::Model("man"))]);
-const DANCE: Act = Act::Drop(&[("dance.bvh", Content::Motion)]);
 const SERVER: &[(&str, Content)] = &[
     ("walker", Content::Model("walker")),
     ("a.glb", Content::Model("a")),

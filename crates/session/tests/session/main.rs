@@ -1,6 +1,7 @@
 //! Sessions against a model of the page, its browser and the program, in which everything that takes time ends in any order.
 
 mod awaited;
+mod cases;
 mod history;
 mod latest;
 mod opening;

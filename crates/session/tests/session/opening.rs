@@ -1,20 +1,13 @@
 //! Opening files and addresses: what is opened together, who is answered what, and what the user is told.
 
-use gaitway_session::{Code, Effect, RequestId};
+use gaitway_session::{Effect, ErrorCode, RequestId};
 
+use crate::cases::{FOX, MAN, start};
 use crate::orders::in_every_order;
 use crate::program::Content;
 use crate::world::{Act, Due, World};
 
-const FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("fox"))]);
-const MAN: Act = Act::Drop(&[("Man.glb", Content::Model("man"))]);
-const SERVER: &[(&str, Content)] = &[("walker", Content::Model("walker")), ("a.glb", Content::Model("a"))];
-
-fn start() -> World {
-    World::at_rest("model=walker", SERVER)
-}
-
-fn code_of(world: &World, request: u32) -> Option<Code> {
+fn code_of(world: &World, request: u32) -> Option<ErrorCode> {
     world.answers[&RequestId(request)][0].as_ref().err().and_then(|failure| failure.code)
 }
 
@@ -47,7 +40,7 @@ fn files_of_another_model_are_not_taken_for_those_of_a_gltf() {
     world.then(FOX);
     world.then(Act::Drop(&[("own.gltf", Content::Gltf(&["skin.png"]))]));
     assert_eq!(world.models(), ["Fox.glb"]);
-    assert_eq!(code_of(&world, 3), Some(Code::NotFound));
+    assert_eq!(code_of(&world, 3), Some(ErrorCode::NotFound));
 }
 
 #[test]
@@ -74,7 +67,7 @@ fn each_is_answered_whether_or_not_it_was_overtaken() {
     in_every_order(&start(), &[Act::Script("a.glb"), FOX, MAN], |world| {
         assert_eq!(world.answers[&RequestId(3)][0].as_ref().err(), None);
         for request in [1, 2] {
-            assert!(matches!(code_of(world, request), None | Some(Code::Cancelled)), "{request}");
+            assert!(matches!(code_of(world, request), None | Some(ErrorCode::Cancelled)), "{request}");
         }
     });
 }
@@ -103,7 +96,7 @@ fn a_small_file_that_is_read_sooner_does_not_give_way_to_a_large_one() {
 fn a_damaged_file_changes_nothing() {
     in_every_order(&start(), &[Act::Drop(&[("bad.glb", Content::Damaged)])], |world| {
         assert_eq!((world.models(), world.addresses()), (vec!["walker".to_owned()], vec!["model=walker"]));
-        assert_eq!(code_of(world, 1), Some(Code::Malformed));
+        assert_eq!(code_of(world, 1), Some(ErrorCode::Malformed));
         assert!(world.told.contains(&Effect::SayProblem { message: "bad.glb: damaged".to_owned() }));
     });
 }
@@ -114,7 +107,7 @@ fn a_file_that_cannot_be_read_is_refused_by_the_page() {
     let mut world = start();
     world.moved_files.push("Fox.glb");
     in_every_order(&world, &[FOX], |world| {
-        assert_eq!(code_of(world, 1), Some(Code::NotFound));
+        assert_eq!(code_of(world, 1), Some(ErrorCode::NotFound));
         assert!(world.told.contains(&Effect::Refuse { message: "Fox.glb: the browser can't read it".to_owned() }));
     });
 }

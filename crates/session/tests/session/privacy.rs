@@ -2,6 +2,7 @@
 
 use gaitway_session::{Event, Shown};
 
+use crate::cases::start;
 use crate::orders::in_every_order;
 use crate::program::Content;
 use crate::world::{Act, Due, World};
@@ -10,10 +11,6 @@ const MINE: Act = Act::Drop(&[("Mine.glb", Content::Model("mine"))]);
 const GIVEN: Act = Act::Frame(&[("Fox.glb", Content::Model("fox"))]);
 const DANCE: Act = Act::Drop(&[("mine.bvh", Content::Motion)]);
 const SERVER: &[(&str, Content)] = &[("walker", Content::Model("walker")), ("a.glb", Content::Model("a"))];
-
-fn start() -> World {
-    World::at_rest("model=walker", SERVER)
-}
 
 #[test]
 fn what_shows_the_users_own_files_is_private() {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gaitway_session::{Code, EntryState, Event, Failure, Item, Kind, Link, LinkRole, Role, Shown, TaskId};
+use gaitway_session::{EntryState, ErrorCode, Event, Failure, Item, Kind, Link, LinkRole, Role, Shown, TaskId};
 
 /// What is in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,7 +88,7 @@ fn marked(is_to_bring: bool, name: &str) -> String {
     if is_to_bring { format!("file:{name}") } else { name.to_owned() }
 }
 
-fn failure(code: Code, message: String) -> Failure {
+fn failure(code: ErrorCode, message: String) -> Failure {
     Failure { code: Some(code), message }
 }
 
@@ -163,10 +163,10 @@ impl Program {
         let mut sources = Vec::new();
         for (item, read) in items {
             let name = item.name().to_owned();
-            let lacks = |name: &str| failure(Code::NotFound, format!("{name}: no such file"));
+            let lacks = |name: &str| failure(ErrorCode::NotFound, format!("{name}: no such file"));
             let content = read.or_else(|| server.get(&*name).copied()).ok_or_else(|| lacks(&name))?;
             match content {
-                Content::Damaged => return Err(failure(Code::Malformed, format!("{name}: damaged"))),
+                Content::Damaged => return Err(failure(ErrorCode::Malformed, format!("{name}: damaged"))),
                 Content::Gltf(needed) => {
                     let is_there = |needed: &&str| items.iter().any(|(item, _)| item.name() == *needed);
                     if let Some(missing) = needed.iter().find(|needed| !is_there(needed)) {
@@ -194,7 +194,7 @@ impl Program {
             (None, Some(_)) => Kind::Motion,
             (None, None) if !lights.is_empty() => Kind::Light,
             (None, None) if has_map => Kind::Map,
-            (None, None) => return Err(failure(Code::Unsupported, "nothing can be shown of this".to_owned())),
+            (None, None) => return Err(failure(ErrorCode::Unsupported, "nothing can be shown of this".to_owned())),
         };
         self.view.motions.retain(|name| !lent.contains(name));
         self.view.motions.extend(lent);
@@ -208,7 +208,7 @@ impl Program {
         let wanted = link.without_missing();
         match self.loaded(&wanted, reload, server, &mut problems, &mut read) {
             Some(view) => self.view = view,
-            None => return Err(failure(Code::NotFound, problems.join(" "))),
+            None => return Err(failure(ErrorCode::NotFound, problems.join(" "))),
         }
         Ok((read, problems))
     }

@@ -1,18 +1,13 @@
 //! Programs that end at any time, and those that take their place.
 
-use gaitway_session::{Code, Event, Failure, RequestId};
+use gaitway_session::{ErrorCode, Event, Failure, RequestId};
 
+use crate::cases::{FOX, MAN, start};
 use crate::orders::{assert_address_shows_view, in_every_order, in_some_orders};
 use crate::program::Content;
 use crate::world::{Act, Due, World};
 
-const FOX: Act = Act::Drop(&[("Fox.glb", Content::Model("fox"))]);
-const MAN: Act = Act::Drop(&[("Man.glb", Content::Model("man"))]);
 const SERVER: &[(&str, Content)] = &[("walker", Content::Model("walker")), ("a.glb", Content::Model("a"))];
-
-fn start() -> World {
-    World::at_rest("model=walker", SERVER)
-}
 
 #[test]
 fn a_restart_shows_the_view_again_with_its_local_files() {
@@ -28,7 +23,7 @@ fn a_restart_shows_the_view_again_with_its_local_files() {
 fn everybody_is_answered_when_the_program_ends() {
     in_every_order(&start(), &[FOX, Act::Crash, Act::Launch], |world| {
         if let Err(failure) = &world.answers[&RequestId(1)][0] {
-            assert_eq!(failure.code, Some(Code::LostDevice));
+            assert_eq!(failure.code, Some(ErrorCode::LostDevice));
         }
         assert_address_shows_view(world);
     });
@@ -84,12 +79,12 @@ fn nothing_is_opened_where_no_program_runs() {
     world.act(FOX);
     assert_eq!(world.answers[&RequestId(1)], [], "it waits");
     world.due.clear();
-    let failure = Failure { code: Some(Code::Unsupported), message: "Graphics: none.".to_owned() };
+    let failure = Failure { code: Some(ErrorCode::Unsupported), message: "Graphics: none.".to_owned() };
     world.tell(Event::CannotRun { failure: failure.clone() });
     assert_eq!(world.answers[&RequestId(1)], [Err(failure)]);
 }
 
-/// “Try again” starts the program anew where a link has local files.
+/// “Try again” restarts the program where a link has local files.
 #[test]
 fn trying_a_link_with_local_files_again_restarts_the_program() {
     let mut world = start();

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway_session::{
-    By, Code, Effect, EntryState, Event, Failure, FileId, Item, Link, NamedFile, RequestId, Role, Session, TaskId,
+    By, Effect, EntryState, ErrorCode, Event, Failure, FileId, Item, Link, NamedFile, RequestId, Role, Session, TaskId,
 };
 
 use crate::program::{Content, Load, Program, Server, View, Visited};
@@ -288,7 +288,7 @@ impl World {
                     Some((item, _)) => {
                         let message = format!("{}: the browser can't read it", item.name());
                         self.read.remove(&task);
-                        let failure = Failure { code: Some(Code::NotFound), message };
+                        let failure = Failure { code: Some(ErrorCode::NotFound), message };
                         self.tell(Event::Failed { task, failure });
                     }
                     None => self.tell(Event::Read { task }),
@@ -326,7 +326,7 @@ impl World {
     }
 
     fn refuse_load(&mut self, task: TaskId, message: &str) {
-        let failure = Failure { code: Some(Code::Cancelled), message: message.to_owned() };
+        let failure = Failure { code: Some(ErrorCode::Cancelled), message: message.to_owned() };
         self.due.push(Due::Answer(Event::Failed { task, failure }));
     }
 

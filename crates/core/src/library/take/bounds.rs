@@ -13,8 +13,9 @@ use crate::mesh::Bounds;
 impl Take<'_> {
     /// Poses per second that the bounds are made from, besides those of keys.
     const SAMPLES_PER_SEC: f64 = 60.0;
-    /// Fewest and most of them: of a long clip, or of layers that need many loops to end together, not every movement is seen.
-    const SAMPLES: [f64; 2] = [24.0, 240.0];
+    const MIN_SAMPLES: f64 = 24.0;
+    /// Of a long clip, or of layers that need many loops to end together, not every movement is seen.
+    const MAX_SAMPLES: f64 = 240.0;
 
     /// World-space bounds of the whole take in a scene, without springs and gazes: all that its layers do to it, in as many loops as they
     /// need to end together. `in_place` removes the root's ground-plane travel, and `hidden` the meshes on these joints and their
@@ -56,13 +57,14 @@ impl Take<'_> {
             // Layers play over the rest pose, too.
             None => periods.fold(0.0, f64::max),
         };
-        let [fewest, most] = Self::SAMPLES;
-        let samples = (Self::SAMPLES_PER_SEC * duration_secs).clamp(fewest, most);
+        let samples = (Self::SAMPLES_PER_SEC * duration_secs).clamp(Self::MIN_SAMPLES, Self::MAX_SAMPLES);
         let timelines = self.clip.map_or(&[][..], |over| over.clip.timelines());
         let mut keys: Vec<f32> = timelines.iter().flatten().copied().collect();
         keys.sort_unstable_by(f32::total_cmp);
         keys.dedup();
-        keys.truncate(if keys.len() > most as usize { 0 } else { keys.len() });
+        if keys.len() > Self::MAX_SAMPLES as usize {
+            keys.clear();
+        }
         let regular = (0..=samples as usize).map(|sample| duration_secs * sample as f64 / samples);
         let mut times: Vec<f64> = regular.chain(keys.into_iter().map(f64::from)).collect();
         times.sort_unstable_by(f64::total_cmp);

@@ -19,7 +19,7 @@ pub struct LayeredClip {
 /// Applies layers. Keeps what they need between frames.
 #[derive(Debug, Default)]
 pub(super) struct LayerSampler {
-    held: Vec<LayerState>,
+    states: Vec<LayerState>,
 }
 
 /// What one layer needs.
@@ -35,14 +35,14 @@ impl LayerSampler {
     /// Changes the pose that the clip has after `elapsed_secs`. Allocates only when a layer's mask, the number of layers or the model
     /// changes.
     pub fn apply(&mut self, take: &Take<'_>, elapsed_secs: f64, pose: &mut Pose) {
-        if self.held.len() < take.layers.len() {
-            self.held.resize_with(take.layers.len(), LayerState::default);
+        if self.states.len() < take.layers.len() {
+            self.states.resize_with(take.layers.len(), LayerState::default);
         }
-        for (LayeredClip { clip, layer }, held) in take.layers.iter().zip(&mut self.held) {
+        for (LayeredClip { clip, layer }, state) in take.layers.iter().zip(&mut self.states) {
             let Some(source) = take.model.clip(clip).map(ModelClip::over_layers) else { continue };
-            held.refresh(take.model, &layer.mask);
+            state.refresh(take.model, &layer.mask);
             let skeleton = &take.model.asset.skeleton;
-            layer.apply(skeleton, source, &held.mask, elapsed_secs, &mut held.buffers, pose);
+            layer.apply(skeleton, source, &state.mask, elapsed_secs, &mut state.buffers, pose);
         }
     }
 }
