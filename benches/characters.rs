@@ -6,10 +6,10 @@ mod support;
 use std::f32::consts::TAU;
 use std::hint::black_box;
 
-use gaitway::anim::{
+use gaitway_character::anim::{
     Clip, ClipBuilder, Interpolation, Joint, Keys, Pose, SampleCursor, Skeleton, Transform, model_from_joint,
 };
-use gaitway::mesh::{PaletteEntry, Skin, SkinningMode, write_palette};
+use gaitway_character::mesh::{PaletteEntry, Skin, SkinningMode, write_palette};
 use glam::{Affine3A, Quat, Vec3};
 use support::data_folder::data_folder;
 use support::{files_of, measure};
@@ -93,7 +93,7 @@ fn print(name: &str, rig: &Rig, count: usize, stage: Stage) {
 /// The first skin of a real file with one of its clips; none without the data folder.
 fn real(path: &str, clip: &str) -> Option<Rig> {
     let files = files_of(&data_folder()?.join(path))?;
-    let asset = gaitway::formats::load(&files).expect("a file known to load");
+    let asset = gaitway_formats::load(&files).expect("a file known to load");
     let parts = asset.into_parts();
     let clip = parts.clips.into_iter().find(|found| found.name() == clip)?;
     Some(Rig { skin: parts.skins.into_iter().next()?, skeleton: parts.skeleton, clip })

@@ -5,11 +5,11 @@ mod support;
 
 use std::hint::black_box;
 
-use gaitway::formats::load;
-use gaitway::frame::{Frame, evaluate, pose_document};
-use gaitway::library::{Library, Model};
-use gaitway::mesh::{DeformedVertices, SkinningMode, deform};
-use gaitway::state::{Command, Display, Inspect, Show, ViewerState, apply};
+use gaitway_character::mesh::{DeformedVertices, SkinningMode, deform};
+use gaitway_formats::load;
+use gaitway_scene::frame::{Frame, evaluate, pose_document};
+use gaitway_scene::library::{Library, Model};
+use gaitway_scene::state::{Command, Display, Inspect, Show, ViewerState, apply};
 use support::data_folder::data_folder;
 use support::{files_of, measure};
 

@@ -6,7 +6,7 @@ mod support;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
-use gaitway::formats::load;
+use gaitway_formats::load;
 use support::data_folder::data_folder;
 use support::{files_of, measure};
 

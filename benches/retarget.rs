@@ -5,10 +5,10 @@ mod support;
 
 use std::hint::black_box;
 
-use gaitway::anim::Clip;
-use gaitway::asset::Asset;
-use gaitway::formats::load;
-use gaitway::retarget::{Body, Contacts, ResolvedMap, Retargeting, propose, recognize};
+use gaitway_character::anim::Clip;
+use gaitway_character::asset::Asset;
+use gaitway_formats::load;
+use gaitway_retarget::{Body, Contacts, ResolvedMap, Retargeting, propose, recognize};
 use support::data_folder::data_folder;
 use support::{files_of, measure};
 

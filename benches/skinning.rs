@@ -4,7 +4,9 @@ mod support;
 
 use std::hint::black_box;
 
-use gaitway::mesh::{DeformedVertices, Geometry, Influences, PaletteEntry, SkinningMode, deform, palette_entry};
+use gaitway_character::mesh::{
+    DeformedVertices, Geometry, Influences, PaletteEntry, SkinningMode, deform, palette_entry,
+};
 use glam::{Affine3A, Quat, Vec3};
 use support::measure;
 

@@ -3,9 +3,9 @@
 //! `cargo run --no-default-features --example deform -- assets/samples/dwarf.glb 0.5`
 
 use anyhow::Context;
-use gaitway::anim::{SampleCursor, model_from_joint};
-use gaitway::formats::{FileSet, load};
-use gaitway::mesh::{DeformedVertices, SkinningMode, deform, write_palette};
+use gaitway_character::anim::{SampleCursor, model_from_joint};
+use gaitway_character::mesh::{DeformedVertices, SkinningMode, deform, write_palette};
+use gaitway_formats::{FileSet, load};
 use glam::{Affine3A, Vec3};
 
 fn main() -> anyhow::Result<()> {

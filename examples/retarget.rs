@@ -3,8 +3,8 @@
 //! `cargo run --no-default-features --example retarget -- assets/samples/pilot.glb assets/samples/walk.bvh out.glb`
 
 use anyhow::Context;
-use gaitway::formats::{FileSet, load, write_model};
-use gaitway::retarget::{Body, Retargeting, propose};
+use gaitway_formats::{FileSet, load, write_model};
+use gaitway_retarget::{Body, Retargeting, propose};
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -3,8 +3,8 @@
 //! `cargo run --no-default-features --example sample -- assets/samples/creature.glb 0.5`
 
 use anyhow::Context;
-use gaitway::anim::{SampleCursor, model_from_joint};
-use gaitway::formats::{FileSet, load};
+use gaitway_character::anim::{SampleCursor, model_from_joint};
+use gaitway_formats::{FileSet, load};
 use glam::Affine3A;
 
 fn main() -> anyhow::Result<()> {

@@ -1,17 +1,15 @@
 //! What is fuzzed: one function per reader. Whatever it returns must be consistent, and it must not panic, hang or use
-//! unbounded memory. The fuzz targets call these with libFuzzer's bytes, and `tests/formats/fuzz.rs` with damaged files
+//! unbounded memory. The fuzz targets call these with libFuzzer's bytes, and `tests/damage/fuzz.rs` with damaged files
 //! for a moment in every test run.
 
 // Each target uses one of them.
 #![allow(dead_code)]
 
-use gaitway::asset::Asset;
-use gaitway::formats::{
-    Early, FileSet, LoadOptions, convert, early, load, load_with, missing_files, prepare, read_hdr,
-};
-use gaitway::library::Library;
-use gaitway::retarget::JointMapFile;
-use gaitway::state::{from_link, to_link};
+use gaitway_character::asset::Asset;
+use gaitway_formats::{Early, FileSet, LoadOptions, convert, early, load, load_with, missing_files, prepare, read_hdr};
+use gaitway_retarget::JointMapFile;
+use gaitway_scene::library::Library;
+use gaitway_scene::state::{from_link, to_link};
 
 /// A reader's name and its entry point.
 pub type Entry = (&'static str, fn(&[u8]));

@@ -3,7 +3,7 @@
 #if CHANNEL
 override UVS: bool = false;
 
-// In the order of `Channel` in src/state/channel.rs.
+// In the order of `Channel` in crates/scene/src/state/channel.rs.
 const BASE_COLOR: u32 = 1u;
 const NORMAL: u32 = 2u;
 const TANGENT: u32 = 3u;

@@ -1,4 +1,4 @@
-// Uniforms of a frame. Mirrored by src/render/uniforms.rs; a test compares the layouts.
+// Uniforms of a frame. Mirrored by crates/render/src/uniforms.rs; a test compares the layouts.
 
 const MAX_LIGHTS: u32 = 8u;
 

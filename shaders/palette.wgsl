@@ -1,5 +1,5 @@
 // The palette texture. Only this file knows its layout: entries of five texels (see `PaletteEntry` in
-// crates/core/src/mesh/palette.rs), 256 to a row, followed by the non-zero morph weights, one texel each (target, weight).
+// crates/character/src/mesh/palette.rs), 256 to a row, followed by the non-zero morph weights, one texel each (target, weight).
 
 @group(0) @binding(1) var palette: texture_2d<f32>;
 

@@ -1,4 +1,4 @@
-// Morphing and skinning, equivalent to crates/core/src/mesh/skinning.rs on the CPU.
+// Morphing and skinning, equivalent to crates/character/src/mesh/skinning.rs on the CPU.
 
 struct Draw {
     // First palette entry.

@@ -1,5 +1,5 @@
 // Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, depth, shadow; MToon is in
-// toon.wgsl, single inputs of shading in channel.wgsl. Overrides remove unused features; src/render/shaders.rs explains
+// toon.wgsl, single inputs of shading in channel.wgsl. Overrides remove unused features; crates/render/src/shaders.rs explains
 // `#if`, `#maps`, `#heat` and `#influences`.
 
 override BASE_COLOR_MAP: bool = false;

@@ -1,7 +1,7 @@
 //! Gaitway: drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 //!
-//! One core with three front ends: a web page, a native window and a command line. A module uses only the layers below it;
-//! ARCHITECTURE.md lists them and `tests/core/layering.rs` enforces them.
+//! One core with three front ends: a web page, a native window and a command line, which are here. The layers below are
+//! packages of their own in `crates`, and ARCHITECTURE.md lists them.
 //!
 //! Units are metres, seconds and radians; right-handed, Y up, column vectors, quaternions x y z w, as in glTF. Transforms are
 //! named `target_from_source`, so that adjacent names in a product match: `model_from_joint * joint_from_bind`.
@@ -12,9 +12,9 @@
 //! same steps as programs.
 //!
 //! ```
-//! use gaitway::anim::SampleCursor;
-//! use gaitway::formats::{FileSet, load, write_model};
-//! use gaitway::retarget::{Body, Retargeting, propose};
+//! use gaitway_character::anim::SampleCursor;
+//! use gaitway_formats::{FileSet, load, write_model};
+//! use gaitway_retarget::{Body, Retargeting, propose};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // Loaders never touch the disk: they read an in-memory set of named files.
@@ -51,16 +51,6 @@
 #![forbid(unsafe_code)]
 // Files are untrusted: whatever is wrong with them must be reported, never panic.
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
-
-pub use gaitway_core::{anim, asset, avatar, formats, library, mesh, retarget};
-
-pub mod editor;
-pub mod frame;
-pub mod samples;
-pub mod state;
-
-#[cfg(feature = "render")]
-pub mod render;
 
 #[cfg(feature = "viewer")]
 pub mod app;

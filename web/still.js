@@ -1,7 +1,7 @@
 // Runs before anything is shown: picks the image that covers the page while it loads, and starts downloading the
 // samples of the link side by side with the program, and its models from part of the way on: they may be large. There
 // is no program yet that could read the link, and this script doesn't read it either: it searches its text for names
-// that are worth having early. tests/scene/early.json holds what it finds against the files that the program finds.
+// that are worth having early. crates/scene/tests/scene/early.json holds what it finds against the files that the program finds.
 
 (() => {
   const still = /** @type {HTMLImageElement} */ (document.getElementById("loading-still"));

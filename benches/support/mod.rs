@@ -7,7 +7,7 @@ pub mod data_folder;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use gaitway::formats::{FileSet, missing_files};
+use gaitway_formats::{FileSet, missing_files};
 
 const ROUNDS: usize = 41;
 const ROUND: Duration = Duration::from_millis(12);

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use gaitway::anim::{
+use gaitway_character::anim::{
     Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton, model_from_joint,
 };
 use glam::{Affine3A, Mat4, Quat, Vec3};

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gaitway::anim;
 use gaitway::cli::functions::{Made, save_clip};
+use gaitway_character::anim;
 use numpy::{Ix3, PyArray1, PyArray4};
 use pyo3::prelude::*;
 

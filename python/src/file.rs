@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gaitway::anim::{Clip as CoreClip, Skeleton};
-use gaitway::asset::{Asset, AssetParts};
 use gaitway::cli::functions::{self, Loaded};
 use gaitway::files::Opened;
-use gaitway::library::{self, inspect};
+use gaitway_character::anim::{Clip as CoreClip, Skeleton};
+use gaitway_character::asset::{Asset, AssetParts};
+use gaitway_scene::library::{self, inspect};
 use numpy::{Ix2, PyArray1};
 use pyo3::prelude::*;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gaitway::cli::functions::{self, Made};
-use gaitway::editor::OpenedMap;
+use gaitway_scene::editor::OpenedMap;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyString, PyTuple};
 use serde_json::Value;

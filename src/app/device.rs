@@ -4,10 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu;
-
-use crate::render::device_descriptor;
+use gaitway_render::device_descriptor;
 #[cfg(target_arch = "wasm32")]
-use crate::render::next_turn;
+use gaitway_render::next_turn;
 
 /// Called with the message of a fatal graphics error; see [`set_fatal_hook`].
 pub type FatalHook = fn(&str);

@@ -1,10 +1,11 @@
 //! What the frame loop leaves to the platform: file dialogs, links, recording, and change notifications.
 
+use gaitway_scene::editor::ExportedFile;
+use gaitway_scene::library::{Library, ModelId};
+use gaitway_scene::state::ViewerState;
+
 use super::Inbox;
-use crate::editor::ExportedFile;
 use crate::files::{ImageLimits, Role};
-use crate::library::{Library, ModelId};
-use crate::state::ViewerState;
 use crate::ui::RecordingFormat;
 
 /// One loop of a clip to record.
@@ -71,7 +72,7 @@ pub trait Host {
         false
     }
 
-    /// Validates the glTF of a model, whose files [`Editor::gltf_file`](crate::editor::Editor::gltf_file) returns. Sends
+    /// Validates the glTF of a model, whose files [`Editor::gltf_file`](gaitway_scene::editor::Editor::gltf_file) returns. Sends
     /// [`Message::Validated`](super::Message::Validated). Called only if [`Host::has_validator`] returns true.
     fn validate(&self, model: ModelId, inbox: &Inbox) {
         let _ = (model, inbox);
@@ -116,7 +117,7 @@ pub trait Host {
     fn link(&self, fragment: &str) -> String;
 
     /// Called when the state has changed other than by time passing, or when there is a new message for the user, with
-    /// [`Editor::shared_state`](crate::editor::Editor). The library has the clips that the state refers to.
+    /// [`Editor::shared_state`](gaitway_scene::editor::Editor). The library has the clips that the state refers to.
     fn state_changed(&self, state: &ViewerState, library: &Library);
 
     /// Whether the user prefers reduced motion: views start paused and don't turn.

@@ -5,9 +5,10 @@ use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::editor::{Contents, ExportedFile};
-use crate::library::ModelId;
-use crate::state::ViewerState;
+use gaitway_scene::editor::{Contents, ExportedFile};
+use gaitway_scene::library::ModelId;
+use gaitway_scene::state::ViewerState;
+
 use crate::ui::Progress;
 
 /// A message to the frame loop.

@@ -4,12 +4,13 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use gaitway_scene::editor::{Contents, ExportedFile};
+use gaitway_scene::library::Library;
+use gaitway_scene::samples;
+use gaitway_scene::state::ViewerState;
+
 use super::{App, Host, Inbox, Loads, Message, native_options};
-use crate::editor::{Contents, ExportedFile};
 use crate::files::{Disk, ImageLimits, OpenError, Role, save_file};
-use crate::library::Library;
-use crate::samples;
-use crate::state::ViewerState;
 use crate::ui::Progress;
 
 /// Why the window could not be opened, or stopped.

@@ -1,7 +1,8 @@
 //! Messages for the user: errors and what can't be used of a view stay until dismissed, notices for a few seconds.
 
+use gaitway_scene::editor::Event;
+
 use super::App;
-use crate::editor::Event;
 use crate::ui::{Toast, text};
 
 impl App {

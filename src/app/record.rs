@@ -1,12 +1,13 @@
 //! Recording one loop of the clip as a video, a GIF or images. The host asks for one frame after the other and encodes it, so the
 //! result is the same however long a frame takes. What is on screen stays as it is.
 
+use gaitway_render::read_pixels;
+use gaitway_scene::editor::AWAITS_IMAGES;
+use gaitway_scene::state::{Background, LoopFrames};
+
 use super::recording::Recording;
 use super::viewport::fitted;
 use super::{App, Video};
-use crate::editor::AWAITS_IMAGES;
-use crate::render::read_pixels;
-use crate::state::{Background, LoopFrames};
 use crate::ui::{RecordingFormat, RecordingProgress, VideoSettings, text};
 
 /// Of a GIF's longer edge, in pixels. GIFs hardly compress: four seconds at this size take about 6 MB.

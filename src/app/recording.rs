@@ -1,7 +1,8 @@
 //! What a recording remembers from its first frame to its last.
 
-use crate::library::ModelId;
-use crate::state::LoopFrames;
+use gaitway_scene::library::ModelId;
+use gaitway_scene::state::LoopFrames;
+
 use crate::ui::RecordingFormat;
 
 /// One loop of the clip, being recorded.

@@ -4,15 +4,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use gaitway_render::texture_formats;
+use gaitway_scene::editor::{Admit, Contents, Editor, OpenedModel};
+use gaitway_scene::library::{Library, ModelId, Motion};
+use gaitway_scene::state::{Command, PageOptions, ViewerState, to_link};
+
 use super::recording::Recording;
 use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Reply, ScriptCall, device};
-use crate::editor::{Admit, Contents, Editor, OpenedModel};
 use crate::files::Role;
-use crate::library::{Library, ModelId, Motion};
-use crate::render::texture_formats;
-use crate::state::{Command, PageOptions, ViewerState, to_link};
 use crate::ui::{self, Output, Shown, UiAction, UiState};
 
 /// The app that eframe runs, in a window or a page: owns the editor, the viewport and the panels.
@@ -224,8 +225,8 @@ impl App {
     #[cfg(target_arch = "wasm32")]
     pub fn rehearse(
         &mut self,
-        character: &crate::library::Model,
-        frame: &crate::frame::Frame,
+        character: &gaitway_scene::library::Model,
+        frame: &gaitway_scene::frame::Frame,
         part: super::RehearsalPart,
     ) {
         self.viewport.scene.rehearse(character, frame, part);
@@ -254,7 +255,7 @@ impl App {
     #[cfg(target_arch = "wasm32")]
     pub fn drawn(&self) -> impl Future<Output = ()> + use<> {
         let (device, queue, _) = self.viewport.scene.last_image();
-        async move { crate::render::finished(&device, &queue).await }
+        async move { gaitway_render::finished(&device, &queue).await }
     }
 
     /// Returns frame times in milliseconds, the graphics backend, and counts for the last frame drawn, as an object.

@@ -1,12 +1,13 @@
 //! Saving files for the user: the editor's exports, and images, which take the graphics device.
 
+use gaitway_render::read_pixels;
+use gaitway_scene::editor::ExportedFile;
+use gaitway_scene::library::Model;
+
 use super::App;
 #[cfg(target_arch = "wasm32")]
 use super::Message;
-use crate::editor::ExportedFile;
 use crate::files::encode_png;
-use crate::library::Model;
-use crate::render::read_pixels;
 use crate::ui::Saved;
 
 impl App {

@@ -1,11 +1,10 @@
 //! The scene, rendered to a texture of its own. It holds encoded values, which the screen shows as they are.
 
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
-
-use crate::frame::Frame;
-use crate::library::{Model, ModelId};
-use crate::render::{Blit, RenderStats, Renderer, RendererOptions, UploadError};
-use crate::state::Background;
+use gaitway_render::{Blit, RenderStats, Renderer, RendererOptions, UploadError};
+use gaitway_scene::frame::Frame;
+use gaitway_scene::library::{Model, ModelId};
+use gaitway_scene::state::Background;
 
 pub(super) struct SceneTexture {
     gpu: RenderState,

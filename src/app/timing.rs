@@ -1,6 +1,7 @@
 //! Frame times, for `window.gaitway.stats()` and the Info tab.
 
-use crate::library::ModelId;
+use gaitway_scene::library::ModelId;
+
 use crate::ui::FrameTimes;
 
 /// Zero until measured.

@@ -1,8 +1,9 @@
 //! Validates a model's file. The host runs the validator without blocking the frame loop.
 
+use gaitway_scene::editor::ValidatorReport;
+use gaitway_scene::library::ModelId;
+
 use super::App;
-use crate::editor::ValidatorReport;
-use crate::library::ModelId;
 use crate::ui::{Validation, text};
 
 impl App {

@@ -1,12 +1,12 @@
 //! The viewport: evaluates and draws the editor's state, but only when something it depends on has changed.
 
 use eframe::egui_wgpu::RenderState;
+use gaitway_scene::editor::Editor;
+use gaitway_scene::frame::{Frame, evaluate};
+use gaitway_scene::library::{Library, Model, ModelId};
+use gaitway_scene::state::{Background, Display, ViewerState, source_on_stage};
 
 use super::scene_texture::SceneTexture;
-use crate::editor::Editor;
-use crate::frame::{Frame, evaluate};
-use crate::library::{Library, Model, ModelId};
-use crate::state::{Background, Display, ViewerState, source_on_stage};
 
 pub(super) struct Viewport {
     pub scene: SceneTexture,

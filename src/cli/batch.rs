@@ -11,6 +11,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use gaitway_scene::editor::{ClipFormat, OpenedMap};
 use serde_json::{Value, json};
 
 use super::RetargetArguments;
@@ -19,7 +20,6 @@ use super::motion::{open_map, read_motion};
 use super::output::{print_error, print_json};
 use super::retarget::{Made, clip_file, make};
 use super::{inputs, open};
-use crate::editor::{ClipFormat, OpenedMap};
 use crate::files::{Disk, Opened, save_file};
 
 /// Shortest time between two updates of the progress.

@@ -1,13 +1,13 @@
 //! Options that change the clip that is written, shared by `retarget` and `convert`.
 
 use clap::Args;
+use gaitway_character::anim::{Clip, TimeRange};
+use gaitway_character::asset::Asset;
+use gaitway_retarget::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::read_numbers;
-use crate::anim::{Clip, TimeRange};
-use crate::asset::Asset;
-use crate::retarget::{ChangedClip, ClipChanges, Seam, Symmetry, change_clip};
 
 /// Durations are printed in milliseconds, so a clip's end as typed may be up to half of one late.
 const TRIM_TOLERANCE_SECS: f64 = 0.000_5;

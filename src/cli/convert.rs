@@ -1,16 +1,17 @@
 //! `gaitway convert`: converts any supported model to a single GLB, or one of its clips to BVH or a VRM animation.
 
+use gaitway_character::asset::Asset;
+use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_renamed_model};
+use gaitway_retarget::ChangedClip;
+use gaitway_scene::editor::{ClipFormat, Export, write_clip};
+use gaitway_scene::library::{ClipEdits, ClipId, Library, Model, ModelClip};
+
 use super::failure::{Failure, Outcome};
 use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
 use super::output::{print_error, warn, write_output};
 use super::retarget::{choose_clip, clip_format_of, model_extensions};
 use super::{ConvertArguments, Unit, open, print_warnings};
-use crate::asset::Asset;
-use crate::editor::{ClipFormat, Export, write_clip};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
-use crate::formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_renamed_model};
-use crate::library::{ClipEdits, ClipId, Library, Model, ModelClip};
-use crate::retarget::ChangedClip;
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
     let (bytes, extensions) = match &arguments.view {

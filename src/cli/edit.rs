@@ -1,15 +1,15 @@
 //! Options that edit the clip that is written, shared by `retarget` and `convert`.
 
 use clap::Args;
+use gaitway_character::anim::Clip;
+use gaitway_retarget::{ChangedClip, ClipOverLayers, Symmetry};
+use gaitway_scene::library::{BakedTake, Model, Take};
+use gaitway_scene::state::one_line;
 
 use super::change::ChangeOptions;
 use super::failure::Outcome;
 use super::layer::LayerOptions;
 use super::pin::PinOptions;
-use crate::anim::Clip;
-use crate::library::{BakedTake, Model, Take};
-use crate::retarget::{ChangedClip, ClipOverLayers, Symmetry};
-use crate::state::one_line;
 
 #[derive(Debug, Args)]
 pub(super) struct EditOptions {

@@ -2,13 +2,13 @@
 
 use std::fmt::Display;
 
+use gaitway_formats::{LoadError, WriteError};
+use gaitway_retarget::{MapError, RetargetError};
+use gaitway_scene::library::BorrowError;
+use gaitway_scene::state::UnknownName;
 use serde::Serialize;
 
 use crate::files::{OpenError, SaveError, SortError};
-use crate::formats::{LoadError, WriteError};
-use crate::library::BorrowError;
-use crate::retarget::{MapError, RetargetError};
-use crate::state::UnknownName;
 
 /// The result of a command or a part of one.
 pub type Outcome<T = ()> = Result<T, Failure>;
@@ -186,8 +186,8 @@ failure_from! {
 
 #[cfg(feature = "render")]
 failure_from! {
-    crate::render::HeadlessError: |_| Failure::default(),
-    crate::render::UploadError: |_| Failure::default(),
+    gaitway_render::HeadlessError: |_| Failure::default(),
+    gaitway_render::UploadError: |_| Failure::default(),
 }
 
 #[cfg(feature = "viewer")]

@@ -4,6 +4,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use gaitway_character::anim::Clip;
+use gaitway_scene::editor::{ClipFormat, OpenedMap, write_clip};
+use gaitway_scene::library::{Model, Motion};
 use serde_json::Value;
 
 use super::RetargetChoices;
@@ -14,10 +17,7 @@ use super::output::save_output;
 pub use super::retarget::Made;
 use super::retarget::{clip_format_of, make, model_extensions, model_file};
 use super::usage_message;
-use crate::anim::Clip;
-use crate::editor::{ClipFormat, OpenedMap, write_clip};
 use crate::files::{Disk, Opened, read_map};
-use crate::library::{Model, Motion};
 
 /// A loaded file and the paths of all files that were read for it, none of which is overwritten.
 #[derive(Debug)]

@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use gaitway_formats::limits::MAX_FOLDER_DEPTH;
+use gaitway_formats::{GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS};
+
 use super::failure::{Failure, Outcome};
-use crate::formats::limits::MAX_FOLDER_DEPTH;
-use crate::formats::{GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS};
 
 /// A motion.
 pub(super) struct Input {

@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
+use gaitway_scene::library::inspect;
 use serde_json::Value;
 
 use super::failure::Outcome;
 use super::output::{print_bytes, print_json, warn};
 use super::{InspectArguments, open};
 use crate::files::{Disk, Opened};
-use crate::library::inspect;
 
 pub(super) fn run(arguments: &InspectArguments, disk: &Disk) -> Outcome {
     let opened = open(&arguments.input.files, disk)?;

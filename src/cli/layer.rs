@@ -1,13 +1,13 @@
 //! `--layer`: clips over the one that is shown or written.
 
 use clap::Args;
+use gaitway_character::asset::Asset;
+use gaitway_retarget::ClipLayer;
+use gaitway_scene::library::{ClipId, LayeredClip, Model};
+use gaitway_scene::state::{read_layer, unknown_layers};
 
 use super::failure::{Failure, Outcome};
 use super::retarget::clip_named;
-use crate::asset::Asset;
-use crate::library::{ClipId, LayeredClip, Model};
-use crate::retarget::ClipLayer;
-use crate::state::{read_layer, unknown_layers};
 
 /// Clips over the one that is shown or written.
 #[derive(Debug, Default, Args)]

@@ -2,17 +2,17 @@
 
 use std::fmt::Write;
 
+use gaitway_character::anim::Skeleton;
+use gaitway_character::asset::Asset;
+use gaitway_retarget::{Body, Contradiction, JointMap, Proposal, Recognized, ResolvedMap, Retargeting};
+use gaitway_scene::library::{Model, Motion, proposal_for};
 use serde_json::{Value, json};
 
 use super::failure::Outcome;
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_motion};
 use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
 use super::{MapArguments, open};
-use crate::anim::Skeleton;
-use crate::asset::Asset;
 use crate::files::Disk;
-use crate::library::{Model, Motion, proposal_for};
-use crate::retarget::{Body, Contradiction, JointMap, Proposal, Recognized, ResolvedMap, Retargeting};
 
 pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let model = open(std::slice::from_ref(&arguments.model), disk)?.model;

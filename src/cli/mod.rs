@@ -29,16 +29,16 @@ use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use gaitway_character::anim::{ClipQuery, LoopMode, find_clip};
+use gaitway_character::asset::Warnings;
+use gaitway_character::mesh::SkinningMode;
+use gaitway_retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart};
+use gaitway_scene::editor::{ClipFormat, Editor};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{ClipChoice, Command, unknown_clip};
 use serde_json::json;
 
-use crate::anim::{ClipQuery, LoopMode, find_clip};
-use crate::asset::Warnings;
-use crate::editor::{ClipFormat, Editor};
 use crate::files::{Disk, Opened};
-use crate::library::Model;
-use crate::mesh::SkinningMode;
-use crate::retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart};
-use crate::state::{ClipChoice, Command, unknown_clip};
 use edit::EditOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;

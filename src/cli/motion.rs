@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use gaitway_retarget::{FoundRest, RestOrigin};
+use gaitway_scene::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
+use gaitway_scene::library::Motion;
+use gaitway_scene::state::{CharacterView, ClipChoice, Command, Sources, ViewerState, from_link, view_problems};
 use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::output::warn;
 use super::print_warnings;
-use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Held, Opened, Role, member_of};
-use crate::library::Motion;
-use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{CharacterView, ClipChoice, Command, Sources, ViewerState, from_link, view_problems};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use clap::Args;
+use gaitway_character::asset::{Asset, Slot};
+use gaitway_retarget::{Pin, PinGoal, Pinning, Recognized};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{NameKind, UnknownName, read_pin};
 use glam::Affine3A;
 
 use super::failure::{Failure, Outcome};
-use crate::asset::{Asset, Slot};
-use crate::library::Model;
-use crate::retarget::{Pin, PinGoal, Pinning, Recognized};
-use crate::state::{NameKind, UnknownName, read_pin};
 
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Pins")]

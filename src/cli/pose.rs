@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
+use gaitway_scene::frame::{NodePose, PoseDocument};
+
 use super::failure::Outcome;
 use super::motion::{apply_link, open_editor};
 use super::output::print_bytes;
 use super::{PoseArguments, apply_moment, open};
 use crate::files::Disk;
-use crate::frame::{NodePose, PoseDocument};
 
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;

@@ -1,5 +1,13 @@
 //! `gaitway render`: renders the same image as the page, or the frames of one loop, without a window.
 
+use gaitway_render::{Renderer, RendererOptions, headless_device, read_pixels};
+use gaitway_scene::editor::{Contents, Editor};
+use gaitway_scene::frame::{Frame, current_orbit, evaluate};
+use gaitway_scene::library::Library;
+use gaitway_scene::state::{
+    Background, CameraChoice, Command, EnvironmentChoice, LoopFrames, NameKind, OrbitCamera, UnknownName, ViewerState,
+    active_variant, from_object, source_on_stage,
+};
 use serde_json::json;
 
 use super::failure::{Failure, Outcome};
@@ -8,15 +16,7 @@ use super::output::{check_output, is_standard_output, print_error, write_output}
 use super::quiet::Quiet;
 use super::sequence::{Format, Sequence};
 use super::{RenderArguments, apply_moment, open};
-use crate::editor::{Contents, Editor};
 use crate::files::{Disk, Role, encode_png};
-use crate::frame::{Frame, current_orbit, evaluate};
-use crate::library::Library;
-use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
-use crate::state::{
-    Background, CameraChoice, Command, EnvironmentChoice, LoopFrames, NameKind, OrbitCamera, UnknownName, ViewerState,
-    active_variant, from_object, source_on_stage,
-};
 
 /// File extensions for the image.
 const EXTENSIONS: &[&str] = &["png"];

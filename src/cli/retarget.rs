@@ -2,6 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use gaitway_character::anim::{Clip, ClipQuery, JointIndex, find_clip};
+use gaitway_character::asset::Asset;
+use gaitway_formats::write_model;
+use gaitway_retarget::{
+    ChangedClip, ClipOverLayers, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped,
+    layer_clips,
+};
+use gaitway_scene::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
+use gaitway_scene::library::{Model, Motion, Take, clip_file_name, map_for, warning_documents, with_expressions};
+use gaitway_scene::state::{NameKind, UnknownName};
 use serde_json::{Value, json};
 
 use super::edit::baked;
@@ -9,17 +19,7 @@ use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
-use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
-use crate::asset::Asset;
-use crate::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use crate::files::{Disk, Opened};
-use crate::formats::write_model;
-use crate::library::{Model, Motion, Take, clip_file_name, map_for, warning_documents, with_expressions};
-use crate::retarget::{
-    ChangedClip, ClipOverLayers, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped,
-    layer_clips,
-};
-use crate::state::{NameKind, UnknownName};
 
 pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     let out = match (&arguments.out, &arguments.out_dir) {
@@ -180,7 +180,7 @@ pub(super) fn clip_format_of(out: &Path) -> Option<ClipFormat> {
 
 /// Applies the command line's options, which override the map.
 fn apply_options(map: &mut JointMap, options: &RetargetOptions) {
-    let set = |slot: &mut crate::retarget::RootPart, part: Option<super::RootPartArgument>| {
+    let set = |slot: &mut gaitway_retarget::RootPart, part: Option<super::RootPartArgument>| {
         *slot = part.map_or(*slot, Into::into);
     };
     set(&mut map.root.horizontal, options.horizontal);

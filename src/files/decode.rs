@@ -2,14 +2,14 @@
 
 use std::io::Cursor;
 
+use gaitway_character::asset::{Asset, Image};
+use gaitway_formats::Part;
+use gaitway_formats::limits::MAX_IMAGE_SIDE;
+use gaitway_scene::library::ImageData;
 use image::{ImageReader, Limits};
 
 use super::ImageLimits;
 use super::images::{byte_count, fitted, is_ktx2, largest_edge, push_decoded, transcoded};
-use crate::asset::{Asset, Image};
-use crate::formats::Part;
-use crate::formats::limits::MAX_IMAGE_SIDE;
-use crate::library::ImageData;
 
 /// Memory a decoder may use besides the pixels, which may have 16 bits per channel.
 const DECODER_BYTES: u64 = 64 << 20;

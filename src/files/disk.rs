@@ -8,20 +8,20 @@ use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
+use gaitway_character::asset::{Asset, Image};
+use gaitway_formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
+use gaitway_formats::{FileSet, LoadError, Preparation};
 use gaitway_part::Answer;
+use gaitway_retarget::JointMapFile;
+use gaitway_scene::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
+use gaitway_scene::library::{ImageData, Model, Motion};
+use gaitway_scene::samples;
+use gaitway_scene::state::{MEMBER_SEPARATOR, ViewerState};
 
 use super::open::open_read;
 use super::read::{FilesRead, Item, read_items};
 use super::source::{Content, Located, Progress, Reading, Source};
 use super::{Held, ImageLimits, OpenError, Role, SortError, decode_images, view};
-use crate::asset::{Asset, Image};
-use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
-use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
-use crate::formats::{FileSet, LoadError, Preparation};
-use crate::library::{ImageData, Model, Motion};
-use crate::retarget::JointMapFile;
-use crate::samples;
-use crate::state::{MEMBER_SEPARATOR, ViewerState};
 
 /// One model with the motions and the joint map that were opened along with it.
 #[derive(Debug)]

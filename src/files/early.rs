@@ -7,12 +7,12 @@
 //! This is only for a page that starts with a link to a single file: one that shows something already keeps that until the
 //! next model is complete.
 
-use crate::anim::TextureSlot;
-use crate::asset::Asset;
-use crate::editor::container_of;
-use crate::formats::{Early, FileSet, LoadOptions, early, load_named};
-use crate::library::{ImageData, Model};
-use crate::state::{EnvironmentChoice, MotionMap, ViewerState};
+use gaitway_character::anim::TextureSlot;
+use gaitway_character::asset::Asset;
+use gaitway_formats::{Early, FileSet, LoadOptions, early, load_named};
+use gaitway_scene::editor::container_of;
+use gaitway_scene::library::{ImageData, Model};
+use gaitway_scene::state::{EnvironmentChoice, MotionMap, ViewerState};
 
 /// Watches the download of a model for the moment from which it can be shown.
 pub struct EarlyWatch<'a> {

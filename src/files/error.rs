@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use gaitway_formats::LoadError;
 use gaitway_session::ErrorCode;
 
 use super::SortError;
-use crate::formats::LoadError;
 
 /// Names the file and, where possible, what to do next.
 #[derive(Debug, thiserror::Error)]

@@ -4,13 +4,13 @@
 //! KTX2 images are transcoded when the others are decoded, since the device decides into what. The file stays as it is, so a
 //! written model keeps them, and one that can't be decoded costs only its texture.
 
+use gaitway_character::asset::{Asset, Image, Warning};
+use gaitway_formats::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
 use gaitway_ktx2::Texture;
 use gaitway_part::Answer;
+use gaitway_scene::library::ImageData;
 
 use super::ImageLimits;
-use crate::asset::{Asset, Image, Warning};
-use crate::formats::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
-use crate::library::ImageData;
 
 pub(super) fn is_ktx2(image: &Image) -> bool {
     image.bytes.starts_with(&gaitway_ktx2::MAGIC)

@@ -1,5 +1,5 @@
 //! Opening files from disk, network, drop or picker: reads them, sorts them by content and decodes images, which gives
-//! [`crate::editor::Contents`]. The trait `source::Source` is what disk and network have in common.
+//! [`gaitway_scene::editor::Contents`]. The trait `source::Source` is what disk and network have in common.
 
 mod address;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,11 +1,12 @@
 //! Opens a set of items: reads them, sorts them by content and decodes the images of the models.
 
+use gaitway_scene::editor::Contents;
+use gaitway_scene::library::Derived;
+
 use super::read::{FilesRead, Item, read_items};
 use super::sort::sort_noticing_images;
 use super::source::{Progress, Source};
 use super::{OpenError, Role, Sorted};
-use crate::editor::Contents;
-use crate::library::Derived;
 
 pub(super) async fn open_items<S: Source>(
     source: &S,

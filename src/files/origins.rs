@@ -1,12 +1,13 @@
 //! Where the files of a set came from, which decides what models and motions are called and what a view lists to open them
 //! again.
 
+use gaitway_character::asset::Asset;
+use gaitway_formats::FileSet;
+use gaitway_scene::editor::{Contents, ModelFiles, OpenedModel, container_of};
+use gaitway_scene::library::{Derived, Environment, ImageData, Model, Motion};
+use gaitway_scene::state::MEMBER_SEPARATOR;
+
 use super::{Role, Sorted};
-use crate::asset::Asset;
-use crate::editor::{Contents, ModelFiles, OpenedModel, container_of};
-use crate::formats::FileSet;
-use crate::library::{Derived, Environment, ImageData, Model, Motion};
-use crate::state::MEMBER_SEPARATOR;
 
 #[derive(Debug, Default)]
 pub(super) struct Origins {

@@ -2,14 +2,15 @@
 
 use std::ffi::{OsStr, OsString};
 
+use gaitway_formats::limits::MAX_FOLDER_FILES;
+use gaitway_formats::{FileSet, GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS, missing_files, next_preparation};
+use gaitway_scene::editor::{container_of, short_name};
+use gaitway_scene::library::Model;
+use gaitway_scene::samples;
+
 use super::origins::Origins;
 use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, SortError};
-use crate::editor::{container_of, short_name};
-use crate::formats::limits::MAX_FOLDER_FILES;
-use crate::formats::{FileSet, GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS, missing_files, next_preparation};
-use crate::library::Model;
-use crate::samples;
 
 /// One part of a set to open.
 #[derive(Debug)]

@@ -1,13 +1,13 @@
 //! Sorts a set of files by content: models, motions to borrow, a joint map.
 
-use crate::asset::{Asset, Image, Panorama};
-use crate::editor::OpenedMap;
-use crate::formats::limits::MAX_MAP_BYTES;
-use crate::formats::{
+use gaitway_character::asset::{Asset, Image, Panorama};
+use gaitway_formats::limits::MAX_MAP_BYTES;
+use gaitway_formats::{
     FileSet, HdrError, LoadError, LoadOptions, is_hdr, load, load_noticing_images, main_files, read_hdr,
 };
-use crate::library::Library;
-use crate::retarget::{JointMapFile, MapError};
+use gaitway_retarget::{JointMapFile, MapError};
+use gaitway_scene::editor::OpenedMap;
+use gaitway_scene::library::Library;
 
 /// What the user opens the files for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

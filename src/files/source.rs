@@ -2,13 +2,13 @@
 
 use std::ffi::OsStr;
 
+use gaitway_character::asset::{Asset, Image};
+use gaitway_formats::Preparation;
+use gaitway_formats::limits::MAX_READ_BYTES;
 use gaitway_part::Answer;
+use gaitway_scene::library::ImageData;
 
 use super::OpenError;
-use crate::asset::{Asset, Image};
-use crate::formats::Preparation;
-use crate::formats::limits::MAX_READ_BYTES;
-use crate::library::ImageData;
 
 /// Called with the name of the file being read, the bytes received so far and the total, 0 if unknown.
 pub type Progress<'a> = &'a dyn Fn(&str, u64, u64);

@@ -4,14 +4,17 @@ use std::cell::Cell;
 use std::ffi::OsStr;
 use std::io::ErrorKind;
 
+use gaitway_retarget::JointMapFile;
+use gaitway_scene::editor::{Contents, container_of};
+use gaitway_scene::library::{Environment, Model, Motion};
+use gaitway_scene::state::{
+    CharacterView, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring,
+};
+
 use super::open::{open_items, open_read};
 use super::read::{Item, read_available};
 use super::source::{Content, Progress, Reading, Source};
 use super::{OpenError, Role, read_map};
-use crate::editor::{Contents, container_of};
-use crate::library::{Environment, Model, Motion};
-use crate::retarget::JointMapFile;
-use crate::state::{CharacterView, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
 /// Loaded files that need not be opened again, identified by their origin.
 #[derive(Debug, Clone, Copy, Default)]

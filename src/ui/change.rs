@@ -1,13 +1,13 @@
 //! Edits of the current clip: a section of the Motion tab.
 
 use egui::Ui;
+use gaitway_character::anim::TimeRange;
+use gaitway_retarget::ClipChanges;
+use gaitway_scene::library::{ClipEdits, ModelClip};
+use gaitway_scene::state::{ClipEdit, Command, active_clip};
 
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text};
-use crate::anim::TimeRange;
-use crate::library::{ClipEdits, ModelClip};
-use crate::retarget::ClipChanges;
-use crate::state::{ClipEdit, Command, active_clip};
 
 const SPEED: SliderSettings = SliderSettings {
     range: (ClipChanges::MIN_SPEED, ClipChanges::MAX_SPEED),

@@ -1,13 +1,13 @@
 //! The left panel: the open models, and the clips of the active one.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
+use gaitway_scene::editor::{name_and_place, short_name};
+use gaitway_scene::library::{ClipId, Model, ModelClip, ModelId};
+use gaitway_scene::state::{ClipChoice, Command, is_to_bring};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::search::finds;
 use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
-use crate::editor::{name_and_place, short_name};
-use crate::library::{ClipId, Model, ModelClip, ModelId};
-use crate::state::{ClipChoice, Command, is_to_bring};
 
 /// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;

@@ -1,12 +1,12 @@
 //! Foot-contact tracks under the timeline: when each foot is planted, and how fast it slides meanwhile.
 
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
+use gaitway_retarget::FootTrack;
+use gaitway_scene::library::Model;
+use gaitway_scene::state::title;
 
 use super::tracks::{row, short, widest};
 use super::{Shown, scrub, style, text};
-use crate::library::Model;
-use crate::retarget::FootTrack;
-use crate::state::title;
 
 /// Height of the line that explains colours and scale.
 const LEGEND_HEIGHT: f32 = 16.0;

@@ -2,8 +2,7 @@
 
 use egui::accesskit::{Action, ActionRequest};
 use egui::{Event, Id, Key, PointerButton, Ui};
-
-use crate::editor::Editor;
+use gaitway_scene::editor::Editor;
 
 /// Begins the gestures of a frame. Call it before the frame's commands are applied.
 pub fn begin_gestures(ui: &Ui, editor: &mut Editor) {

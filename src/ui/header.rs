@@ -1,13 +1,13 @@
 //! The header: the name, opening and borrowing on the left; undo, saving, sharing and the menu on the right.
 
 use egui::{Align, Layout, RichText, ThemePreference, Ui};
+use gaitway_scene::editor::{ClipFormat, Export, derived_clip};
+use gaitway_scene::library::{Model, ModelClip};
+use gaitway_scene::state::active_clip;
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
-use crate::editor::{ClipFormat, Export, derived_clip};
-use crate::library::{Model, ModelClip};
-use crate::state::active_clip;
 
 const MENU_WIDTH: f32 = 220.0;
 /// Smaller screens have no room for the name.

@@ -1,11 +1,11 @@
 //! Keyboard shortcuts: one table for both handling and help.
 
 use egui::{Context, Key, Modifiers};
+use gaitway_character::anim::LoopMode;
+use gaitway_scene::state::{CameraChoice, ClipChoice, Command, Show};
 
 use super::transport::range_here;
 use super::{Output, Sheet, Shown, UiAction, UiState, motion, text, typing};
-use crate::anim::LoopMode;
-use crate::state::{CameraChoice, ClipChoice, Command, Show};
 
 /// A shortcut and its line in the help.
 pub struct KeyHelp {

@@ -3,14 +3,14 @@
 use std::borrow::Cow;
 
 use egui::{Response, Ui};
+use gaitway_character::asset::Slot;
+use gaitway_retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
+use gaitway_scene::library::{LayeredClip, Model, ModelClip};
+use gaitway_scene::state::{Command, title};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, SliderSettings, capitals};
 use super::{Output, Shown, text, tracks};
-use crate::asset::Slot;
-use crate::library::{LayeredClip, Model, ModelClip};
-use crate::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use crate::state::{Command, title};
 
 const WEIGHT: SliderSettings =
     SliderSettings { range: (0.0, 1.0), default: 1.0, decimals: 2, suffix: "", logarithmic: false };

@@ -21,11 +21,10 @@ mod viewport;
 mod widgets;
 
 use egui::{Context, Rect, Ui};
-
-use crate::editor::ValidatorReport;
-use crate::frame::Frame;
-use crate::library::{Library, Model, ModelClip, ModelId};
-use crate::state::{ViewerState, active_clip, clip_secs};
+use gaitway_scene::editor::ValidatorReport;
+use gaitway_scene::frame::Frame;
+use gaitway_scene::library::{Library, Model, ModelClip, ModelId};
+use gaitway_scene::state::{ViewerState, active_clip, clip_secs};
 
 pub use gestures::{begin_gestures, end_gestures};
 pub use keys::{KEY_TABLE, KeyHelp};

@@ -1,8 +1,8 @@
 //! What the panels ask for: changes of the view state, and everything that the app has to do.
 
-use crate::editor::Export;
-use crate::library::{ModelId, MotionId};
-use crate::state::Command;
+use gaitway_scene::editor::Export;
+use gaitway_scene::library::{ModelId, MotionId};
+use gaitway_scene::state::Command;
 
 /// The requests of one pass.
 #[derive(Debug, Default, PartialEq)]

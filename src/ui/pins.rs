@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use egui::{Ui, vec2};
+use gaitway_retarget::{Pin, PinGoal, PinTimes};
+use gaitway_scene::state::{Command, title};
 
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::widgets::controls::{self, capitals};
 use super::{Output, Shown, text, tracks};
-use crate::retarget::{Pin, PinGoal, PinTimes};
-use crate::state::{Command, title};
 
 const BUTTON_SIZE: f32 = 28.0;
 

@@ -1,9 +1,9 @@
 //! Tracks under the timeline: rows with a name at the left, over the time of the clip.
 
 use egui::{Rect, Response, Sense, Stroke, Ui, WidgetInfo, vec2};
+use gaitway_scene::library::ModelClip;
 
 use super::{Shown, controls, scrub, style};
-use crate::library::ModelClip;
 
 const TRACK_HEIGHT: f32 = 18.0;
 /// At most this share of the width is for names.

@@ -1,13 +1,13 @@
 //! The bottom panel: playback, scrubbing, frame steps, speed, loop mode, in and out points.
 
 use egui::{Align, Layout, RichText, Ui};
+use gaitway_character::anim::{LoopMode, TimeRange};
+use gaitway_scene::library::ModelClip;
+use gaitway_scene::state::{Command, Playback};
 
 use super::icons::{ICON_SIZE, Icon, icon_button, icon_size, icon_toggle, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
 use super::{LOW_HEIGHT, Output, Shown, UiState, controls, feet, layers, pins, style, text};
-use crate::anim::{LoopMode, TimeRange};
-use crate::library::ModelClip;
-use crate::state::{Command, Playback};
 use crate::ui::widgets::accessible;
 
 /// At most this share of the window's height is for tracks: a link may bring hundreds of layers. The others are scrolled to.

@@ -1,14 +1,14 @@
 //! Benchmarks that run in the page, for benches/web.
 
+use gaitway_character::anim::{ClipQuery, SampleCursor, find_clip, model_from_joint};
+use gaitway_character::asset::Asset;
+use gaitway_character::mesh::{PaletteEntry, SkinningMode, write_palette};
+use gaitway_formats::{FileSet, load};
+use gaitway_retarget::{Body, Retargeting, propose, recognize};
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
 
-use crate::anim::{ClipQuery, SampleCursor, find_clip, model_from_joint};
-use crate::asset::Asset;
 use crate::files::{ImageLimits, Item, Role, open_items};
-use crate::formats::{FileSet, load};
-use crate::mesh::{PaletteEntry, SkinningMode, write_palette};
-use crate::retarget::{Body, Retargeting, propose, recognize};
 
 struct Character {
     phase_secs: f64,

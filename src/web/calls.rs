@@ -6,6 +6,14 @@ use std::pin::pin;
 use std::rc::Rc;
 
 use futures_util::future::{Either, select};
+use gaitway_formats::{self as formats, FileSet};
+use gaitway_scene::editor::{AboutLink, Contents, short_name};
+use gaitway_scene::frame::PoseDocument;
+use gaitway_scene::library::{Environment, Model, ModelClip, ModelId, Motion, inspect};
+use gaitway_scene::samples;
+use gaitway_scene::state::{
+    EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
+};
 use gaitway_session::{ErrorCode, Kind};
 use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use serde_json::{Value, json};
@@ -15,15 +23,7 @@ use web_sys::ImageBitmap;
 
 use super::page::{Cancel, Page, page, state_of_link};
 use crate::app::{App, Message, Reply, ScriptCall};
-use crate::editor::{AboutLink, Contents, short_name};
 use crate::files::{Held, Item, Role, open_items, open_view, within};
-use crate::formats::{self, FileSet};
-use crate::frame::PoseDocument;
-use crate::library::{Environment, Model, ModelClip, ModelId, Motion, inspect};
-use crate::samples;
-use crate::state::{
-    EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
-};
 use crate::ui::{Progress, text, title_and_hint};
 
 /// Returns the font of the panels, for the rest of the page.

@@ -8,6 +8,10 @@ use std::task::Poll;
 
 use egui::ThemePreference;
 use futures_util::future::{Either, select};
+use gaitway_scene::editor::{AboutLink, Contents, ExportedFile, short_name};
+use gaitway_scene::library::{Environment, Library, Model, ModelId};
+use gaitway_scene::samples;
+use gaitway_scene::state::{EnvironmentChoice, Link, ViewerState, from_link, to_link};
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
@@ -16,11 +20,7 @@ use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
-use crate::editor::{AboutLink, Contents, ExportedFile, short_name};
 use crate::files::{Held, ImageLimits, Item, OpenError, Role, open_items, open_view};
-use crate::library::{Environment, Library, Model, ModelId};
-use crate::samples;
-use crate::state::{EnvironmentChoice, Link, ViewerState, from_link, to_link};
 
 /// A running instance on its canvas.
 pub(super) struct Page {

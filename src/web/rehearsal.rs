@@ -1,15 +1,16 @@
 //! Opens and draws a simple character while the first model downloads. A browser compiles each function when it is first called, and
 //! a driver each shader when it is first drawn with: hundreds of milliseconds that would otherwise follow the last byte.
 
+use gaitway_render::next_turn;
+use gaitway_scene::frame::{Frame, evaluate};
+use gaitway_scene::library::Library;
+use gaitway_scene::samples::rehearsal_files;
+use gaitway_scene::state::from_link;
+
 use super::calls::with_app;
 use super::page::Page;
 use crate::app::RehearsalPart;
 use crate::files::{ImageLimits, Item, Role, open_items};
-use crate::frame::{Frame, evaluate};
-use crate::library::Library;
-use crate::render::next_turn;
-use crate::samples::rehearsal_files;
-use crate::state::from_link;
 
 /// Lets the browser do something else after each part.
 ///

@@ -2,13 +2,13 @@
 //! make the next one of each event. Only [`gaitway_session`] knows the form of both; these functions also run after the app has
 //! stopped.
 
+use gaitway_scene::library::Model;
 use gaitway_session::{Effect, EntryState, Event, Facts, Link, Session, Shown};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::calls::{malformed, with_app};
 use super::page::page;
-use crate::library::Model;
 
 /// Returns the session of a page that was opened with this link, in an entry of the history with this number. `own`: the entry has
 /// shown the user's own files.

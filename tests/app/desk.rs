@@ -9,11 +9,11 @@ use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::{App, Host, Inbox, Message, ScriptCall, Video, native_options};
-use gaitway::editor::ExportedFile;
 use gaitway::files::{Role, read_paths};
-use gaitway::library::{Library, ModelId};
-use gaitway::state::{Command, ViewerState};
 use gaitway::ui::text;
+use gaitway_scene::editor::ExportedFile;
+use gaitway_scene::library::{Library, ModelId};
+use gaitway_scene::state::{Command, ViewerState};
 
 use crate::adapter::or_skipped;
 use crate::data_folder::data_folder;

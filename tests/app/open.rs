@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use gaitway::app::Message;
-use gaitway::editor::{AboutLink, ClipFormat, Contents};
-use gaitway::library::ModelClip;
-use gaitway::samples;
-use gaitway::state::{ClipChoice, Command, active_clip, from_link, to_link};
 use gaitway::ui::{Tab, text};
+use gaitway_scene::editor::{AboutLink, ClipFormat, Contents};
+use gaitway_scene::library::ModelClip;
+use gaitway_scene::samples;
+use gaitway_scene::state::{ClipChoice, Command, active_clip, from_link, to_link};
 
 use crate::desk::{desk, real};
 

@@ -1,8 +1,8 @@
 //! Recording a video: frames depend only on their number, and the view doesn't change.
 
 use gaitway::app::{Message, Video};
-use gaitway::state::Command;
 use gaitway::ui::{Tab, text};
+use gaitway_scene::state::Command;
 
 use crate::desk::{Desk, desk};
 
@@ -24,7 +24,7 @@ fn a_frame_is_the_same_whenever_it_is_drawn_and_the_view_stays() {
     let before = desk.state().clone();
     assert_eq!((video.size, video.frames_per_sec, video.transparent), ([1280, 720], 30, false));
     let model = desk.library().active().expect("a model");
-    let clip = gaitway::state::active_clip(model, &before).expect("a clip").clip();
+    let clip = gaitway_scene::state::active_clip(model, &before).expect("a clip").clip();
     assert_eq!(video.frame_count, (clip.duration_secs() * 30.0).round() as u32);
     assert!(desk.shows(text::RECORDING));
 

@@ -1,8 +1,8 @@
 //! Camera rules that involve the viewport: what stays in view while settings change.
 
-use gaitway::frame::travelled;
-use gaitway::state::{CameraChoice, Command, Edited, Inspect, OrbitCamera, Show};
 use gaitway::ui::{Tab, text};
+use gaitway_scene::frame::travelled;
+use gaitway_scene::state::{CameraChoice, Command, Edited, Inspect, OrbitCamera, Show};
 use glam::Vec3;
 
 use crate::by_place::motion_at;

@@ -105,7 +105,7 @@ function module(body, output = "") {
  */
 const largestDifference = (expected, found) => Math.max(...expected.map((value, at) => Math.abs(value - (found?.[at] ?? NaN))));
 
-/** The contents of the AVIF and UASTC images, as PNG; see gradients() in tests/scene/decode.rs. */
+/** The contents of the AVIF and UASTC images, as PNG; see gradients() in tests/files/decode.rs. */
 function gradients() {
   const pixels = Array.from({ length: 64 * 32 }, (_, at) => {
     const [x, y] = [at % 64, at >> 6];

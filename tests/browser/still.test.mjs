@@ -6,7 +6,7 @@ import vm from "node:vm";
 
 const script = fs.readFileSync("web/still.js", "utf8");
 /** @type {{ link: string, models: string[], samples: string[] }[]} */
-const cases = JSON.parse(fs.readFileSync("tests/scene/early.json", "utf8"));
+const cases = JSON.parse(fs.readFileSync("crates/scene/tests/scene/early.json", "utf8"));
 const names = [...new Set(cases.flatMap(({ samples }) => samples))];
 
 /**

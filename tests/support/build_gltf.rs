@@ -1,7 +1,7 @@
 //! Builds small glTF files: JSON and the buffer that it refers to.
 
-use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadError, load};
+use gaitway_character::asset::Asset;
+use gaitway_formats::{FileSet, LoadError, load};
 use serde_json::{Value, json};
 
 /// A glTF file under construction. Tests change `json` at will; `accessor` adds data.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gaitway::library::{ClipId, Library, Model, ModelClip, Motion, MotionId};
+use gaitway_scene::library::{ClipId, Library, Model, ModelClip, Motion, MotionId};
 
 /// Clips of a model: its own, then borrowed ones, then copies.
 pub trait ByPlace {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, load, prepare};
+use gaitway_character::asset::Asset;
+use gaitway_formats::{FileSet, load, prepare};
 
 /// Loads a file of the test data.
 pub fn read(folder: &Path, name: &str) -> Asset {

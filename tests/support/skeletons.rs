@@ -3,8 +3,8 @@
 // Each test program uses a part of it.
 #![allow(dead_code)]
 
-use gaitway::anim::{Joint, Skeleton, Transform};
-use gaitway::asset::Asset;
+use gaitway_character::anim::{Joint, Skeleton, Transform};
+use gaitway_character::asset::Asset;
 use glam::Vec3;
 
 /// A joint of a list, with the index of its parent.

@@ -1,9 +1,9 @@
 //! Morphing and skinning cases for both the CPU and the GPU. Expected results are computed here in f64 from the
-//! definitions; only the data types come from `gaitway::mesh`.
+//! definitions; only the data types come from `gaitway_character::mesh`.
 
 use std::f64::consts::TAU;
 
-use gaitway::mesh::{Geometry, Influences, MorphTarget, SkinningMode};
+use gaitway_character::mesh::{Geometry, Influences, MorphTarget, SkinningMode};
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, DVec4, Mat3, Quat, Vec3};
 
 use crate::random::Random;

@@ -1,5 +1,5 @@
 // World positions of an FBX file's nodes in `gaitway pose` against three.js's FBXLoader, at keys of every clip. Between
-// keys FBXLoader interpolates quaternions where the file has curves of Euler angles; tests/formats compares those with
+// keys FBXLoader interpolates quaternions where the file has curves of Euler angles; crates/formats/tests/formats compares those with
 // ufbx itself.
 import assert from "node:assert/strict";
 import fs from "node:fs";

@@ -20,7 +20,7 @@ console.warn = () => {};
 
 const totals = { files: 0, clips: 0, poses: 0, vertices: 0, worst: 0, worstWhere: "" };
 
-const INSTANCES = "skipped: three.js has no nodes for instances; tests/formats/instancing.rs checks their transforms";
+const INSTANCES = "skipped: three.js has no nodes for instances; crates/formats/tests/formats/instancing.rs checks their transforms";
 
 describe("positions agree with three.js", { skip: skipWithoutData, concurrency: 2 }, () => {
   if (skipWithoutData) return;

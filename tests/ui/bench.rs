@@ -2,14 +2,14 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
-use gaitway::asset::{Asset, AssetParts, Warning};
-use gaitway::editor::Editor;
-use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, Motion};
-use gaitway::samples;
-use gaitway::state::{Command, Playback, ViewerState};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
+use gaitway_character::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
+use gaitway_character::asset::{Asset, AssetParts, Warning};
+use gaitway_scene::editor::Editor;
+use gaitway_scene::frame::{Frame, evaluate};
+use gaitway_scene::library::{Library, Model, Motion};
+use gaitway_scene::samples;
+use gaitway_scene::state::{Command, Playback, ViewerState};
 
 pub struct Bench {
     pub editor: Editor,

@@ -3,11 +3,11 @@
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::frame::{pick_joint, pick_vertex};
-use gaitway::mesh::DeformedVertices;
-use gaitway::retarget::Verdict;
-use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingFormat, RecordingProgress, Saved, Sheet, Tab, UiAction, VideoSettings, text};
+use gaitway_character::mesh::DeformedVertices;
+use gaitway_retarget::Verdict;
+use gaitway_scene::frame::{pick_joint, pick_vertex};
+use gaitway_scene::state::{ClipChoice, Command, Inspect, Show};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, painted, press, press_key, sample_bench};
 use crate::motion::reach;

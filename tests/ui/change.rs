@@ -4,12 +4,12 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::anim::TimeRange;
-use gaitway::editor::Export;
-use gaitway::library::ClipId;
-use gaitway::retarget::ClipChanges;
-use gaitway::state::{ClipChoice, ClipEdit, Command};
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
+use gaitway_character::anim::TimeRange;
+use gaitway_retarget::ClipChanges;
+use gaitway_scene::editor::Export;
+use gaitway_scene::library::ClipId;
+use gaitway_scene::state::{ClipChoice, ClipEdit, Command};
 
 use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, press_key, sample_bench};
 use crate::by_place::{ByPlace, motion_called};

@@ -2,13 +2,13 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
-use gaitway::asset::{Asset, AssetParts, MeshInstance};
-use gaitway::editor::Contents;
-use gaitway::library::{ClipId, Model, Motion};
-use gaitway::mesh::{Geometry, Mesh};
-use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::text;
+use gaitway_character::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
+use gaitway_character::asset::{Asset, AssetParts, MeshInstance};
+use gaitway_character::mesh::{Geometry, Mesh};
+use gaitway_scene::editor::Contents;
+use gaitway_scene::library::{ClipId, Model, Motion};
+use gaitway_scene::state::{ClipChoice, Command};
 
 use crate::bench::{Bench, WIDE, bench, model_with_clips, press, sample_bench};
 use crate::by_place::motion_called;

@@ -3,11 +3,11 @@
 use egui::{Color32, Shape, Theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::{Joint, Skeleton};
-use gaitway::asset::{Asset, Warning};
-use gaitway::library::Model;
-use gaitway::state::{Command, Show};
 use gaitway::ui::{self, Sheet, Tab, text};
+use gaitway_character::anim::{Joint, Skeleton};
+use gaitway_character::asset::{Asset, Warning};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{Command, Show};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, motion_bench, press};
 

@@ -2,13 +2,13 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::editor::{Contents, Export};
-use gaitway::formats::{FileSet, load};
-use gaitway::library::Model;
-use gaitway::mesh::SkinningMode;
-use gaitway::state::{Command, Show, VertexChoice};
 use gaitway::ui::text::FormulaRow;
 use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway_character::mesh::SkinningMode;
+use gaitway_formats::{FileSet, load};
+use gaitway_scene::editor::{Contents, Export};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{Command, Show, VertexChoice};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 use crate::motion::reach;

@@ -3,11 +3,11 @@
 use egui::ThemePreference;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::editor::{ClipFormat, Export};
-use gaitway::library::{ClipId, Library, Model};
-use gaitway::samples;
-use gaitway::state::{ClipChoice, Command, Show};
 use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway_scene::editor::{ClipFormat, Export};
+use gaitway_scene::library::{ClipId, Library, Model};
+use gaitway_scene::samples;
+use gaitway_scene::state::{ClipChoice, Command, Show};
 
 use crate::bench::{
     Bench, NARROW, WIDE, bench, bench_of, model_with_clips, motion_bench, press, press_key, sample_bench,

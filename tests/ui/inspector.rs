@@ -3,19 +3,21 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton};
-use gaitway::asset::{Asset, AssetParts, Image, MeshInstance, Panorama, Warning};
-use gaitway::avatar::{Avatar, Expression, LookAt, LookAtKind, Override, RangeMaps, SpringJoint, Springs};
-use gaitway::editor::{ValidatorGroup, ValidatorReport};
-use gaitway::library::{Environment, ImageData, Library, LookTarget, Model, ModelId};
-use gaitway::mesh::{
+use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
+use gaitway_character::anim::{
+    ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton,
+};
+use gaitway_character::asset::{Asset, AssetParts, Image, MeshInstance, Panorama, Warning};
+use gaitway_character::avatar::{Avatar, Expression, LookAt, LookAtKind, Override, RangeMaps, SpringJoint, Springs};
+use gaitway_character::mesh::{
     AlphaMode, Geometry, Lobes, Material, Mesh, Sampler, SkinningMode, Texture, TextureRef, UvTransform,
 };
-use gaitway::samples;
-use gaitway::state::{
+use gaitway_scene::editor::{ValidatorGroup, ValidatorReport};
+use gaitway_scene::library::{Environment, ImageData, Library, LookTarget, Model, ModelId};
+use gaitway_scene::samples;
+use gaitway_scene::state::{
     Background, CameraChoice, Channel, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, Show, ToneMap, UpAxis,
 };
-use gaitway::ui::{FrameTimes, RecordingProgress, Tab, UiAction, Validation, text};
 use glam::Vec3;
 
 use crate::bench::{Bench, WIDE, bench, bench_of, model_with_clips, painted, press, press_key, sample_bench};

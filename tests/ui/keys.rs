@@ -3,9 +3,9 @@
 use egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::library::ClipId;
-use gaitway::state::{CameraChoice, Channel, ClipChoice, Command};
 use gaitway::ui::{KEY_TABLE, RecordingProgress, Tab, UiAction, text};
+use gaitway_scene::library::ClipId;
+use gaitway_scene::state::{CameraChoice, Channel, ClipChoice, Command};
 
 use crate::bench::{Bench, WIDE, motion_bench, press, press_key, sample_bench};
 use crate::header::choose;

@@ -2,11 +2,11 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::editor::Export;
-use gaitway::library::{ClipId, LayeredClip};
-use gaitway::retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
-use gaitway::state::Command;
 use gaitway::ui::{Saved, Sheet, Tab, UiAction, text};
+use gaitway_retarget::{BodyPart, ClipLayer, LayerMask, LayerMode};
+use gaitway_scene::editor::Export;
+use gaitway_scene::library::{ClipId, LayeredClip};
+use gaitway_scene::state::Command;
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips_named, motion_bench, press, sample_bench};
 use crate::header::choose;

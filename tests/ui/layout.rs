@@ -3,10 +3,10 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::library::{ClipId, LayeredClip};
-use gaitway::retarget::ClipLayer;
-use gaitway::state::Command;
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
+use gaitway_retarget::ClipLayer;
+use gaitway_scene::library::{ClipId, LayeredClip};
+use gaitway_scene::state::Command;
 
 use crate::bench::{
     Bench, NARROW, WIDE, bench, drag, model_with_clips, motion_bench, painted, press, press_key, sample_bench,

@@ -1,6 +1,6 @@
 //! The panels' mirror: what it lists, when it is built, and what the user does with it.
 
-use gaitway::library::{ClipId, LayeredClip};
+use gaitway_scene::library::{ClipId, LayeredClip};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -11,9 +11,9 @@ use egui::{Context, FullOutput, Plugin, RawInput};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::app::mirror::{Mirror, entries};
-use gaitway::retarget::ClipLayer;
-use gaitway::state::{Command, Hidden};
 use gaitway::ui::{Sheet, Tab, Toast, text};
+use gaitway_retarget::ClipLayer;
+use gaitway_scene::state::{Command, Hidden};
 use serde_json::Value;
 
 use crate::bench::{Bench, NARROW, WIDE, motion_bench, press};

@@ -2,9 +2,9 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::library::{Library, Model};
-use gaitway::samples;
 use gaitway::ui::{Tab, Toast, UiAction, text};
+use gaitway_scene::library::{Library, Model};
+use gaitway_scene::samples;
 
 use crate::bench::{Bench, NARROW, WIDE, bench, bench_of, painted, press, sample_bench};
 

@@ -2,7 +2,7 @@
 
 use egui::{Event, Modifiers, PointerButton, TouchDeviceId, TouchId, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use gaitway::state::{Command, Show};
+use gaitway_scene::state::{Command, Show};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, sample_bench};
 

@@ -3,13 +3,13 @@
 use egui::{PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::TimeRange;
 use gaitway::app::mirror::entries;
-use gaitway::editor::Export;
-use gaitway::library::ClipId;
-use gaitway::retarget::{Pin, PinGoal, PinTimes};
-use gaitway::state::Command;
 use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway_character::anim::TimeRange;
+use gaitway_retarget::{Pin, PinGoal, PinTimes};
+use gaitway_scene::editor::Export;
+use gaitway_scene::library::ClipId;
+use gaitway_scene::state::Command;
 use glam::Vec3;
 
 use crate::bench::{Bench, NARROW, WIDE, drag, painted, press, sample_bench};

@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::state::{Command, Hidden};
 use gaitway::ui::{Tab, text};
+use gaitway_scene::state::{Command, Hidden};
 
 use crate::bench::{Bench, WIDE, press, press_key, sample_bench};
 use crate::motion::reach;

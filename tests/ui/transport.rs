@@ -2,9 +2,9 @@
 
 use egui::{PointerButton, pos2};
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::{LoopMode, TimeRange};
-use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::text;
+use gaitway_character::anim::{LoopMode, TimeRange};
+use gaitway_scene::state::{ClipChoice, Command};
 
 use crate::bench::{NARROW, WIDE, drag, press, sample_bench};
 

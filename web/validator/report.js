@@ -6,7 +6,7 @@ import { userOf } from "./places.js";
 /** @typedef {import("gltf-validator").Issue} Issue */
 
 /**
- * As `ValidatorReport` in src/editor/validation.rs reads it.
+ * As `ValidatorReport` in crates/scene/src/editor/validation.rs reads it.
  * @typedef {object} Report
  * @property {number[]} counts Of errors, warnings, infos and hints.
  * @property {boolean} isTruncated The validator stopped at its limit.

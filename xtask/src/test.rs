@@ -32,13 +32,15 @@ fn check_scripts() -> anyhow::Result<()> {
 
 fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["fmt", "--all", "--check"])?;
-    // The core alone has no code of its own, so it is only compiled.
+    // Without features there is no code that isn't there with them, so it is only compiled.
     let core = ["--no-default-features", "--all-targets"];
     let wasm = ["--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
     for targets in [&["--workspace", "--all-targets"][..], &core, &wasm] {
         process::run("cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())?;
     }
-    let packages = ["--package", "gaitway", "--package", "gaitway-core", "--package", "gaitway-python"];
+    let packages = ["", "-character", "-formats", "-json-text", "-retarget", "-scene", "-render", "-python"];
+    let packages = packages.map(|name| format!("--package=gaitway{name}"));
+    let packages = packages.each_ref().map(String::as_str);
     let doc = [&["doc", "--no-deps"][..], &packages].concat();
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.

@@ -40,7 +40,7 @@ fn a_file_is_a_url_a_sample_or_a_local_name() {
 /// the same files.
 #[test]
 fn what_is_loaded_early_is_what_the_link_names() {
-    let cases: Vec<Value> = serde_json::from_str(include_str!("../../../tests/scene/early.json")).expect("JSON");
+    let cases: Vec<Value> = serde_json::from_str(include_str!("../../scene/tests/scene/early.json")).expect("JSON");
     for case in cases {
         let link = case["link"].as_str().expect("a text");
         let read = Link::from(link);

@@ -1,5 +1,5 @@
 //! Decodes the meshes of `KHR_draco_mesh_compression`. The glTF around them is the caller's: see
-//! `crates/core/src/formats/gltf/draco.rs`.
+//! `crates/formats/src/gltf/draco.rs`.
 
 mod number;
 mod wire;

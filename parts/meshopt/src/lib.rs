@@ -1,5 +1,5 @@
 //! Decodes the buffer views of `EXT_meshopt_compression` and `KHR_meshopt_compression`, all modes and filters. The glTF around
-//! them is the caller's: see `crates/core/src/formats/gltf/meshopt.rs`.
+//! them is the caller's: see `crates/formats/src/gltf/meshopt.rs`.
 
 use gaitway_part::{Answer, Output};
 use meshoptimizer_rs::codec;

@@ -2,18 +2,18 @@
 
 use std::collections::VecDeque;
 
+use gaitway_character::asset::{Asset, Image};
+use gaitway_formats::Part;
+use gaitway_scene::library::ImageData;
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::{OnImage, parts};
-use crate::asset::{Asset, Image};
 use crate::files::ImageLimits;
 use crate::files::images::{fitted, is_ktx2, largest_edge, push_decoded, transcoded};
 use crate::files::plain_image::is_opaque_and_untagged;
 use crate::files::source::Reading;
-use crate::formats::Part;
-use crate::library::ImageData;
 
 /// Maximum number of KTX2 images transcoded in parallel: each worker has its own memory.
 const MAX_WORKERS: usize = 4;

@@ -8,7 +8,13 @@ mod timer;
 use std::cell::RefCell;
 use std::ffi::OsStr;
 
+use gaitway_character::asset::{Asset, Image};
+use gaitway_formats::Preparation;
 use gaitway_part::Answer;
+use gaitway_scene::editor::Contents;
+use gaitway_scene::library::{ImageData, Model};
+use gaitway_scene::samples;
+use gaitway_scene::state::ViewerState;
 use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
 use web_sys::ImageBitmap;
@@ -17,12 +23,6 @@ pub use timer::within;
 
 use super::source::{Content, Located, Progress, Reading, Source};
 use super::{EarlyWatch, Held, ImageLimits, Item, OpenError, Role, open, raw_address, view};
-use crate::asset::{Asset, Image};
-use crate::editor::Contents;
-use crate::formats::Preparation;
-use crate::library::{ImageData, Model};
-use crate::samples;
-use crate::state::ViewerState;
 
 /// Called with each image of a model that is opened alone once it is decoded, while others still may be: once if materials decode it
 /// from sRGB, as the flag says, and once if they don't.

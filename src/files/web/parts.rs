@@ -1,5 +1,6 @@
 //! Parts of Gaitway in separate modules, downloaded when a file needs them.
 
+use gaitway_formats::{Part, Preparation};
 use gaitway_part::{Answer, decode};
 use js_sys::{Promise, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -8,7 +9,6 @@ use wasm_bindgen_futures::JsFuture;
 use super::{absolute, fetch};
 use crate::files::OpenError;
 use crate::files::source::Reading;
-use crate::formats::{Part, Preparation};
 
 #[wasm_bindgen]
 extern "C" {

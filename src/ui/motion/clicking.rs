@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use egui::{Align2, Area, Context, Galley, Id, Order, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use gaitway_character::anim::JointIndex;
+use gaitway_scene::frame::Character;
+use gaitway_scene::library::MotionId;
+use gaitway_scene::state::{Command, title};
 
 use super::Pairing;
 use super::picker::Picking;
-use crate::anim::JointIndex;
-use crate::frame::Character;
-use crate::library::MotionId;
-use crate::state::{Command, title};
 use crate::ui::viewport::{Canvas, panes};
 use crate::ui::{Output, Sheet, Shown, Tab, UiState, style, text};
 

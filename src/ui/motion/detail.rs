@@ -2,15 +2,15 @@
 //! what the joint does without one.
 
 use egui::{EventFilter, Key, RichText, Ui};
+use gaitway_character::anim::JointIndex;
+use gaitway_retarget::{JointMap, MutedProperty, Unmapped};
+use gaitway_scene::state::{Command, MapEdit, muted_properties};
 use glam::{EulerRot, Quat};
 
 use super::clicking::{Clicking, source_is_shown};
 use super::picker::Picking;
 use super::rows::Row;
 use super::{MotionTab, Pairing, options};
-use crate::anim::JointIndex;
-use crate::retarget::{JointMap, MutedProperty, Unmapped};
-use crate::state::{Command, MapEdit, muted_properties};
 use crate::ui::{Output, Shown, controls, style, text};
 
 /// What the details say about the chosen joint, kept with the table's lines.

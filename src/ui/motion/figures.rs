@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use egui::{Align2, Color32, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use gaitway_character::anim::Clip;
+use gaitway_retarget::{Contacts, Figures, Planting, Verdict, Verdicts};
+use gaitway_scene::state::active_clip;
 
 use super::{Contents, MotionTab, Pairing};
-use crate::anim::Clip;
-use crate::retarget::{Contacts, Figures, Planting, Verdict, Verdicts};
-use crate::state::active_clip;
 use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Shown, style, text};
 

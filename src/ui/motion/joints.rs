@@ -4,12 +4,12 @@ use std::collections::HashSet;
 use std::rc::Rc;
 
 use egui::{Align2, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use gaitway_retarget::JointMap;
+use gaitway_scene::state::Command;
 
 use super::picker::Picking;
 use super::rows::{Filter, Row, State, TableSection};
 use super::{Contents, MotionTab, Pairing, detail};
-use crate::retarget::JointMap;
-use crate::state::Command;
 use crate::ui::search::finds;
 use crate::ui::widgets::accessible;
 use crate::ui::{Output, Shown, controls, style, text};

@@ -18,15 +18,15 @@ use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
 
 use egui::{RichText, Ui};
+use gaitway_character::anim::{JointIndex, find_clip};
+use gaitway_character::asset::Asset;
+use gaitway_retarget::{ClipRef, Contradiction, JointMap, Proposal, Reason, Unmapped};
+use gaitway_scene::library::{ClipId, Model, ModelClip, ModelId, Motion, MotionId};
+use gaitway_scene::state::{ClipChoice, Command, MapEdit, ViewerState, title};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized, icon_size};
 use super::{HostState, Output, Shown, UiAction, UiState, change, clips, controls, layers, pins, style};
-use crate::anim::{JointIndex, find_clip};
-use crate::asset::Asset;
-use crate::library::{ClipId, Model, ModelClip, ModelId, Motion, MotionId};
-use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Reason, Unmapped};
-use crate::state::{ClipChoice, Command, MapEdit, ViewerState, title};
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};

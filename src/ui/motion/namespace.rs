@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::asset::Asset;
+use gaitway_character::asset::Asset;
 
 /// The namespace of all joints that have one, such as `mixamorig:`; omitted from rows to save room. Empty if names would be the
 /// same without it.

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use egui::{RichText, Ui};
-
-use super::{Contents, Pairing};
-use crate::editor::{ClipFormat, Export, derived_clip};
-use crate::retarget::{
+use gaitway_retarget::{
     ClipRef, Contacts, Feet, JointMap, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
 };
-use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
+use gaitway_scene::editor::{ClipFormat, Export, derived_clip};
+use gaitway_scene::state::{Command, Inspect, MapEdit, Show, active_clip};
+
+use super::{Contents, Pairing};
 use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 

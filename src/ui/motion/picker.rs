@@ -1,11 +1,11 @@
 //! The list of a motion's joints, searchable by name or number, to choose a joint's source from.
 
 use egui::{Context, Key, ScrollArea, Ui};
+use gaitway_character::anim::JointIndex;
+use gaitway_scene::library::MotionId;
+use gaitway_scene::state::{Command, title};
 
 use super::{Pairing, joint_text};
-use crate::anim::JointIndex;
-use crate::library::MotionId;
-use crate::state::{Command, title};
 use crate::ui::search::finds;
 use crate::ui::{Output, Shown, UiState, controls, modal, text};
 

@@ -3,12 +3,13 @@
 
 use std::collections::BTreeMap;
 
+use gaitway_character::anim::JointIndex;
+use gaitway_character::asset::{Asset, Side, Slot};
+use gaitway_retarget::{BodyPart, Contradiction, JointMap, Recognized, Unmapped};
+use gaitway_scene::state::muted_properties;
+
 use super::namespace::namespace;
 use super::{Pairing, joint_text};
-use crate::anim::JointIndex;
-use crate::asset::{Asset, Side, Slot};
-use crate::retarget::{BodyPart, Contradiction, JointMap, Recognized, Unmapped};
-use crate::state::muted_properties;
 use crate::ui::text;
 
 /// Below this confidence a proposal counts as a guess.
@@ -213,7 +214,7 @@ impl<'a> PairFacts<'a> {
             namespace: namespace(&pairing.motion.asset),
         };
         if let Some(proposal) = pairing.proposal {
-            let slots = |parts: &BTreeMap<Slot, crate::retarget::RecognizedJoint>| {
+            let slots = |parts: &BTreeMap<Slot, gaitway_retarget::RecognizedJoint>| {
                 parts.iter().map(|(&slot, part)| (part.joint, slot)).collect()
             };
             whole.target_slots = slots(&proposal.model.parts);

@@ -2,11 +2,11 @@
 //! morph weights.
 
 use egui::Ui;
+use gaitway_character::anim::{PropertyChannel, PropertyTarget};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::title;
 
 use super::facts::{aligned, fact};
-use crate::anim::{PropertyChannel, PropertyTarget};
-use crate::library::Model;
-use crate::state::title;
 use crate::ui::{Shown, controls, text};
 
 /// Further properties of a clip are not listed.

@@ -1,12 +1,12 @@
 //! Avatars: expressions, gaze and spring bones in the Display tab, licence and authors in the Info tab.
 
 use egui::Ui;
+use gaitway_character::avatar::Avatar;
+use gaitway_scene::library::{LookTarget, Model};
+use gaitway_scene::state::{Command, title};
 use glam::Vec3;
 
 use super::facts::fact;
-use crate::avatar::Avatar;
-use crate::library::{LookTarget, Model};
-use crate::state::{Command, title};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 

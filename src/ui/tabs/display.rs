@@ -1,13 +1,13 @@
 //! The Display tab: material variants, skinning, overlays, expressions and morph targets.
 
 use egui::Ui;
-
-use super::avatar;
-use crate::library::{Model, ModelClip};
-use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{
+use gaitway_character::mesh::{Geometry, SkinningMode, Topology};
+use gaitway_scene::library::{Model, ModelClip};
+use gaitway_scene::state::{
     COMPARED_SKINNING, Channel, Command, Inspect, Show, active_clip, active_variant, title as joint_title,
 };
+
+use super::avatar;
 use crate::ui::controls::{self, SliderSettings, capitals};
 use crate::ui::{Output, Shown, text};
 

@@ -1,12 +1,12 @@
 //! What the parts of the Info tab have in common: facts, findings about nodes, and numbers in columns.
 
 use egui::Ui;
+use gaitway_character::anim::JointIndex;
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{Command, title};
 
 use super::formula::fixed;
 use super::tab::Tab;
-use crate::anim::JointIndex;
-use crate::library::Model;
-use crate::state::{Command, title};
 use crate::ui::{Layout, Output, Shown, controls, style, text};
 
 /// A name on the left and its value on the right, or below where both don't fit.

@@ -1,13 +1,13 @@
 //! The skinning equation with its numbers: the matrices of the selected joint, and each joint's contribution to one vertex.
 
 use egui::{Align2, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use gaitway_character::anim::JointIndex;
+use gaitway_character::mesh::{DeformedVertices, SkinningMode};
+use gaitway_scene::frame::{Character, FormulaTerm, VertexFormula, joint_matrices, pick_vertex, vertex_formula};
+use gaitway_scene::library::{Model, ModelId};
+use gaitway_scene::state::{Command, Comparison, VertexChoice, title};
 use glam::{Affine3A, Mat4, Vec3};
 
-use crate::anim::JointIndex;
-use crate::frame::{Character, FormulaTerm, VertexFormula, joint_matrices, pick_vertex, vertex_formula};
-use crate::library::{Model, ModelId};
-use crate::mesh::{DeformedVertices, SkinningMode};
-use crate::state::{Command, Comparison, VertexChoice, title};
 use crate::ui::viewport::panes::{pane_index, pane_rects, to_ndc, to_screen};
 use crate::ui::{Output, Shown, UiState, controls, style, text};
 

@@ -1,8 +1,8 @@
 //! Controls that hide nodes and materials: the eye of a row and the button that shows everything again.
 
 use egui::{Id, Rect, Sense, Ui, Vec2, WidgetInfo};
+use gaitway_scene::state::{Command, Hidden};
 
-use crate::state::{Command, Hidden};
 use crate::ui::icons::{Icon, paint};
 use crate::ui::{Output, Shown, style, text};
 

@@ -1,15 +1,15 @@
 //! The card of the selected joint: its name, transforms and matrices, and sliders to pose it.
 
 use egui::{RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use gaitway_character::anim::{JointIndex, Transform};
+use gaitway_character::asset::Asset;
+use gaitway_scene::library::{Model, manual_degrees};
+use gaitway_scene::state::{Command, title};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::facts::aligned;
 use super::formula;
 use super::pin;
-use crate::anim::{JointIndex, Transform};
-use crate::asset::Asset;
-use crate::library::{Model, manual_degrees};
-use crate::state::{Command, title};
 use crate::ui::controls::SliderSettings;
 use crate::ui::icons::{Icon, icon_button_sized, icon_size};
 use crate::ui::{Output, Shown, controls, style, text};

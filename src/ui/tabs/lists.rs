@@ -1,10 +1,11 @@
 //! Texts of the Info tab about materials, images and influences, made once per model.
 
-use crate::anim::{JointIndex, TextureSlot};
-use crate::asset::Asset;
-use crate::library::{Model, ModelId};
-use crate::mesh::{AlphaMode, Material};
-use crate::state::{title, used_materials};
+use gaitway_character::anim::{JointIndex, TextureSlot};
+use gaitway_character::asset::Asset;
+use gaitway_character::mesh::{AlphaMode, Material};
+use gaitway_scene::library::{Model, ModelId};
+use gaitway_scene::state::{title, used_materials};
+
 use crate::ui::text;
 
 /// Maximum number of names in a line.

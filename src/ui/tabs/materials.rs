@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use egui::{Galley, Id, Rect, Sense, Ui, pos2, vec2};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::Command;
 
 use super::hiding::{self, Pressed};
 use super::lists::{ImageText, Lists, MaterialText};
-use crate::library::Model;
-use crate::state::Command;
 use crate::ui::{HostState, Output, Shown, controls, style, text};
 
 /// Further materials and images are not listed.

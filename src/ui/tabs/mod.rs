@@ -18,9 +18,9 @@ mod validation;
 mod view_options;
 
 use egui::Ui;
+use gaitway_scene::library::Library;
 
 use super::{HostState, Output, Shown, UiState, Validation, controls, motion, text};
-use crate::library::Library;
 
 pub use formula::VertexProbe;
 pub use joint_card::JointCard;

@@ -1,14 +1,14 @@
 //! Pins the selected joint: a section of its card.
 
 use egui::Ui;
+use gaitway_character::anim::{JointIndex, TimeRange};
+use gaitway_character::asset::Slot;
+use gaitway_retarget::{Pin, PinGoal, PinTimes};
+use gaitway_scene::library::Model;
+use gaitway_scene::state::{Command, active_take, play_range, title};
 use glam::Vec3;
 
 use super::avatar::coordinates;
-use crate::anim::{JointIndex, TimeRange};
-use crate::asset::Slot;
-use crate::library::Model;
-use crate::retarget::{Pin, PinGoal, PinTimes};
-use crate::state::{Command, active_take, play_range, title};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
+use gaitway_character::asset::Asset;
+use gaitway_character::mesh::{Geometry, Mesh};
+use gaitway_scene::editor::Export;
+use gaitway_scene::library::{Finding, Model};
 
 use super::facts::{about_node, fact};
 use super::{animated, avatar, materials, performance, validation};
-use crate::asset::Asset;
-use crate::editor::Export;
-use crate::library::{Finding, Model};
-use crate::mesh::{Geometry, Mesh};
 use crate::ui::text::grouped;
 use crate::ui::{Layout, Output, Saved, Shown, UiAction, UiState, controls, style, text};
 

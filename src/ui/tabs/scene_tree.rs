@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, HashSet};
 
 use egui::{Color32, Key, Rect, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use gaitway_character::anim::JointIndex;
+use gaitway_character::asset::Asset;
+use gaitway_scene::library::{Model, ModelId};
+use gaitway_scene::state::{Command, ViewerState, joints_with_content, title};
 
 use super::{hiding, joint_card};
-use crate::anim::JointIndex;
-use crate::asset::Asset;
-use crate::library::{Model, ModelId};
-use crate::state::{Command, ViewerState, joints_with_content, title};
 use crate::ui::motion::namespace;
 use crate::ui::search::finds;
 use crate::ui::widgets::accessible;

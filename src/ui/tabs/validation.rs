@@ -2,10 +2,10 @@
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{RichText, Ui};
+use gaitway_scene::editor::ValidatorGroup;
+use gaitway_scene::library::Model;
 
 use super::facts::about_node;
-use crate::editor::ValidatorGroup;
-use crate::library::Model;
 use crate::ui::controls::capitals;
 use crate::ui::{Layout, Output, Shown, UiAction, UiState, Validation, controls, style, text};
 

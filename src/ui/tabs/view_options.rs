@@ -1,12 +1,12 @@
 //! The Camera tab: camera, light, background, up axis, images and videos.
 
 use egui::{RichText, Ui};
-
-use crate::editor::short_name;
-use crate::state::{
+use gaitway_scene::editor::short_name;
+use gaitway_scene::state::{
     Background, CameraChoice, Command, EnvironmentChoice, KeyLight, LightSetup, OrbitCamera, ToneMap, UpAxis,
     ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
+
 use crate::ui::controls::{self, SliderSettings, capitals};
 use crate::ui::{Output, RecordingFormat, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
 

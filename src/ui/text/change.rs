@@ -1,6 +1,6 @@
 //! Changes to the current clip, and layers over it.
 
-use crate::retarget::{BodyPart, ClipChanges, LayerMode, Seam};
+use gaitway_retarget::{BodyPart, ClipChanges, LayerMode, Seam};
 
 /// Heading.
 pub const CHANGE_CLIP: &str = "Edit clip";

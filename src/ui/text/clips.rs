@@ -4,7 +4,7 @@
 /// Heading of the clip list.
 pub const CLIPS_SECTION: &str = "CLIPS";
 /// Row of the clip list for no clip. The transport shows it in place of the time.
-pub use crate::library::REST_POSE;
+pub use gaitway_scene::library::REST_POSE;
 /// Shown for a model without clips.
 pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, .npz, or an .fbx, .x or .glb without meshes), or use \
     “Borrow motion…” to take another model's clips.";

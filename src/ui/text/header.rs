@@ -1,6 +1,6 @@
 //! The header, its menus, and the box about the program.
 
-use crate::state::Edited;
+use gaitway_scene::state::Edited;
 
 /// The program's name.
 pub const NAME: &str = "Gaitway";

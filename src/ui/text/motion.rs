@@ -1,8 +1,9 @@
 //! The Motion tab.
 
+use gaitway_retarget::{RestChoice, Verdict};
+use gaitway_scene::editor::ClipFormat;
+
 use super::labelled;
-use crate::editor::ClipFormat;
-use crate::retarget::{RestChoice, Verdict};
 
 // Parts of the tab
 /// Choice of the part.

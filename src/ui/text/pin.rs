@@ -1,7 +1,8 @@
 //! Texts about pins.
 
+use gaitway_retarget::{PinGoal, PinTimes};
+
 use super::labelled;
-use crate::retarget::{PinGoal, PinTimes};
 
 /// Heading in the Motion tab.
 pub const PINS: &str = "Pins";

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::anim::{CameraProperty, LightProperty, LobeFactor, MaterialProperty, TextureSlot, ToonColor};
+use gaitway_character::anim::{CameraProperty, LightProperty, LobeFactor, MaterialProperty, TextureSlot, ToonColor};
 
 /// Value of an animated visibility.
 pub const SHOWN: &str = "shown";

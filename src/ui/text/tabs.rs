@@ -1,10 +1,11 @@
 //! The inspector's tabs except for Motion.
 
+use gaitway_character::mesh::{Geometry, SkinningMode};
+use gaitway_scene::editor::ValidatorReport;
+use gaitway_scene::library::Model;
+use gaitway_scene::state::Channel;
+
 use super::{counted, grouped, labelled};
-use crate::editor::ValidatorReport;
-use crate::library::Model;
-use crate::mesh::{Geometry, SkinningMode};
-use crate::state::Channel;
 
 // Scene tab
 /// Hint in the search field of the node tree.

@@ -1,10 +1,10 @@
 //! What stands on the empty stage while a link's model can't be had: which one it is, and how to bring it.
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, Stroke, Ui};
+use gaitway_scene::editor::short_name;
+use gaitway_scene::library::Model;
+use gaitway_scene::state::is_to_bring;
 
-use crate::editor::short_name;
-use crate::library::Model;
-use crate::state::is_to_bring;
 use crate::ui::{Output, Shown, UiAction, style, text};
 
 /// Returns what the stage says about the model that it stands for, and what to do.

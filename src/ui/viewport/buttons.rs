@@ -1,8 +1,8 @@
 //! The buttons in the upper right corner of the viewport.
 
 use egui::{Align, Layout, Rect, RichText, Ui, vec2};
+use gaitway_scene::state::Command;
 
-use crate::state::Command;
 use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 

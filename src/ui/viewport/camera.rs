@@ -1,9 +1,9 @@
 //! Orbits, pans and zooms the camera with pointer, wheel and fingers.
 
 use egui::{PointerButton, Pos2, Response, Ui};
+use gaitway_scene::state::Command;
 
 use super::panes::pane_at;
-use crate::state::Command;
 use crate::ui::{Output, Shown};
 
 const ORBIT_RADIANS_PER_POINT: f32 = 0.0075;

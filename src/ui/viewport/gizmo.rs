@@ -1,13 +1,13 @@
 //! The rotation gizmo of the selected joint: each ring rotates it about one of its own axes, the disc between them freely.
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
+use gaitway_character::anim::Transform;
+use gaitway_scene::library::manual_degrees;
+use gaitway_scene::state::Command;
 use glam::{Quat, Vec3};
 
 use super::canvas::Canvas;
 use super::panes::{pane_at, to_screen};
-use crate::anim::Transform;
-use crate::library::manual_degrees;
-use crate::state::Command;
 use crate::ui::{Output, Shown, UiState, style};
 
 const RADIUS_POINTS: f32 = 72.0;

@@ -1,11 +1,11 @@
 //! Hovering and selecting joints in the viewport.
 
 use egui::{Pos2, Rect};
+use gaitway_scene::frame::{PickedJoint, pick_joint};
+use gaitway_scene::state::{Command, source_on_stage};
 
 use super::canvas::Canvas;
 use super::panes::{pane_at, to_ndc};
-use crate::frame::{PickedJoint, pick_joint};
-use crate::state::{Command, source_on_stage};
 use crate::ui::tabs::formula;
 use crate::ui::{Output, Shown, UiState, motion};
 

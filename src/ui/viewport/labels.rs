@@ -1,12 +1,12 @@
 //! Labels in the viewport: joint names, and what each pane of a comparison shows.
 
 use egui::{Painter, Rect, Ui, pos2, vec2};
+use gaitway_scene::frame::PickedJoint;
+use gaitway_scene::state::{Comparison, compared_rests, source_on_stage, title};
 
 use super::hover::partner;
 use super::legend;
 use super::panes::{label_height, pane_index, pane_rects, to_screen};
-use crate::frame::PickedJoint;
-use crate::state::{Comparison, compared_rests, source_on_stage, title};
 use crate::ui::tabs::{display, formula};
 use crate::ui::tracks::short;
 use crate::ui::{Shown, UiState, style, text};

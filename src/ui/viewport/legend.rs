@@ -1,9 +1,9 @@
 //! The legend in the lower right corner of the viewport: the shown channel, or the scale of weights or of influence counts.
 
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Rgba, Ui, pos2, vec2};
+use gaitway_render::shaders::{HEAT_COLORS, INFLUENCE_COLORS};
+use gaitway_scene::state::Channel;
 
-use crate::render::shaders::{HEAT_COLORS, INFLUENCE_COLORS};
-use crate::state::Channel;
 use crate::ui::{Shown, style, text};
 
 pub fn show(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {

@@ -20,11 +20,11 @@ pub mod sheet;
 
 use egui::layers::ShapeIdx;
 use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
+use gaitway_scene::frame::PickedJoint;
+use gaitway_scene::state::{Background, DEFAULT_ASPECT};
 
 use super::tabs::formula;
 use super::{Output, Shown, UiState, keys, style, text};
-use crate::frame::PickedJoint;
-use crate::state::{Background, DEFAULT_ASPECT};
 
 pub(super) use canvas::Canvas;
 

@@ -1,12 +1,12 @@
 //! Handles of pins: each is dragged in the plane of the viewport.
 
 use egui::Stroke;
+use gaitway_retarget::{Pin, PinGoal};
+use gaitway_scene::state::Command;
 use glam::Vec3;
 
 use super::canvas::Canvas;
 use super::panes::{pane_at, to_screen};
-use crate::retarget::{Pin, PinGoal};
-use crate::state::Command;
 use crate::ui::tabs::rounded;
 use crate::ui::{Output, Shown, UiState, style};
 

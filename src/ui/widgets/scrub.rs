@@ -1,9 +1,9 @@
 //! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
 
 use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use gaitway_character::anim::{Clip, TimeRange};
 
 use super::{accessible, style};
-use crate::anim::{Clip, TimeRange};
 use crate::ui::text;
 
 pub struct Scrub<'a> {
@@ -234,7 +234,7 @@ fn flag(painter: &egui::Painter, x: f32, top: f32, side: f32, bottom: f32, color
 #[cfg(test)]
 mod tests {
     use super::{KeyMarks, MARK_SPACING, times};
-    use crate::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
+    use gaitway_character::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
 
     #[test]
     fn marks_of_a_long_clip_stay_apart() {

@@ -2,12 +2,12 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::asset::Asset;
-use gaitway::library::{Library, Model, Motion};
-use gaitway::retarget::{ClipRef, MutedProperty, Unmapped};
-use gaitway::samples;
-use gaitway::state::{Command, MapEdit, muted_properties};
 use gaitway::ui::{Tab, UiAction, text};
+use gaitway_character::asset::Asset;
+use gaitway_retarget::{ClipRef, MutedProperty, Unmapped};
+use gaitway_scene::library::{Library, Model, Motion};
+use gaitway_scene::samples;
+use gaitway_scene::state::{Command, MapEdit, muted_properties};
 
 use super::{choose, edit, map, motion_tab, neck_details, number, reach, says};
 use crate::bench::{Bench, WIDE, bench_of, drag, press, press_key};

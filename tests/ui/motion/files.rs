@@ -2,10 +2,10 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::editor::{ClipFormat, Export};
-use gaitway::library::ClipId;
-use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway_scene::editor::{ClipFormat, Export};
+use gaitway_scene::library::ClipId;
+use gaitway_scene::state::{ClipChoice, Command};
 
 use super::{motion_tab, reach};
 use crate::bench::{Bench, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};

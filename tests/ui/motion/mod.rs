@@ -9,9 +9,9 @@ mod table;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::retarget::JointMap;
-use gaitway::state::{Command, MapEdit, active_map};
 use gaitway::ui::{Tab, text};
+use gaitway_retarget::JointMap;
+use gaitway_scene::state::{Command, MapEdit, active_map};
 
 use crate::bench::{Bench, WIDE, motion_bench, press};
 use crate::by_place::{motion_at, motion_called};

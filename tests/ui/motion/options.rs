@@ -1,15 +1,15 @@
 //! The retargeting options of the whole map.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::{ClipBuilder, Interpolation, Keys, Transform};
-use gaitway::asset::{Asset, AssetParts};
-use gaitway::editor::Contents;
 use gaitway::files::{Role, read_paths};
-use gaitway::library::{Library, Motion};
-use gaitway::retarget::{ClipRef, Contacts, Feet, Keep, PathOrigin, RestChoice, RootOptions, RootPart, Unmapped};
-use gaitway::samples;
-use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
+use gaitway_character::anim::{ClipBuilder, Interpolation, Keys, Transform};
+use gaitway_character::asset::{Asset, AssetParts};
+use gaitway_retarget::{ClipRef, Contacts, Feet, Keep, PathOrigin, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway_scene::editor::Contents;
+use gaitway_scene::library::{Library, Motion};
+use gaitway_scene::samples;
+use gaitway_scene::state::{Command, MapEdit};
 use glam::{Quat, Vec3};
 
 use super::{edit, map, motion_tab, press_row, reach, says};

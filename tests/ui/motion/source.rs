@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::state::Command;
 use gaitway::ui::{Tab, text};
+use gaitway_scene::state::Command;
 
 use super::{map, motion_tab, neck_details, number, press_row, reach};
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key};

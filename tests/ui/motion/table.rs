@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::asset::{Asset, AssetParts};
-use gaitway::library::{Library, Model, Motion};
-use gaitway::retarget::{Feet, MutedProperty};
-use gaitway::samples;
-use gaitway::state::{Command, MapEdit};
 use gaitway::ui::{Tab, text};
+use gaitway_character::asset::{Asset, AssetParts};
+use gaitway_retarget::{Feet, MutedProperty};
+use gaitway_scene::library::{Library, Model, Motion};
+use gaitway_scene::samples;
+use gaitway_scene::state::{Command, MapEdit};
 
 use super::{choose, edit, map, motion_tab, number, press_row, reach};
 use crate::allocations::allocations_after;

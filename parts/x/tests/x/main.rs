@@ -1,4 +1,4 @@
-//! Tests of the converter, on text made here. `tests/formats/x.rs` compares real files with what another program made
+//! Tests of the converter, on text made here. `crates/formats/tests/formats/x.rs` compares real files with what another program made
 //! of them.
 
 #[path = "../../../../tests/support/damage.rs"]

@@ -1,0 +1,49 @@
+//! The frame that both skeletons are turned into: +Y up, facing +Z.
+
+use gaitway_character::asset::{Humanoid, Slot};
+use glam::{DQuat, DVec3};
+
+use crate::math::unit;
+use crate::pose::WorldPose;
+
+/// A body that faces within this angle of an axis is taken to face along it: no rig is exactly symmetric.
+const SNAP_DEGREES: f64 = 2.0;
+
+/// Returns the rotation from a body's model space to the common frame: the axis nearest to the spine becomes +Y and the
+/// body faces +Z. None without hips, head and two sides.
+pub fn common_from_model(rest: &WorldPose, slots: &Humanoid) -> Option<DQuat> {
+    let at = |slot| slots.joint(slot).map(|joint| rest.position(joint));
+    let up = at(Slot::Head)? - at(Slot::Hips)?;
+    let upright = nearest_axis_to_y(up);
+    let at = |slot| at(slot).map(|position| upright * position);
+    let between = |from, to| Some(at(from)? - at(to)?);
+    let sides = [
+        between(Slot::LeftUpperLeg, Slot::RightUpperLeg),
+        between(Slot::LeftUpperArm, Slot::RightUpperArm),
+        between(Slot::LeftFoot, Slot::RightFoot),
+    ];
+    let left: DVec3 = sides.into_iter().flatten().map(DVec3::normalize_or_zero).sum();
+    let mut forward = left.cross(DVec3::Y).try_normalize()?;
+    let toes = [between(Slot::LeftToes, Slot::LeftFoot), between(Slot::RightToes, Slot::RightFoot)];
+    let pointed: DVec3 = toes.into_iter().flatten().map(DVec3::normalize_or_zero).sum();
+    // Names win over geometry in the map, but a body with swapped names still walks the way its toes point.
+    if pointed.dot(forward) < -0.5 {
+        forward = -forward;
+    }
+    let yaw = forward.x.atan2(forward.z).to_degrees();
+    let quarter = (yaw / 90.0).round() * 90.0;
+    let yaw = if (yaw - quarter).abs() < SNAP_DEGREES { quarter } else { yaw };
+    Some(unit(DQuat::from_rotation_y(-yaw.to_radians()) * upright))
+}
+
+/// Turns the coordinate axis nearest to a direction onto +Y.
+fn nearest_axis_to_y(up: DVec3) -> DQuat {
+    let axes = [DVec3::Y, DVec3::Z, DVec3::X, -DVec3::Y, -DVec3::Z, -DVec3::X];
+    let mut nearest = DVec3::Y;
+    for axis in axes {
+        if up.dot(axis) > up.dot(nearest) + 1e-6 * up.length() {
+            nearest = axis;
+        }
+    }
+    if nearest == DVec3::Y { DQuat::IDENTITY } else { DQuat::from_rotation_arc(nearest, DVec3::Y) }
+}

@@ -1,0 +1,207 @@
+//! Puts the transferred channels together into a clip of the target.
+
+use gaitway_character::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
+
+use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
+use super::feet::{self, Planting};
+use super::keys::channel::NewChannel;
+use super::map::{Contacts, Feet, Pair};
+use super::pose::{ancestry, is_within, node_locals};
+use super::transfer::{
+    CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, extraction_joint, hips_channels,
+    keeps_everything, rotation_laws,
+};
+
+/// Why a clip cannot be retargeted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RetargetError {
+    /// The motion has no clips at all.
+    #[error("the motion has no clip")]
+    NoClips,
+    /// The clip index is out of range.
+    #[error("the motion has no clip {index}; it has {count}")]
+    NoSuchClip {
+        /// The index that was asked for.
+        index: usize,
+        /// Number of the motion's clips.
+        count: usize,
+    },
+    /// The map has no pairs.
+    #[error(
+        "no joint of the model follows a joint of the motion: name pairs in a joint map (`gaitway map` writes one to start from)"
+    )]
+    NoPairs,
+    /// A retargeted channel is invalid.
+    #[error("joint “{joint}” cannot be written: {problem}")]
+    Channel {
+        /// Name of the target joint.
+        joint: String,
+        /// What is wrong with its channel.
+        problem: ChannelError,
+    },
+}
+
+/// The retargeted clip, and how it was made.
+#[derive(Debug, Clone)]
+pub struct Retargeted {
+    /// For the target's skeleton, under the source clip's name.
+    pub clip: Clip,
+    /// Target metres per source metre of travel; None if nothing travels.
+    pub hips_scale: Option<f64>,
+    /// Number of keys in the source channels that were used.
+    pub keys_in: usize,
+    /// Number of keys in the channels that were written.
+    pub keys_out: usize,
+    /// Joints whose keys are not the source's own: more than one rotation moves between them and their mapped ancestor.
+    pub resampled: Vec<JointIndex>,
+    /// The options ask for root motion to be extracted, but no joint above the hips is free to carry it.
+    pub nowhere_to_extract: bool,
+    /// The clip before its feet were planted and its contacts kept, if either was.
+    pub unplanted: Option<Clip>,
+    /// What planting did; `None` if feet aren't planted, or the map has no whole leg.
+    pub planting: Option<Planting>,
+}
+
+/// Retargets the clip, then plants its feet and keeps its contacts if the map asks for it.
+pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>) -> Result<Retargeted, RetargetError> {
+    let planted = bake_planted(transfer)?;
+    let bodies = if transfer.map.contacts == Contacts::Keep { bodies() } else { None };
+    let kept = bodies.map(|bodies| bake_kept(transfer, bodies, &planted)).transpose()?.flatten();
+    let Some(built) = kept else { return Ok(planted) };
+    Ok(Retargeted { unplanted: planted.unplanted.or(Some(planted.clip)), planting: planted.planting, ..built })
+}
+
+/// Brings knees to the ground, leans the trunk, then moves hands to where they rest and limbs out of the body; `None` if there is
+/// nothing to do.
+fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Result<Option<Retargeted>, RetargetError> {
+    let rebuilt = |channels: Option<Vec<NewChannel>>| {
+        channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
+    };
+    let mut scene = Scene::new(transfer, bodies, &planted.clip);
+    let mut kept: Option<Retargeted> = None;
+    for corrected in [grounded_knees, leaning_trunk] {
+        let Retargeted { clip, resampled, .. } = kept.as_ref().unwrap_or(planted);
+        if let Some(next) = rebuilt(corrected(&scene, clip, resampled))? {
+            scene = scene.playing(&next.clip);
+            kept = Some(next);
+        }
+    }
+    let Retargeted { clip, resampled, .. } = kept.as_ref().unwrap_or(planted);
+    Ok(rebuilt(kept_limbs(scene, clip, resampled))?.or(kept))
+}
+
+fn bake_planted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
+    let unplanted = bake_unplanted(transfer)?;
+    let planted = match transfer.map.feet {
+        Feet::Off => None,
+        Feet::Plant => feet::planted_channels(transfer, &unplanted.clip, &unplanted.resampled),
+    };
+    let Some((channels, planting)) = planted else { return Ok(unplanted) };
+    let built = build(transfer, reattached(transfer, channels)?)?;
+    Ok(Retargeted { unplanted: Some(unplanted.clip), planting: Some(planting), ..built })
+}
+
+/// Moves detached ends of limbs to where planting or contacts put their limbs.
+fn reattached(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Vec<NewChannel>, RetargetError> {
+    let ends = detached_ends(transfer);
+    if !ends.is_empty() {
+        let is_end = |joint: JointIndex| ends.iter().any(|(end, _)| *end == joint);
+        channels.retain(|channel| !(is_end(channel.joint) && channel.keys.property() == Property::Translation));
+        let so_far = build(transfer, channels.clone())?;
+        channels.extend(detached_channels(transfer, &ends, &so_far.clip));
+    }
+    Ok(channels)
+}
+
+fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
+    let (laws, root_turn) = rotation_laws(transfer);
+    let rest = node_locals(transfer.target_skeleton);
+    let pairs = transfer.map.pairs.iter().zip(&laws);
+    let mut channels: Vec<NewChannel> =
+        pairs.filter_map(|(pair, law)| law.channel(pair.target, rest[pair.target.get()].rotation)).collect();
+
+    let policy = CopyPolicy::new(transfer);
+    let copied = copied_channels(transfer, policy);
+    let is_copied = |joint: JointIndex| copied.iter().any(|channel| channel.joint == joint);
+    if let Some(hips) = transfer.hips {
+        let path_is_copied =
+            keeps_everything(transfer.map) && policy.translations && is_copied(transfer.map.pairs[hips.pair].target);
+        if !path_is_copied {
+            channels.extend(hips_channels(transfer, hips, &laws, root_turn.as_ref()));
+        }
+    }
+    let ends = detached_ends(transfer);
+    // In an equal skeleton, the copied translations keep the ends in place.
+    let detached = if ends.is_empty() || (policy.translations && policy.is_same_skeleton) {
+        Vec::new()
+    } else {
+        let so_far = build(transfer, channels.clone())?;
+        detached_channels(transfer, &ends, &so_far.clip)
+    };
+    let detached = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect::<Vec<_>>();
+    channels.extend(copied);
+    channels.extend(detached);
+    build(transfer, channels)
+}
+
+/// Builds the clip from its channels.
+fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargeted, RetargetError> {
+    let (skeleton, source_clip) = (transfer.target_skeleton, transfer.tracks.clip);
+    let written: Vec<(JointIndex, Property)> =
+        channels.iter().map(|channel| (channel.joint, channel.keys.property())).collect();
+    let mut builder = ClipBuilder::new(source_clip.name(), skeleton);
+    let mut resampled: Vec<JointIndex> = Vec::new();
+    let last = channels.iter().filter_map(|channel| channel.times.last().copied()).fold(0.0, f32::max);
+    // The clip lasts as long as its source, even if the joint that moves last is not mapped.
+    if let Some(channel) = channels.first_mut().filter(|_| last < source_clip.duration_secs()) {
+        channel.hold_until(source_clip.duration_secs());
+    }
+    let keys_out = channels.iter().map(|channel| channel.times.len()).sum();
+    for channel in channels {
+        if channel.resampled && !resampled.contains(&channel.joint) {
+            resampled.push(channel.joint);
+        }
+        builder
+            .channel(channel.joint, channel.interpolation, &channel.times, channel.keys)
+            .map_err(|problem| RetargetError::Channel { joint: skeleton.name(channel.joint).to_owned(), problem })?;
+    }
+    resampled.sort();
+    let has_no_extraction_joint = || transfer.hips.is_none_or(|hips| extraction_joint(transfer, hips).is_none());
+    Ok(Retargeted {
+        clip: builder.build(),
+        hips_scale: transfer.hips.map(|hips| hips.scale),
+        keys_in: count_source_keys(transfer, &written),
+        keys_out,
+        resampled,
+        nowhere_to_extract: transfer.map.root.extract && has_no_extraction_joint(),
+        unplanted: None,
+        planting: None,
+    })
+}
+
+/// Number of keys in the source channels behind these target properties: rotations of all joints on the way to a mapped
+/// one, everything that carries the hips, and what was copied.
+fn count_source_keys(transfer: &Transfer, written: &[(JointIndex, Property)]) -> usize {
+    let Transfer { map, tracks, .. } = *transfer;
+    let hips = transfer.hips_pair();
+    let mut leads_to_mapped = vec![false; tracks.skeleton.len()];
+    for pair in &map.pairs {
+        ancestry(tracks.skeleton, pair.source).for_each(|joint| leads_to_mapped[joint.get()] = true);
+    }
+    let is_used = |joint: JointIndex, property: Property| match property {
+        Property::Rotation => leads_to_mapped[joint.get()],
+        property => {
+            let is_copied = |pair: &Pair| pair.source == joint && written.contains(&(pair.target, property));
+            let carries = |hips: &Pair| {
+                written.contains(&(hips.target, Property::Translation))
+                    && is_within(tracks.skeleton, hips.source, joint)
+            };
+            map.pairs.iter().any(is_copied) || hips.is_some_and(carries)
+        }
+    };
+    let channels = tracks.clip.channels().iter().filter(|channel| {
+        let property = channel.keys.property();
+        is_used(channel.joint, property) && !map.muted.contains(&(channel.joint, property))
+    });
+    channels.map(|channel| tracks.clip.timelines()[channel.timeline as usize].len()).sum()
+}

@@ -1,0 +1,288 @@
+//! The quality of a retargeted clip in numbers: measured on the finished clip as the player plays it, at the source's keys
+//! and halfway between them, in the common frame.
+
+use gaitway_character::anim::{Clip, JointIndex, Skeleton};
+use gaitway_character::asset::{Humanoid, Slot};
+use glam::DQuat;
+use serde::Serialize;
+
+use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use super::smoothness::smoothness;
+use crate::align::swing::compared_segments;
+use crate::contacts::{Bodies, BodyMotion, SourceScene, TouchFigures};
+use crate::feet::Soles;
+use crate::keys::resample::union;
+use crate::map::{Pair, ResolvedMap};
+use crate::math::{angle_between, degrees_between};
+use crate::pose::{Local, PartialPose, Scratch, WorldPose};
+use crate::transfer::{Transfer, lowest_leg_joint, removed_travel};
+
+/// Quality figures; `None` for what cannot be measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Figures {
+    /// Angle between the direction of a limb (or the torso) and its source's: the visible error. Measured from positions
+    /// alone, so a wrong rest shows in it, unless it turns a limb about itself.
+    pub limb_direction_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all segments and measured times.
+    pub limb_direction_error_degrees_max: Option<f64>,
+    /// The same for what the limbs do not show: the lines through both hips and both shoulders, and the directions of feet
+    /// and hands. Differences in build, such as the height of the heels, are included.
+    pub facing_error_degrees_mean: Option<f64>,
+    /// The largest of these angles.
+    pub facing_error_degrees_max: Option<f64>,
+    /// Difference between a mapped joint's rotation away from its aligned rest and its source's: how well the rotation
+    /// law holds. Assumes that the rests are right. Measured without planted feet.
+    pub orientation_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all mapped joints and measured times.
+    pub orientation_error_degrees_max: Option<f64>,
+    /// Mean horizontal speed of the toes (or ankles) while the source's are in contact, with removed travel added back.
+    pub foot_slide_metres_per_sec: Option<f64>,
+    /// The source's own speed during the same contacts, scaled to the target.
+    pub foot_slide_source_metres_per_sec: Option<f64>,
+    /// Maximum depth of a toe or ankle below the lowest leg joint of the aligned rest.
+    pub ground_penetration_metres_max: Option<f64>,
+    /// Mean height of the sole's lowest point above the ground while the source's foot is in contact; negative below it. The
+    /// ground is where the lowest point of either sole rests: of the mesh of the feet or, without one, of their joints.
+    pub foot_hover_metres_mean: Option<f64>,
+    /// How deep the lowest point of either sole goes below the same ground, at any measured time.
+    pub sole_penetration_metres_max: Option<f64>,
+    /// The largest angle by which a mapped joint turns in model space within 1/60 s of the finished clip: a joint that snaps.
+    pub largest_turn_degrees_per_frame: Option<f64>,
+    /// Mean length of the third derivative of the mapped joints' positions in model space, at 60 frames per second of the finished
+    /// clip: high where joints jitter.
+    pub jerk_metres_per_sec3_mean: Option<f64>,
+    /// Share of the points on forearms, hands, shins and feet that are inside other parts of the body, deeper than at rest. Body
+    /// parts are solids fitted to the mesh; `None` without one.
+    pub self_penetration_share: Option<f64>,
+    /// Mean distance of the contacts that the source's hands have with its body, and hands and knees with the ground, from where
+    /// the target has them.
+    pub contact_error_metres_mean: Option<f64>,
+    /// Share of the slots that both sides have whose joints are mapped.
+    pub coverage: Option<f64>,
+}
+
+/// Lines whose directions show how hips, chest, feet and hands are turned.
+const FACING: [(Slot, Slot); 6] = [
+    (Slot::RightUpperLeg, Slot::LeftUpperLeg),
+    (Slot::RightUpperArm, Slot::LeftUpperArm),
+    (Slot::LeftFoot, Slot::LeftToes),
+    (Slot::RightFoot, Slot::RightToes),
+    (Slot::LeftHand, Slot::LeftMiddleProximal),
+    (Slot::RightHand, Slot::RightMiddleProximal),
+];
+
+/// Joints that shouldn't be below the ground.
+const ON_GROUND: [Slot; 4] = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes];
+
+/// Contacts of the body are looked for a bit more than 30 times per second.
+const TOUCH_STEP_SECS: f32 = 0.03;
+
+/// A clip of the target to measure.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasuredClip<'a> {
+    pub clip: &'a Clip,
+    /// The same without planted feet and kept contacts, if they are.
+    pub unplanted: Option<&'a Clip>,
+}
+
+/// Mean and maximum of the values added so far.
+#[derive(Debug, Default)]
+struct Spread {
+    sum: f64,
+    count: usize,
+    max: f64,
+}
+
+impl Spread {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+        self.max = self.max.max(value);
+    }
+
+    fn mean(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+
+    fn max(&self) -> Option<f64> {
+        (self.count > 0).then_some(self.max)
+    }
+}
+
+/// Measures a clip and tracks its feet over time.
+pub fn measure(
+    transfer: &Transfer,
+    bodies: Option<&Bodies>,
+    [source_slots, target_slots]: [&Humanoid; 2],
+    measured: MeasuredClip,
+) -> (Figures, Vec<FootTrack>) {
+    let times = measured_times(transfer.tracks.clip);
+    let removed = removed_travel(transfer, &times);
+    let segments = mapped_segments(transfer, compared_segments());
+    let facing_segments = mapped_segments(transfer, FACING.into_iter());
+    let ground_joints: Vec<JointIndex> = ON_GROUND.into_iter().filter_map(|slot| target_slots.joint(slot)).collect();
+    let ground = lowest_leg_joint(target_slots, &transfer.alignment.target.positions);
+
+    let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
+    let mut penetration: Option<f64> = None;
+    let soles = Soles::new(transfer);
+    let mut feet = mapped_feet(transfer, soles.feet);
+    let pairs = &transfer.map.pairs;
+    let mut source_pose = mapped_source(transfer);
+    // The feet themselves are mapped; joints of their soles may not be.
+    let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
+    let targets: Vec<JointIndex> =
+        pairs.iter().map(|pair| pair.target).chain(ground_joints.iter().copied()).chain(of_soles).collect();
+    let [mut target_clip, mut unplanted_clip] = [(); 2].map(|()| PlayedClip::new(transfer, &targets));
+    let touches = touches(transfer, bodies, measured.clip);
+    for (index, &time) in times.iter().enumerate() {
+        let source = source_pose.update(transfer.tracks.locals_at(time));
+        let target = target_clip.pose(measured.clip, time);
+        let unplanted = measured.unplanted.map_or(target, |clip| unplanted_clip.pose(clip, time));
+        // Undoes the turning that the root options removed.
+        let turn_back = removed.turn(time).conjugate();
+        add_orientation_errors(&mut orientation, transfer, source, unplanted, turn_back);
+        add_direction_errors(&mut direction, &segments, source, target, turn_back);
+        add_direction_errors(&mut facing, &facing_segments, source, target, turn_back);
+        if let Some(ground) = ground {
+            let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
+            penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
+        }
+        for foot in &mut feet {
+            foot.source.push(source.position(foot.source_joint));
+            foot.target.push(removed.restored(transfer, target, foot.target_joint, index, turn_back));
+            foot.heights.push(foot.sole.lowest(target) - soles.ground);
+        }
+    }
+    let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
+    let sole_penetration = depths.reduce(f64::max);
+    let smoothness = smoothness(transfer.target_skeleton, pairs, measured.clip);
+    let (contacts, tracks) = foot_tracks(transfer, &times, feet);
+    let figures = Figures {
+        limb_direction_error_degrees_mean: direction.mean(),
+        limb_direction_error_degrees_max: direction.max(),
+        facing_error_degrees_mean: facing.mean(),
+        facing_error_degrees_max: facing.max(),
+        orientation_error_degrees_mean: orientation.mean(),
+        orientation_error_degrees_max: orientation.max(),
+        foot_slide_metres_per_sec: contacts.slide,
+        foot_slide_source_metres_per_sec: contacts.source_slide,
+        ground_penetration_metres_max: penetration,
+        foot_hover_metres_mean: contacts.hover,
+        sole_penetration_metres_max: sole_penetration,
+        largest_turn_degrees_per_frame: smoothness.largest_turn_degrees,
+        jerk_metres_per_sec3_mean: smoothness.jerk_mean,
+        self_penetration_share: touches.self_penetration_share(),
+        contact_error_metres_mean: touches.contact_error(),
+        coverage: coverage(transfer.map, source_slots, target_slots),
+    };
+    (figures, tracks)
+}
+
+/// Returns the segments whose ends are both mapped.
+fn mapped_segments<'a>(
+    transfer: &Transfer<'a>,
+    segments: impl Iterator<Item = (Slot, Slot)>,
+) -> Vec<(&'a Pair, &'a Pair)> {
+    segments.filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect()
+}
+
+/// The mapped joints of the source, in the common frame.
+fn mapped_source<'a>(transfer: &Transfer<'a>) -> PartialPose<'a> {
+    let joints = transfer.map.pairs.iter().map(|pair| pair.source);
+    PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, joints)
+}
+
+/// The measured joints of the target, in the common frame.
+struct PlayedClip<'a> {
+    skeleton: &'a Skeleton,
+    scratch: Scratch,
+    pose: PartialPose<'a>,
+}
+
+impl<'a> PlayedClip<'a> {
+    fn new(transfer: &Transfer<'a>, joints: &[JointIndex]) -> Self {
+        let skeleton = transfer.target_skeleton;
+        let pose = PartialPose::new(skeleton, transfer.alignment.target.world_from_model, joints.iter().copied());
+        Self { skeleton, scratch: Scratch::default(), pose }
+    }
+
+    /// Poses the joints as the player would play a clip.
+    fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
+        let sampled = self.scratch.sample(self.skeleton, clip, time_secs);
+        self.pose.update(|joint| Local::from(&sampled.local(joint)))
+    }
+}
+
+/// The source's keys, and halfway between them.
+fn measured_times(clip: &Clip) -> Vec<f32> {
+    let keys = union(clip.timelines().iter().map(Vec::as_slice));
+    let mut times: Vec<f32> = Vec::with_capacity(2 * keys.len());
+    for &key in &keys {
+        if let Some(&before) = times.last() {
+            let middle = before + 0.5 * (key - before);
+            if middle > before && middle < key {
+                times.push(middle);
+            }
+        }
+        times.push(key);
+    }
+    times
+}
+
+fn add_orientation_errors(
+    errors: &mut Spread,
+    transfer: &Transfer,
+    source: &WorldPose,
+    target: &WorldPose,
+    turn_back: DQuat,
+) {
+    let from_rest =
+        |pose: &WorldPose, rest: &WorldPose, joint: JointIndex| pose.rotation(joint) * rest.rotation(joint).conjugate();
+    for pair in &transfer.map.pairs {
+        let target = turn_back * from_rest(target, &transfer.alignment.target, pair.target);
+        let source = from_rest(source, &transfer.alignment.source, pair.source);
+        errors.add(angle_between(target, source).to_degrees());
+    }
+}
+
+fn add_direction_errors(
+    errors: &mut Spread,
+    segments: &[(&Pair, &Pair)],
+    source: &WorldPose,
+    target: &WorldPose,
+    turn_back: DQuat,
+) {
+    for (from, to) in segments {
+        let source = source.position(to.source) - source.position(from.source);
+        let target = turn_back * (target.position(to.target) - target.position(from.target));
+        if source.length() > 0.0 && target.length() > 0.0 {
+            errors.add(degrees_between(source, target));
+        }
+    }
+}
+
+/// Measures contacts of the body on the clip, at even steps; nothing if the target has no mesh.
+fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFigures {
+    let mut figures = TouchFigures::default();
+    let Some(bodies) = bodies.filter(|bodies| bodies.target.has_mesh) else { return figures };
+    let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
+    let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
+    let source = SourceScene::new(transfer, bodies, times);
+    let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());
+    let mut target = BodyMotion::default();
+    source.times.iter().for_each(|&time| target.push(&bodies.target, played.pose(clip, time)));
+    let ground = source.ground(transfer, bodies, &target);
+    for (at, frames) in target.frames.iter().enumerate() {
+        let on_ground = ground.iter().flat_map(|ground| ground.misses(bodies, at, frames)).map(|(_, by)| by);
+        figures.add(bodies, &source.touches[at], on_ground, frames, source.target_from_source(at));
+    }
+    figures
+}
+
+fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {
+    let both: Vec<JointIndex> =
+        Slot::ALL.iter().filter_map(|&slot| source_slots.joint(slot).and(target_slots.joint(slot))).collect();
+    let mapped = both.iter().filter(|&&joint| map.source_of(joint).is_some()).count();
+    (!both.is_empty()).then(|| mapped as f64 / both.len() as f64)
+}

@@ -1,0 +1,272 @@
+//! Finds the joints of an asset that fill the humanoid slots: by the file's own humanoid map, else by known vocabularies,
+//! words and hierarchy, else by shape. Records how each joint was found.
+
+mod assemble;
+mod by_shape;
+mod creature;
+mod evidence;
+mod facing;
+mod fingers;
+mod known;
+mod languages;
+mod limbs;
+mod names;
+mod shape;
+mod tree;
+mod vocabulary;
+mod words;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use gaitway_character::anim::{JointIndex, Pose, SampleCursor};
+use gaitway_character::asset::{Asset, Humanoid, Slot};
+use glam::Vec3;
+
+use evidence::Evidence;
+use tree::Tree;
+
+pub(crate) use creature::chains;
+pub use names::Name;
+pub use names::words;
+
+/// The result of [`recognize`]; empty for anything but a human body.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Recognized {
+    /// The joint that fills each slot.
+    pub parts: BTreeMap<Slot, RecognizedJoint>,
+    /// The joints that most likely fill other slots, but not certainly enough: they were left out of `parts`.
+    pub left_out: BTreeMap<Slot, RecognizedJoint>,
+    /// Which way the body faces at rest.
+    pub facing: Facing,
+    /// Evidence against what was decided in `parts`.
+    pub contradictions: Vec<Contradiction>,
+    /// Whether the joints' positions decided left and right against their names, for all joints together.
+    pub by_position: bool,
+}
+
+/// The joint of a slot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RecognizedJoint {
+    /// The joint that fills the slot.
+    pub joint: JointIndex,
+    /// How it was found.
+    pub reason: Reason,
+    /// 0 (a guess) to 1 (the file says so).
+    pub confidence: f32,
+}
+
+/// How a joint was matched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Reason {
+    /// The file's own humanoid map (VRM, VRMA).
+    File,
+    /// Both skeletons give it the same name.
+    SameName,
+    /// A known vocabulary; holds its name.
+    Vocabulary(&'static str),
+    /// Words in its name.
+    Words,
+    /// Its position between joints that were found otherwise.
+    Hierarchy,
+    /// Its position in space.
+    Geometry,
+}
+
+/// A text for the UI: “Mixamo name”, “position in space”.
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => f.write_str("the file says so"),
+            Self::SameName => f.write_str("same name"),
+            Self::Vocabulary(vocabulary) => write!(f, "{vocabulary} name"),
+            Self::Words => f.write_str("words in its name"),
+            Self::Hierarchy => f.write_str("position in the hierarchy"),
+            Self::Geometry => f.write_str("position in space"),
+        }
+    }
+}
+
+/// Which way the character faces at rest, in model space. Each direction comes from its own evidence, so that they can be
+/// compared.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Facing {
+    /// From the feet to the head; +Y unless the character rests lying down.
+    pub up: Option<Vec3>,
+    /// From the right side to the left as they were decided; perpendicular to `up`.
+    pub left: Option<Vec3>,
+    /// Where toes, eyes and knees point, regardless of left and right; perpendicular to `up`.
+    pub forward: Option<Vec3>,
+}
+
+impl Facing {
+    /// Whether the side named left is on the right as the toes point: the model is mirrored or its names are swapped, and
+    /// (right → left) × up points backwards.
+    pub fn is_mirrored(&self) -> bool {
+        match (self.up, self.left, self.forward) {
+            (Some(up), Some(left), Some(forward)) => left.cross(up).dot(forward) < 0.0,
+            _ => false,
+        }
+    }
+}
+
+/// Evidence that contradicts a decision.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Contradiction {
+    /// Named for one side but on the other, as the feet point. [`Recognized::by_position`] says which was followed.
+    Side {
+        /// The slot that the joint fills.
+        slot: Slot,
+        /// The joint that lies on the wrong side of its counterpart.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+    },
+}
+
+impl Recognized {
+    /// Returns the joint that fills a slot.
+    pub fn joint(&self, slot: Slot) -> Option<JointIndex> {
+        self.parts.get(&slot).map(|part| part.joint)
+    }
+
+    /// Returns the slot that a joint fills.
+    pub fn slot(&self, joint: JointIndex) -> Option<Slot> {
+        self.parts.iter().find(|(_, part)| part.joint == joint).map(|(&slot, _)| slot)
+    }
+
+    /// Returns the joints by slot, without how they were found.
+    pub fn humanoid(&self) -> Humanoid {
+        Humanoid(self.parts.iter().map(|(&slot, part)| (slot, part.joint)).collect())
+    }
+}
+
+/// Factor on the confidence in names that leave much of a body unmatched: they may mean something else.
+const PARTIAL_BODY_FACTOR: f32 = 0.7;
+
+/// Confidence in a joint whose name is wrong about the side: its position overrode the name, so it needs review.
+const SWAPPED_CONFIDENCE: f32 = 0.55;
+
+/// A file's own humanoid map with fewer slots than this is ignored.
+const MIN_FILE_SLOTS: usize = 6;
+
+/// A creature with a tail counts as human only from this cosine between upper body and legs.
+const MIN_CREATURE_STRAIGHTNESS: f32 = 0.8;
+
+/// Finds the joints of a human body; deterministic.
+pub fn recognize(asset: &Asset) -> Recognized {
+    let mut tree = Tree::new(asset);
+    let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| parts.len() >= MIN_FILE_SLOTS);
+    let is_declared = from_file.is_some();
+    let mut left_out = BTreeMap::new();
+    let mut parts = match from_file {
+        Some(parts) => with_fingers(&tree, parts),
+        None => by_names(&tree).unwrap_or_else(|| {
+            let found = by_shape::find(&tree, &Evidence::new(asset));
+            left_out = found.left_out;
+            found.parts
+        }),
+    };
+    if parts.is_empty() {
+        return Recognized::default();
+    }
+    pose_upright(asset, &mut tree, &parts);
+    // Four legs under a level back: the joints of a dog often have human names.
+    let is_level =
+        facing::straightness(&tree, &parts).is_some_and(|straightness| straightness < MIN_CREATURE_STRAIGHTNESS);
+    if !is_declared && is_level && names_a_creature(&tree) {
+        return Recognized::default();
+    }
+    let feet_point = facing::feet_point(asset, &tree, &parts);
+    let mut facing = facing::find(&tree, &parts, feet_point);
+    let mut contradictions = facing::contradictions(&tree, &parts, &facing);
+    let by_position = !is_declared && facing::position_decides(&parts, feet_point, &contradictions);
+    if by_position {
+        parts = with_sides_swapped(parts);
+        facing = facing::find(&tree, &parts, feet_point);
+        for Contradiction::Side { slot, .. } in &mut contradictions {
+            *slot = slot.mirrored();
+        }
+    }
+    Recognized { parts, left_out, facing, contradictions, by_position }
+}
+
+/// Gives each joint the slot of the other side, with at most the confidence of a name that is wrong about the side.
+fn with_sides_swapped(parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
+    let swapped =
+        parts.into_iter().map(|(slot, RecognizedJoint { joint, reason, confidence })| match slot.mirrored() {
+            same if same == slot => (slot, RecognizedJoint { joint, reason, confidence }),
+            other => {
+                let confidence = confidence.min(SWAPPED_CONFIDENCE);
+                (other, RecognizedJoint { joint, reason: Reason::Geometry, confidence })
+            }
+        });
+    swapped.collect()
+}
+
+fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {
+    let declared = |joint| RecognizedJoint { joint, reason: Reason::File, confidence: 1.0 };
+    humanoid.0.iter().map(|(&slot, &joint)| (slot, declared(joint))).collect()
+}
+
+/// Adds fingers, which humanoid maps often leave out. Other slots may be left out on purpose.
+fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
+    for (slot, part) in by_names(tree).unwrap_or_default() {
+        let is_free = |other: &RecognizedJoint| other.joint != part.joint;
+        let above = std::iter::successors(known::parent_of(slot), |slot| known::parent_of(*slot));
+        let is_under_its_parent = above
+            .filter_map(|slot| parts.get(&slot))
+            .next()
+            .is_some_and(|above| tree.is_under(part.joint, above.joint));
+        if slot.is_finger() && !parts.contains_key(&slot) && parts.values().all(is_free) && is_under_its_parent {
+            parts.insert(slot, part);
+        }
+    }
+    parts
+}
+
+/// None if the names are unknown, so that the shape may decide; empty if they belong to something else.
+fn by_names(tree: &Tree) -> Option<BTreeMap<Slot, RecognizedJoint>> {
+    let known = known::find(tree);
+    let mut parts = assemble::find(tree, known.as_ref());
+    if has_whole_body(&parts) {
+        return Some(parts);
+    }
+    if known.is_some() && !names_a_creature(tree) {
+        for part in parts.values_mut() {
+            part.confidence *= PARTIAL_BODY_FACTOR;
+        }
+        return Some(parts);
+    }
+    // The names are known and contradict a human body: its shape would only mislead.
+    let known_words = tree.words.iter().flatten().count();
+    (known_words > tree.skeleton.len() / 4 || names_a_creature(tree)).then(BTreeMap::new)
+}
+
+/// Whether hips, head, arms and legs are there. Simple figures may lack hands, feet and a spine.
+fn has_whole_body(parts: &BTreeMap<Slot, RecognizedJoint>) -> bool {
+    use Slot::*;
+    let limbs = [LeftUpperLeg, LeftLowerLeg, LeftUpperArm, LeftLowerArm];
+    let sides = limbs.into_iter().chain(limbs.map(Slot::mirrored));
+    [Hips, Head].into_iter().chain(sides).all(|slot| parts.contains_key(&slot))
+}
+
+fn names_a_creature(tree: &Tree) -> bool {
+    tree.names.iter().any(words::is_of_creature)
+}
+
+/// Uses the first frame for files whose rest is not a pose of a body: motion capture often rests with all bones along one
+/// axis.
+fn pose_upright(asset: &Asset, tree: &mut Tree, parts: &BTreeMap<Slot, RecognizedJoint>) {
+    let Some(clip) = asset.clips.first().filter(|_| asset.skins.is_empty()) else { return };
+    let at_rest = facing::straightness(tree, parts);
+    if at_rest.is_none_or(|straightness| straightness > 0.5) {
+        return;
+    }
+    let mut pose: Pose = asset.skeleton.rest().clone();
+    clip.sample(&asset.skeleton, 0.0, &mut SampleCursor::default(), &mut pose);
+    tree.set_pose(&pose);
+    if facing::straightness(tree, parts) < at_rest {
+        tree.set_pose(asset.skeleton.rest());
+    }
+}

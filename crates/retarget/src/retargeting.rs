@@ -1,0 +1,135 @@
+//! The public entry: two bodies, a clip and a joint map, aligned once and then baked, measured or staged.
+
+use std::sync::OnceLock;
+
+use gaitway_character::anim::Clip;
+use gaitway_character::asset::{Asset, Humanoid};
+use glam::Affine3A;
+
+use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
+use super::align::{Alignment, Rest, align};
+use super::bake::{RetargetError, Retargeted, bake};
+use super::contacts::Bodies;
+use super::keys::tracks::SourceTracks;
+use super::map::ResolvedMap;
+use super::measure::{Figures, FootTrack, MeasuredClip, StagePair, measure, model_from_source, stage_pairs};
+use super::pose::node_locals;
+use super::transfer::{Hips, HipsInput, Transfer, match_hips};
+
+/// An asset and its joints by humanoid slot: one side of a retarget.
+#[derive(Debug, Clone, Copy)]
+pub struct Body<'a> {
+    /// The file, with skeleton, skins and clips.
+    pub asset: &'a Asset,
+    /// Joints of `asset` by humanoid slot; empty if it is not a human body.
+    pub slots: &'a Humanoid,
+}
+
+/// A clip and a model, aligned by a joint map.
+#[derive(Debug)]
+pub struct Retargeting<'a> {
+    model: Body<'a>,
+    source: Body<'a>,
+    map: &'a ResolvedMap,
+    tracks: SourceTracks<'a>,
+    alignment: Alignment,
+    hips: Option<Hips>,
+    rest: FoundRest,
+    /// Fitted to the meshes when first needed; `None` if no limb is mapped.
+    bodies: OnceLock<Option<Bodies>>,
+}
+
+impl<'a> Retargeting<'a> {
+    /// Aligns the rests. `clip` is an index into the motion's clips; `map` was resolved against these two assets.
+    ///
+    /// # Errors
+    /// If there is no such clip, or the map has no pairs.
+    pub fn new(model: Body<'a>, source: Body<'a>, clip: usize, map: &'a ResolvedMap) -> Result<Self, RetargetError> {
+        let clips = &source.asset.clips;
+        let source_clip = match clips.get(clip) {
+            Some(clip) => clip,
+            None if clips.is_empty() => return Err(RetargetError::NoClips),
+            None => return Err(RetargetError::NoSuchClip { index: clip, count: clips.len() }),
+        };
+        if map.pairs.is_empty() {
+            return Err(RetargetError::NoPairs);
+        }
+        let target_nodes = node_locals(&model.asset.skeleton);
+        let target_skeleton = &model.asset.skeleton;
+        let target_locals = target_rest(model.asset, &target_nodes, map.rest.model);
+        let SourceRest { locals, unmoved, target_from_source, is_in_place, found } = source_rest(RestInput {
+            source: source.asset,
+            source_slots: source.slots,
+            clip: source_clip,
+            target: target_skeleton,
+            target_rest: &target_locals,
+            map,
+        });
+        let source_rest = Rest { skeleton: &source.asset.skeleton, slots: source.slots, locals };
+        let target_rest = Rest { skeleton: target_skeleton, slots: model.slots, locals: target_locals };
+        let alignment = align(map, &source_rest, &target_rest, &target_nodes, target_from_source);
+        let tracks = SourceTracks::new(&source.asset.skeleton, source_clip, &map.muted, &unmoved);
+        let hips = match_hips(HipsInput {
+            map,
+            alignment: &alignment,
+            tracks: &tracks,
+            target_skeleton,
+            source_slots: source.slots,
+            target_slots: model.slots,
+        });
+        let hips = hips.map(|hips| if is_in_place { hips } else { hips.resting_as_target() });
+        Ok(Self { model, source, map, tracks, alignment, hips, rest: found, bodies: OnceLock::new() })
+    }
+
+    /// Returns the motion's rest pose: its origin and confidence.
+    pub fn motion_rest(&self) -> FoundRest {
+        self.rest
+    }
+
+    fn transfer(&self) -> Transfer<'_> {
+        Transfer {
+            map: self.map,
+            source: self.source.asset,
+            tracks: &self.tracks,
+            target_skeleton: &self.model.asset.skeleton,
+            target: self.model.asset,
+            alignment: &self.alignment,
+            hips: self.hips.as_ref(),
+        }
+    }
+
+    fn bodies(&self) -> Option<&Bodies> {
+        let slots = [self.source.slots, self.model.slots];
+        self.bodies.get_or_init(|| Bodies::new(&self.transfer(), slots)).as_ref()
+    }
+
+    /// Retargets the clip.
+    ///
+    /// # Errors
+    /// If the source's keys do not make a valid channel.
+    pub fn bake(&self) -> Result<Retargeted, RetargetError> {
+        bake(&self.transfer(), || self.bodies())
+    }
+
+    /// Measures what [`Retargeting::bake`] returned.
+    pub fn figures(&self, retargeted: &Retargeted) -> Figures {
+        self.measure(&retargeted.clip, retargeted.unplanted.as_ref()).0
+    }
+
+    /// Measures any clip of the model. Orientations are compared in `unplanted`, the same clip without planted feet and
+    /// kept contacts, if there is one.
+    pub fn measure(&self, clip: &Clip, unplanted: Option<&Clip>) -> (Figures, Vec<FootTrack>) {
+        let slots = [self.source.slots, self.model.slots];
+        measure(&self.transfer(), self.bodies(), slots, MeasuredClip { clip, unplanted })
+    }
+
+    /// Brings the source into the model's space: facing the same way, with the hips at the same place and height.
+    pub fn model_from_source(&self) -> Affine3A {
+        model_from_source(&self.alignment, self.hips.as_ref())
+    }
+
+    /// All pairs of the map, for showing the source beside the model.
+    pub fn stage_pairs(&self) -> Vec<StagePair> {
+        stage_pairs(self.map, &self.alignment)
+    }
+}

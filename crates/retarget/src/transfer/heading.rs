@@ -1,0 +1,90 @@
+//! Where the hips face over time, and the rotation laws without the turning that the root options remove.
+
+use std::f64::consts::TAU;
+
+use glam::DQuat;
+
+use super::root_motion::RootPolicy;
+use super::rotation::RotationLaw;
+use super::yaw::Yaw;
+use super::{Hips, Transfer};
+use crate::keys::limits::MAX_TURN;
+use crate::keys::resample::{Curve, Resampled, resample, union};
+use crate::map::RootPart;
+use crate::math::yaw_of;
+use crate::pose::ancestry;
+
+/// Less turning than this from first to last key is sway and stays with the hips when travel moves to the root joint.
+const MIN_EXTRACTED_DEGREES: f64 = 5.0;
+
+/// Returns the law of each pair, with the turning removed that the root options ask for, and the turning that goes to the
+/// root joint instead.
+pub fn rotation_laws<'a>(transfer: &Transfer<'a>) -> (Vec<RotationLaw<'a>>, Option<Yaw>) {
+    let mut laws: Vec<RotationLaw> =
+        (0..transfer.map.pairs.len()).map(|index| RotationLaw::new(transfer, index)).collect();
+    let Some(hips) = transfer.hips else { return (laws, None) };
+    let policy = RootPolicy::new(transfer, hips);
+    let root_turn = remove_turning(transfer, hips, &policy, &mut laws);
+    (laws, root_turn)
+}
+
+/// Sets the yaw that the law of the topmost mapped joint takes out. Returns the yaw that goes to the root joint, if any.
+fn remove_turning(transfer: &Transfer, hips: &Hips, policy: &RootPolicy, laws: &mut [RotationLaw]) -> Option<Yaw> {
+    let root_options = &transfer.map.root;
+    if root_options.yaw == RootPart::Keep && policy.extraction_joint.is_none() {
+        return None;
+    }
+    let top = hips.top_pair(transfer.map, transfer.target_skeleton);
+    let Yaw { times, radians: headings } = heading(transfer, hips, top, laws)?;
+    let (first_secs, last_secs) = (*times.first()?, *times.last()?);
+    let secs = f64::from(last_secs - first_secs);
+    let slope = if secs > 0.0 { (headings[headings.len() - 1] - headings[0]) / secs } else { 0.0 };
+    let line = |time: f32| slope * f64::from(time - first_secs);
+    let is_extracted = root_options.yaw == RootPart::Keep
+        && policy.extraction_joint.is_some()
+        && (slope * secs).to_degrees().abs() > MIN_EXTRACTED_DEGREES;
+    let removed: Vec<f64> = match root_options.yaw {
+        RootPart::Keep if !is_extracted => return None,
+        RootPart::Keep | RootPart::InPlace => times.iter().map(|&time| -line(time)).collect(),
+        RootPart::Freeze => headings.iter().map(|heading| headings[0] - heading).collect(),
+    };
+    laws[top].yaw = Some(Yaw { times: times.clone(), radians: removed });
+    is_extracted.then(|| Yaw { radians: times.iter().map(|&time| line(time)).collect(), times })
+}
+
+/// Yaw of the target's hips away from their aligned rest, before any of it is removed. None without keys.
+fn heading(transfer: &Transfer, hips: &Hips, top: usize, laws: &[RotationLaw]) -> Option<Yaw> {
+    let Transfer { map, target_skeleton, alignment, .. } = *transfer;
+    let joint = map.pairs[hips.pair].target;
+    let rest = alignment.target.rotation(joint);
+    let value = |time: f32| {
+        let model_from_hips = ancestry(target_skeleton, joint).fold(DQuat::IDENTITY, |below, ancestor| {
+            let pair = map.pair_index(ancestor);
+            let local = pair.map_or(alignment.target.locals[ancestor.get()].rotation, |pair| laws[pair].at(time));
+            local * below
+        });
+        yaw_of(alignment.target.world_from_model * model_from_hips * rest.conjugate())
+    };
+    let (top_times, top_jumps) = laws[top].times();
+    let (hips_times, hips_jumps) = laws[hips.pair].times();
+    let (times, jumps) = (union([&top_times[..], &hips_times]), union([&top_jumps[..], &hips_jumps]));
+    if times.is_empty() {
+        return None;
+    }
+    let curve = Curve {
+        value,
+        error: |from: &f64, to: &f64, factor: f64, at: &f64| wrapped(from + factor * wrapped(to - from) - at).abs(),
+        tolerance: MAX_TURN,
+    };
+    let Resampled { times, values: mut radians } = resample(&times, &jumps, curve);
+    // Unwrap, so that several turns count as several.
+    for at in 1..radians.len() {
+        radians[at] = radians[at - 1] + wrapped(radians[at] - radians[at - 1]);
+    }
+    Some(Yaw { times, radians })
+}
+
+/// The equivalent angle from −π to π.
+fn wrapped(radians: f64) -> f64 {
+    radians - (radians / TAU).round() * TAU
+}

@@ -1,0 +1,170 @@
+//! How the hips of both skeletons correspond: which pair they are, how their heights compare, where the ground is.
+
+use gaitway_character::anim::{JointIndex, Skeleton};
+use gaitway_character::asset::{Humanoid, Slot};
+use glam::DVec3;
+
+use crate::align::Alignment;
+use crate::keys::resample::union;
+use crate::keys::tracks::SourceTracks;
+use crate::map::{PathOrigin, ResolvedMap};
+use crate::pose::ancestry;
+
+const LEGS: [Slot; 8] = [
+    Slot::LeftUpperLeg,
+    Slot::LeftLowerLeg,
+    Slot::LeftFoot,
+    Slot::LeftToes,
+    Slot::RightUpperLeg,
+    Slot::RightLowerLeg,
+    Slot::RightFoot,
+    Slot::RightToes,
+];
+
+/// Moments of the clip at which the lowest foot is looked up.
+const GROUND_SAMPLES: usize = 32;
+
+/// The hips of both sides, in the common frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Hips {
+    /// Index into [`ResolvedMap::pairs`].
+    pub pair: usize,
+    /// Target units per source unit.
+    pub scale: f64,
+    /// Reference point of the source's path, in source units: the hips at rest; on the ground plane, with [`PathOrigin::Feet`],
+    /// their offset from the midpoint of the feet.
+    pub source_rest: DVec3,
+    /// Where the target is when the source is at `source_rest`, in target units.
+    pub target_rest: DVec3,
+    /// Height of the target's hips above the ground at the aligned rest, in target units.
+    pub height: f64,
+}
+
+impl Hips {
+    /// Returns the same for a source without a meaningful rest: it stands where the target does, at its own size.
+    pub fn resting_as_target(self) -> Self {
+        Self { source_rest: self.target_rest / self.scale, ..self }
+    }
+
+    /// Maps a position of the source's hips to the target's, before any travel is removed.
+    pub fn target_position(&self, source: DVec3) -> DVec3 {
+        self.target_rest + self.scale * (source - self.source_rest)
+    }
+
+    /// The pair of the topmost mapped joint at or above the hips: turning it turns the whole figure.
+    pub fn top_pair(&self, map: &ResolvedMap, target_skeleton: &Skeleton) -> usize {
+        ancestry(target_skeleton, map.pairs[self.pair].target)
+            .filter_map(|joint| map.pair_index(joint))
+            .last()
+            .unwrap_or(self.pair)
+    }
+}
+
+/// Both sides of what [`match_hips`] compares.
+#[derive(Clone, Copy)]
+pub struct HipsInput<'a> {
+    pub map: &'a ResolvedMap,
+    pub alignment: &'a Alignment,
+    pub tracks: &'a SourceTracks<'a>,
+    pub target_skeleton: &'a Skeleton,
+    pub source_slots: &'a Humanoid,
+    pub target_slots: &'a Humanoid,
+}
+
+/// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
+/// ancestor and whose source travels stands in for them.
+pub fn match_hips(input: HipsInput) -> Option<Hips> {
+    let HipsInput { map, alignment, tracks, target_skeleton, source_slots, target_slots } = input;
+    let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
+    let mut source_rest = alignment.source.position(map.pairs[pair].source);
+    let mut target_rest = alignment.target.position(map.pairs[pair].target);
+    // Compare the same joints on both sides: a rig without toes does not have shorter legs.
+    let both = |slot: &Slot| Some((source_slots.joint(*slot)?, target_slots.joint(*slot)?));
+    let legs: Vec<(JointIndex, JointIndex)> = LEGS.iter().filter_map(both).collect();
+    let (source_ground, target_ground) = if legs.is_empty() {
+        lowest_joints(alignment, map.pairs.iter().map(|pair| (pair.source, pair.target)))
+    } else {
+        lowest_joints(alignment, legs.iter().copied())
+    };
+    let (source_height, height) = (source_rest.y - source_ground, target_rest.y - target_ground);
+    let is_usable = source_height > 1e-9 && height > 1e-9 && (height / source_height).is_finite();
+    let source_legs: Vec<JointIndex> = legs.into_iter().map(|(source, _)| source).collect();
+    if rests_in_the_ground(input, pair, &source_legs, source_ground) {
+        source_rest.y -= source_ground;
+    }
+    if map.root.origin == PathOrigin::Feet
+        && let Some(source_feet) = between_feet(tracks.skeleton, source_slots, |joint| alignment.source.position(joint))
+        && let Some(target_feet) = between_feet(target_skeleton, target_slots, |joint| alignment.target.position(joint))
+    {
+        source_rest -= source_feet.with_y(0.0);
+        target_rest -= target_feet.with_y(0.0);
+    }
+    Some(Hips {
+        pair,
+        scale: if is_usable { height / source_height } else { 1.0 },
+        source_rest,
+        target_rest,
+        height: height.max(1e-9),
+    })
+}
+
+/// The midpoint of the feet at the aligned rest. None unless each foot is a descendant of its upper leg: the others don't turn with
+/// the legs.
+fn between_feet(skeleton: &Skeleton, slots: &Humanoid, position: impl Fn(JointIndex) -> DVec3) -> Option<DVec3> {
+    let sides = [(Slot::LeftUpperLeg, Slot::LeftFoot), (Slot::RightUpperLeg, Slot::RightFoot)];
+    let [left, right] = sides.map(|(leg, foot)| {
+        let (leg, foot) = (slots.joint(leg)?, slots.joint(foot)?);
+        ancestry(skeleton, foot).any(|joint| joint == leg).then(|| position(foot))
+    });
+    Some(left?.midpoint(right?))
+}
+
+fn travelling_pair(input: HipsInput) -> Option<usize> {
+    let HipsInput { map, alignment, tracks, target_skeleton, .. } = input;
+    if !alignment.pair_of_slot.is_empty() {
+        return None;
+    }
+    map.pairs.iter().position(|pair| {
+        let has_mapped_ancestor =
+            ancestry(target_skeleton, pair.target).skip(1).any(|joint| map.source_of(joint).is_some());
+        let travels = ancestry(tracks.skeleton, pair.source).any(|joint| tracks.translations[joint.get()].is_moving());
+        !has_mapped_ancestor && travels
+    })
+}
+
+/// Heights of the lowest source joint and the lowest target joint at the aligned rest.
+fn lowest_joints(alignment: &Alignment, joints: impl Iterator<Item = (JointIndex, JointIndex)>) -> (f64, f64) {
+    joints.fold((f64::INFINITY, f64::INFINITY), |(source_low, target_low), (source, target)| {
+        (source_low.min(alignment.source.position(source).y), target_low.min(alignment.target.position(target).y))
+    })
+}
+
+/// Some skeletons, usually BVH, rest with their hips at the origin and their legs below the ground, and every clip
+/// lifts them. Where the feet go shows whether the ground is under the resting feet or in the plane of the origin.
+fn rests_in_the_ground(input: HipsInput, pair: usize, legs: &[JointIndex], source_ground: f64) -> bool {
+    let HipsInput { map, alignment, tracks, .. } = input;
+    let hips = map.pairs[pair].source;
+    let height = alignment.source.position(hips).y - source_ground;
+    if source_ground.abs() < 0.25 * height || legs.is_empty() {
+        return false;
+    }
+    let mut times = union(tracks.path_timelines(hips));
+    let step = times.len().div_ceil(GROUND_SAMPLES).max(1);
+    times = times.into_iter().step_by(step).collect();
+    if times.is_empty() {
+        times.push(0.0);
+    }
+    let lowest_at = |time: &f32| {
+        let heights = legs.iter().map(|&joint| tracks.position(joint, *time, alignment.source.world_from_model).y);
+        heights.fold(f64::INFINITY, f64::min)
+    };
+    let mut lows: Vec<f64> = times.iter().map(lowest_at).collect();
+    lows.sort_by(f64::total_cmp);
+    let median = lows[lows.len() / 2];
+    median.abs() < (median - source_ground).abs()
+}
+
+/// Height of the lowest leg joint, or None without legs.
+pub fn lowest_leg_joint(slots: &Humanoid, positions: &[DVec3]) -> Option<f64> {
+    LEGS.iter().filter_map(|&slot| Some(positions[slots.joint(slot)?.get()].y)).reduce(f64::min)
+}

@@ -1,0 +1,87 @@
+//! Transfers the motion: rotations, the hips' path, root motion, copied channels, detached limbs, and layered clips.
+
+mod copy;
+mod detached;
+mod heading;
+mod hips;
+mod layers;
+mod path;
+mod path_channels;
+mod removed_travel;
+mod root_motion;
+mod rotation;
+mod yaw;
+
+pub use copy::{CopyPolicy, copied_channels};
+pub use detached::{detached_channels, detached_ends};
+pub use heading::rotation_laws;
+pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
+pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
+pub use path_channels::hips_channels;
+pub use removed_travel::{RemovedTravel, removed_travel};
+pub use root_motion::{extraction_joint, keeps_everything};
+
+use gaitway_character::anim::{Clip, JointIndex, Skeleton};
+use gaitway_character::asset::{Asset, Slot};
+use glam::DVec3;
+
+use super::align::Alignment;
+use super::keys::tracks::SourceTracks;
+use super::map::{Pair, ResolvedMap};
+use super::pose::{Scratch, WorldPose, clip_locals, is_within};
+
+/// Two skeletons aligned for one clip: what every step from here on reads.
+#[derive(Debug, Clone, Copy)]
+pub struct Transfer<'a> {
+    pub map: &'a ResolvedMap,
+    /// The file that the clip is from, for its mesh.
+    pub source: &'a Asset,
+    /// The source's skeleton and clip.
+    pub tracks: &'a SourceTracks<'a>,
+    pub target_skeleton: &'a Skeleton,
+    /// The file that `target_skeleton` is from, for its mesh.
+    pub target: &'a Asset,
+    pub alignment: &'a Alignment,
+    pub hips: Option<&'a Hips>,
+}
+
+impl<'a> Transfer<'a> {
+    /// The pair that fills a slot.
+    pub fn pair(&self, slot: Slot) -> Option<&'a Pair> {
+        self.alignment.pair(self.map, slot)
+    }
+
+    pub fn hips_pair(&self) -> Option<&'a Pair> {
+        self.hips.map(|hips| &self.map.pairs[hips.pair])
+    }
+
+    /// Target units per source unit; 1 without hips.
+    pub fn scale(&self) -> f64 {
+        self.hips.map_or(1.0, |hips| hips.scale)
+    }
+
+    /// The target joint whose translation carries the hips: the hips themselves or, if they hang from a trunk whose root is in
+    /// the chest, that root.
+    pub fn hips_carrier(&self) -> Option<JointIndex> {
+        let hips = self.hips_pair()?.target;
+        let trunk = [Slot::Spine, Slot::Chest, Slot::UpperChest].into_iter().filter_map(|slot| self.pair(slot));
+        let above = trunk.map(|pair| pair.target).filter(|joint| is_within(self.target_skeleton, hips, *joint));
+        above.min().or(Some(hips))
+    }
+
+    /// Where a joint of the source is in the common frame.
+    pub fn source_position(&self, joint: JointIndex, time_secs: f32) -> DVec3 {
+        self.tracks.position(joint, time_secs, self.alignment.source.world_from_model)
+    }
+
+    /// Where the source's hips are in the common frame.
+    pub fn source_hips(&self, time_secs: f32) -> Option<DVec3> {
+        self.hips_pair().map(|pair| self.source_position(pair.source, time_secs))
+    }
+
+    /// The target in the common frame, as the player would play `clip`.
+    pub fn target_pose(&self, clip: &Clip, time_secs: f32, scratch: &mut Scratch) -> WorldPose {
+        let locals = clip_locals(self.target_skeleton, clip, time_secs, scratch);
+        WorldPose::new(self.target_skeleton, locals, self.alignment.target.world_from_model)
+    }
+}

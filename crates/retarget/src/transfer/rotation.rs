@@ -1,0 +1,169 @@
+//! The rotation law: a target joint turns away from its aligned rest as its source turns away from its own, both seen in the
+//! common frame. With D the rotation away from the aligned rest `W*`, D of the target is D of the source, so
+//!
+//! `q_target = W*_t,parent⁻¹ · A · W*_t`, `A = D_a⁻¹ · D = W*_s,a · (source locals below a) · W*_s⁻¹`,
+//!
+//! where `a` is the source of the nearest mapped ancestor, whose D the target's parent moves with (the VRM Animation
+//! specification's "How to transform human pose" is the special case in which every ancestor is mapped). Where at most one
+//! of the locals moves, `q_target` is that rotation between two constants: a linear map of its keys and tangents, so these
+//! are transformed and nothing is resampled.
+
+use gaitway_character::anim::{JointIndex, Keys, Skeleton};
+use glam::{DQuat, DVec4, Quat};
+
+use super::Transfer;
+use super::yaw::Yaw;
+use crate::keys::channel::NewChannel;
+use crate::keys::limits::MAX_TURN;
+use crate::keys::resample::{Curve, Resampled, resample, union};
+use crate::keys::tracks::{SourceTracks, Track, rotation_at};
+use crate::math::{angle_between, slerp, unit};
+use crate::pose::ancestry;
+
+/// One local rotation of the source in the product.
+#[derive(Debug, Clone, Copy)]
+struct Factor {
+    joint: JointIndex,
+    inverted: bool,
+}
+
+/// The local rotation of one target joint as a function of time:
+/// `parent⁻¹ · yaw · left · factors · right`.
+#[derive(Debug)]
+pub struct RotationLaw<'a> {
+    tracks: &'a SourceTracks<'a>,
+    /// `W*_t,parent⁻¹`.
+    inverse_parent: DQuat,
+    /// `W*_s,a`.
+    left: DQuat,
+    factors: Vec<Factor>,
+    /// `W*_s⁻¹ · W*_t`.
+    right: DQuat,
+    /// Turning removed from the motion, in the common frame.
+    pub yaw: Option<Yaw>,
+}
+
+impl<'a> RotationLaw<'a> {
+    /// For pair `index` of the map.
+    pub fn new(transfer: &Transfer<'a>, index: usize) -> Self {
+        let (map, alignment, skeleton) = (transfer.map, transfer.alignment, transfer.target_skeleton);
+        let pair = &map.pairs[index];
+        let above = ancestry(skeleton, pair.target).skip(1).find_map(|joint| map.source_of(joint));
+        let left = above.map_or(alignment.source.world_from_model, |above| alignment.source.rotation(above));
+        let right = alignment.source.rotation(pair.source).conjugate() * alignment.target.rotation(pair.target);
+        Self {
+            tracks: transfer.tracks,
+            inverse_parent: unit(alignment.target.parent_rotation(skeleton, pair.target).conjugate()),
+            left: unit(left),
+            factors: factors(transfer.tracks.skeleton, above, pair.source),
+            right: unit(right),
+            yaw: None,
+        }
+    }
+
+    fn track(&self, factor: Factor) -> &'a Track<'a, DQuat> {
+        &self.tracks.rotations[factor.joint.get()]
+    }
+
+    fn factor_at(&self, factor: Factor, time_secs: f32) -> DQuat {
+        let rotation = rotation_at(self.track(factor), time_secs);
+        if factor.inverted { rotation.conjugate() } else { rotation }
+    }
+
+    /// The local rotation at a time.
+    pub fn at(&self, time_secs: f32) -> DQuat {
+        let product =
+            self.factors.iter().fold(self.left, |product, &factor| product * self.factor_at(factor, time_secs));
+        let turn = match &self.yaw {
+            Some(yaw) => DQuat::from_rotation_y(yaw.at(time_secs)),
+            None => DQuat::IDENTITY,
+        };
+        unit(self.inverse_parent * turn * product * self.right)
+    }
+
+    /// Whether any source joint in the product has a channel.
+    fn has_channel(&self) -> bool {
+        self.factors.iter().any(|factor| self.tracks.has_channel[factor.joint.get()])
+    }
+
+    /// Times at which anything in the product has a key, and those at which it jumps.
+    pub fn times(&self) -> (Vec<f32>, Vec<f32>) {
+        let timelines = self.factors.iter().map(|&factor| self.track(factor).times());
+        let yaw = self.yaw.as_ref().map_or(&[][..], |yaw| &yaw.times);
+        let jumps = self.factors.iter().map(|&factor| self.track(factor).jumps());
+        (union(timelines.chain([yaw])), union(jumps))
+    }
+
+    /// The channel of the target joint, or None if it would only repeat the rest.
+    pub fn channel(&self, joint: JointIndex, rest: DQuat) -> Option<NewChannel> {
+        let moving: Vec<Factor> =
+            self.factors.iter().copied().filter(|&factor| self.track(factor).is_moving()).collect();
+        match moving[..] {
+            _ if self.yaw.is_some() => Some(self.resampled(joint)),
+            [] => {
+                let rotation = self.at(0.0);
+                let is_rest = !self.has_channel() && angle_between(rotation, rest) < 1e-6;
+                (!is_rest).then(|| NewChannel::constant(joint, Keys::Rotation(vec![rotation.as_quat()])))
+            }
+            [factor] => self.transformed(joint, factor),
+            _ => Some(self.resampled(joint)),
+        }
+    }
+
+    /// The keys of the only moving factor between two constants. Tangents transform like values, since all of it is linear.
+    fn transformed(&self, joint: JointIndex, moving: Factor) -> Option<NewChannel> {
+        let Track::Keys { times, channel } = self.track(moving) else { return None };
+        let Keys::Rotation(values) = &channel.keys else { return None };
+        let at = self.factors.iter().position(|factor| factor.joint == moving.joint)?;
+        let (before, after) = (&self.factors[..at], &self.factors[at + 1..]);
+        let product = |start: DQuat, factors: &[Factor]| {
+            factors.iter().fold(start, |product, &factor| product * self.factor_at(factor, 0.0))
+        };
+        let left = unit(product(self.inverse_parent * self.left, before));
+        let right = unit(product(DQuat::IDENTITY, after) * self.right);
+        let transform = |value: &Quat| {
+            let value = value.as_dquat();
+            let value = if moving.inverted { value.conjugate() } else { value };
+            Quat::from_vec4(DVec4::from(left * value * right).as_vec4())
+        };
+        Some(NewChannel {
+            joint,
+            interpolation: channel.interpolation,
+            times: times.to_vec(),
+            keys: Keys::Rotation(values.iter().map(transform).collect()),
+            resampled: false,
+        })
+    }
+
+    fn resampled(&self, joint: JointIndex) -> NewChannel {
+        let (times, jumps) = self.times();
+        let curve = Curve {
+            value: |time| self.at(time),
+            error: |from: &DQuat, to: &DQuat, factor: f64, at: &DQuat| angle_between(slerp(*from, *to, factor), *at),
+            tolerance: MAX_TURN,
+        };
+        let Resampled { times, values } = resample(&times, &jumps, curve);
+        let mut values: Vec<Quat> = values.into_iter().map(DQuat::as_quat).collect();
+        for key in 1..values.len() {
+            if values[key - 1].dot(values[key]) < 0.0 {
+                values[key] = -values[key];
+            }
+        }
+        NewChannel::resampled(joint, times, Keys::Rotation(values))
+    }
+}
+
+/// The locals that lead from joint `from` (or the model's origin) to joint `to`: up to their common ancestor inverted, then
+/// down.
+fn factors(skeleton: &Skeleton, from: Option<JointIndex>, to: JointIndex) -> Vec<Factor> {
+    let mut down: Vec<JointIndex> = ancestry(skeleton, to).collect();
+    let mut up: Vec<JointIndex> = from.map(|from| ancestry(skeleton, from).collect()).unwrap_or_default();
+    while let (Some(a), Some(b)) = (up.last(), down.last())
+        && a == b
+    {
+        up.pop();
+        down.pop();
+    }
+    let up = up.into_iter().map(|joint| Factor { joint, inverted: true });
+    up.chain(down.into_iter().rev().map(|joint| Factor { joint, inverted: false })).collect()
+}

@@ -1,0 +1,79 @@
+//! Environments: lighting the scene and being kept.
+
+use gaitway_character::asset::Panorama;
+use gaitway_scene::editor::{Contents, Editor};
+use gaitway_scene::frame::{Frame, evaluate};
+use gaitway_scene::library::{Environment, Library};
+use gaitway_scene::state::{CharacterView, Command, EnvironmentChoice, Lighting, ViewerState};
+use glam::Vec3;
+
+use super::{any, contents, editor, notices, open};
+
+/// Grey from all directions.
+fn environment(origin: &str) -> Contents {
+    let panorama = Panorama::new(2, 1, vec![Vec3::splat(0.5); 2]).expect("the right size");
+    let environment = Environment { origin: origin.to_owned(), panorama: panorama.into(), is_own: false };
+    Contents { environment: Some(environment), ..Contents::default() }
+}
+
+#[test]
+fn an_environment_lights_the_scene_until_it_is_undone() {
+    let mut editor = editor("sample:walker");
+    editor.open(environment("beach.hdr"), None, &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), ["Lit by beach.hdr."]);
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+    let mut frame = Frame::default();
+    evaluate(editor.library(), editor.state(), 1.0, &mut frame);
+    assert!(frame.panorama.is_some() && !editor.is_private());
+    // Another model is lit by it, too.
+    open(&mut editor, "sample:pilot");
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+    editor.undo();
+    editor.undo();
+    assert_eq!(editor.state().lighting, Lighting::default());
+    // A view names what lights it, so opening the file for it changes nothing.
+    let view = ViewerState {
+        character: CharacterView { sources: editor.state().character.sources.clone(), ..CharacterView::default() },
+        ..ViewerState::default()
+    };
+    let contents = Contents { motions: Some(Vec::new()), ..environment("sky.hdr").into_private() };
+    editor.open(contents, Some(view), &mut any).expect("is loaded");
+    assert_eq!(editor.state().lighting, Lighting::default());
+    assert!(!editor.is_private(), "it is loaded, but not shown");
+    editor.apply(Command::SetLight(EnvironmentChoice::File("sky.hdr".to_owned())));
+    assert!(editor.is_private());
+}
+
+#[test]
+fn an_environment_and_the_model_it_is_opened_with_are_one_step() {
+    let mut editor = editor("sample:walker");
+    let model = contents(&["sample:pilot"]);
+    editor.open(Contents { environment: environment("beach.hdr").environment, ..model }, None, &mut any).expect("fits");
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+    assert!(editor.undo());
+    assert_eq!(editor.state().character.sources.model, ["sample:walker"]);
+    assert_eq!(editor.state().lighting, Lighting::default());
+    assert!(editor.redo());
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+}
+
+/// The first model is no step, since nothing was shown before.
+#[test]
+fn an_environment_on_an_empty_stage_is_undone_by_itself() {
+    let mut editor = Editor::new(Library::default(), ViewerState::default());
+    let model = contents(&["sample:pilot"]);
+    editor.open(Contents { environment: environment("beach.hdr").environment, ..model }, None, &mut any).expect("fits");
+    assert!(editor.undo());
+    assert_eq!(editor.state().character.sources.model, ["sample:pilot"]);
+    assert_eq!(editor.state().lighting, Lighting::default());
+}
+
+#[test]
+fn a_few_environments_are_kept() {
+    let mut editor = editor("sample:walker");
+    for index in 0..6 {
+        editor.open(environment(&format!("{index}.hdr")), None, &mut any).expect("fits");
+    }
+    let kept: Vec<&str> = editor.library().environments().iter().map(|kept| kept.origin.as_str()).collect();
+    assert_eq!(kept, ["2.hdr", "3.hdr", "4.hdr", "5.hdr"]);
+}
