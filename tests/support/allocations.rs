@@ -8,19 +8,11 @@ struct Counting;
 thread_local! {
     /// Per thread, because tests run in parallel.
     static COUNT: Cell<usize> = const { Cell::new(0) };
-    /// Called for every allocation except its own.
-    pub static ON_ALLOCATION: Cell<Option<fn()>> = const { Cell::new(None) };
 }
 
 fn count() {
     // Fails only while the thread is shutting down.
     let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-    let _ = ON_ALLOCATION.try_with(|slot| {
-        if let Some(hook) = slot.take() {
-            hook();
-            slot.set(Some(hook));
-        }
-    });
 }
 
 // SAFETY: every call is forwarded unchanged to the system allocator.

@@ -7,7 +7,6 @@ mod by_hand;
 #[allow(dead_code)]
 #[path = "../support/by_place.rs"]
 mod by_place;
-mod call_sites;
 mod change;
 mod clips;
 mod design;

@@ -6,16 +6,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::ui::{Tab, text};
 use gaitway_character::asset::{Asset, AssetParts};
-use gaitway_retarget::{Feet, MutedProperty};
 use gaitway_scene::library::{Library, Model, Motion};
 use gaitway_scene::samples;
-use gaitway_scene::state::{Command, MapEdit};
+use gaitway_scene::state::Command;
 
-use super::{choose, edit, map, motion_tab, number, press_row, reach};
+use super::{choose, map, motion_tab, number, press_row, reach};
 use crate::allocations::allocations_after;
-use crate::bench::{Bench, WIDE, bench_of, motion_bench, painted, press};
+use crate::bench::{Bench, WIDE, bench_of, painted, press};
 use crate::by_place::motion_called;
-use crate::call_sites::own_allocations;
 use crate::skeletons;
 
 /// Types into the search field of the joints.
@@ -241,37 +239,4 @@ fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     };
     let (few, many) = (frames(200), frames(1000));
     assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
-}
-
-/// Checks every section of the tab: a joint's details with and without a source, and all groups of figures in the fit.
-#[test]
-fn an_open_motion_tab_allocates_nothing_of_its_own() {
-    let mut harness = motion_bench([1280.0, 2400.0], &["dance.bvh", "other.bvh"]);
-    press(&mut harness, "Walk (2)");
-    press(&mut harness, Tab::Motion.label());
-    let neck = number(&harness, "Neck");
-    let mute = MapEdit::Mute { source: neck, property: MutedProperty::Scale, muted: true };
-    harness.state_mut().editor.apply(edit(mute));
-    harness.state_mut().editor.apply(Command::SetFeet(Some(Feet::Plant)));
-    let check = |part: &str, harness: &mut Harness<'_, Bench>| {
-        press(harness, part);
-        (0..20).for_each(|_| harness.step());
-        let sites = own_allocations("gaitway::ui::motion::show", || (0..2).for_each(|_| harness.step()));
-        assert!(sites.is_empty(), "{part}: {sites:#?}");
-    };
-    for (label, source) in [(text::source_of("Neck"), Some(neck)), (text::OWN_POLICY.to_owned(), None)] {
-        harness.state_mut().editor.apply(Command::SetSource {
-            motion: motion_called("dance.bvh"),
-            target: neck,
-            source,
-        });
-        harness.state_mut().editor.apply(Command::SelectJoint(Some(neck)));
-        check(text::JOINTS, &mut harness);
-        assert!(harness.query_by_label(&label).is_some());
-    }
-    check(text::OPTIONS, &mut harness);
-    assert!(harness.query_by_label(text::USE_ALL_CHANNELS).is_some());
-    check(text::FIT, &mut harness);
-    assert!(harness.query_by_label_contains(text::PLANTING).is_some());
-    check(text::FILES, &mut harness);
 }
