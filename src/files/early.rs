@@ -11,7 +11,7 @@ use gaitway_character::anim::TextureSlot;
 use gaitway_character::asset::Asset;
 use gaitway_formats::{Early, FileSet, LoadOptions, early, load_named};
 use gaitway_scene::editor::container_of;
-use gaitway_scene::library::{ImageData, Model};
+use gaitway_scene::library::{ImageData, Images, Model};
 use gaitway_scene::state::{EnvironmentChoice, MotionMap, ViewerState};
 
 /// Watches the download of a model for the moment from which it can be shown.
@@ -56,7 +56,7 @@ fn open(origin: &str, name: &str, glb: Vec<u8>) -> Option<Model> {
     let mut files = FileSet::default();
     files.insert(name, glb);
     let asset = load_named(&files, name, &LoadOptions { awaits_images: true, ..LoadOptions::default() }).ok()?;
-    let images = stand_ins(&asset);
+    let images = Images::Awaited(stand_ins(&asset));
     Some(Model::new(origin.to_owned(), asset, images))
 }
 

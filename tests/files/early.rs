@@ -84,15 +84,14 @@ fn stand_ins_look_like_no_image() {
         Some(ImageData::Rgba8 { width: 1, height: 1, pixels }) => pixels.clone(),
         other => panic!("{other:?}"),
     };
-    let texels: Vec<Vec<u8>> = model.images.iter().map(texel).collect();
+    let texels: Vec<Vec<u8>> = model.images.shown().iter().map(texel).collect();
     assert_eq!(
         texels,
         [[255, 255, 255, 255], [255, 255, 0, 255], [128, 128, 255, 255]],
         "rough, not metallic, and flat"
     );
     assert_eq!((model.source.as_str(), model.origin.as_str()), (URL, URL));
-    let warnings: Vec<_> = model.findings().iter().map(|finding| finding.warning.code()).collect();
-    assert!(warnings.contains(&"images-awaited"), "{warnings:?}");
+    assert!(model.awaits_images() && model.findings().is_empty(), "none is reported missing: {:?}", model.findings());
     assert!(!editor.has_gltf(), "its file has yet to arrive");
 }
 
@@ -106,7 +105,7 @@ fn completing_a_model_changes_nothing_else() {
     editor.take_needs_redraw();
     let mut admitted = Vec::new();
     let admit = &mut |model: &Model| {
-        admitted.push((model.id, model.images.iter().flatten().count()));
+        admitted.push((model.id, model.images.shown().iter().flatten().count()));
         Ok(())
     };
     editor.complete(id, complete(&file()), admit).expect("fits");
@@ -116,8 +115,7 @@ fn completing_a_model_changes_nothing_else() {
     assert!(editor.take_events().is_empty(), "nothing is said about it");
     let model = editor.library().active().expect("a model");
     assert!(model.id == id && model.asset.images.iter().all(|image| !image.bytes.is_empty()));
-    let warnings: Vec<_> = model.findings().iter().map(|finding| finding.warning.code()).collect();
-    assert!(!warnings.contains(&"images-awaited"), "{warnings:?}");
+    assert!(!model.awaits_images());
     assert!(editor.has_gltf());
 }
 

@@ -304,7 +304,7 @@ impl Materials<'_> {
             .images
             .entry((image, srgb))
             .or_insert_with(|| {
-                let data = self.model.images.get(image)?.as_ref()?;
+                let data = self.model.images.shown().get(image)?.as_ref()?;
                 self.uploader.images.upload(self.device, self.queue, data, srgb)
             })
             .clone()?;

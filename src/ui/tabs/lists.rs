@@ -104,7 +104,7 @@ fn image_text(model: &Model, index: usize) -> ImageText {
         textures.any(|texture| texture.image == Some(index))
     };
     let maps: Vec<&str> = TextureSlot::ALL.into_iter().filter(is_used_as).map(text::map_name).collect();
-    let bytes = model.images.get(index).and_then(Option::as_ref).map_or(0, |data| data.device_bytes());
+    let bytes = model.images.shown().get(index).and_then(Option::as_ref).map_or(0, |data| data.device_bytes());
     let name = if image.name.is_empty() { text::image(index) } else { image.name.clone() };
     ImageText { name, line: text::image_facts(image.mime, [image.width, image.height], bytes, &maps) }
 }

@@ -47,8 +47,6 @@ pub enum Warning {
         /// The reference, percent-decoded.
         uri: String,
     },
-    /// The images of a file that has not arrived completely.
-    ImagesAwaited,
     /// An image that is broken, too large or of an unsupported kind.
     ImageUnreadable {
         /// Its place in the file, its name, its URI or its index.
@@ -98,7 +96,6 @@ impl Warning {
             Self::UnsupportedExtension { .. } => "unsupported-extension",
             Self::FoundByBareName { .. } => "found-by-bare-name",
             Self::ImageMissing { .. } => "image-missing",
-            Self::ImagesAwaited => "images-awaited",
             Self::ImageUnreadable { .. } => "image-unreadable",
             Self::MatrixNotDecomposable { .. } => "matrix-not-decomposable",
             Self::ChannelIgnored { .. } => "channel-ignored",
@@ -115,7 +112,6 @@ impl Warning {
             | Self::InfluencesDropped { mesh, .. } => mesh,
             Self::UnsupportedExtension { .. } => "extensionsUsed",
             Self::FoundByBareName { uri, .. } | Self::ImageMissing { uri } => uri,
-            Self::ImagesAwaited => "images",
             Self::ImageUnreadable { image, .. } => image,
             Self::MatrixNotDecomposable { node } => node,
             Self::FramesMissing { line, .. } => line,
@@ -144,7 +140,6 @@ impl fmt::Display for Warning {
             Self::ImageMissing { uri } => {
                 write!(f, "image “{uri}” is not among the files; open it with the model")
             }
-            Self::ImagesAwaited => f.write_str("the images have not arrived; materials are shown without them"),
             Self::ImageUnreadable { image, problem } => write!(f, "image {image} cannot be read: {problem}"),
             Self::MatrixNotDecomposable { node } => {
                 write!(f, "{node}: its matrix is sheared or singular and has no exact translation, rotation and scale")

@@ -91,9 +91,6 @@ pub(super) fn load(
         // The text names the place.
         warnings.push(Warning::Other { code: "conversion", place: String::new(), problem: problem.clone() });
     }
-    if container.awaits_images {
-        warnings.push(Warning::ImagesAwaited);
-    }
     build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
 }
 

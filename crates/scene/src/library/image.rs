@@ -21,6 +21,30 @@ pub enum ImageData {
     Bitmap(web_sys::ImageBitmap),
 }
 
+/// What a model shows of its asset's images, one for each: none if it could not be decoded (a warning says why).
+#[derive(Debug)]
+pub enum Images {
+    /// The file has not arrived completely: these stand in for its images until the complete model takes this one's place.
+    Awaited(Vec<Option<ImageData>>),
+    /// The file's images.
+    Here(Vec<Option<ImageData>>),
+}
+
+impl Images {
+    /// What surfaces are drawn with.
+    pub fn shown(&self) -> &[Option<ImageData>] {
+        match self {
+            Self::Awaited(images) | Self::Here(images) => images,
+        }
+    }
+}
+
+impl From<Vec<Option<ImageData>>> for Images {
+    fn from(images: Vec<Option<ImageData>>) -> Self {
+        Self::Here(images)
+    }
+}
+
 impl ImageData {
     /// Returns the GPU memory in bytes, including mip levels (a third more).
     pub fn device_bytes(&self) -> u64 {

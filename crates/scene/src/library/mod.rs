@@ -19,7 +19,7 @@ use gaitway_character::anim::Clip;
 use gaitway_character::asset::Panorama;
 use gaitway_character::mesh::Bounds;
 use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
-pub use image::ImageData;
+pub use image::{ImageData, Images};
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;
 pub use model::{Derived, Finding, Model, ModelId};

@@ -11,12 +11,12 @@ use gaitway_character::mesh::{Bounds, Mesh};
 use gaitway_retarget::{Body, Recognized, Symmetry, recognize};
 use glam::{Affine3A, Vec3};
 
-use super::ImageData;
 use super::borrowed::BorrowedClip;
 use super::clips::{ClipEdits, ClipId, Clips, ModelClip};
 use super::extent::Extent;
 use super::lints::{joint_of_place, lint};
 use super::rig::Rig;
+use super::{ImageData, Images};
 
 /// Identifies a model, or a motion shown as one, within its library. 0 until the library assigns one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -36,8 +36,8 @@ pub struct Model {
     is_placeholder: bool,
     /// The file's content.
     pub asset: Arc<Asset>,
-    /// One per image of the asset; none if it could not be decoded (a warning says why).
-    pub images: Vec<Option<ImageData>>,
+    /// Its decoded images.
+    pub images: Images,
     clips: Clips,
     slots: Humanoid,
     recognized: Recognized,
@@ -75,7 +75,7 @@ pub struct Finding {
 impl Model {
     /// Wraps an asset. `images` has one entry per image of the asset. The origin is the source until the caller sets
     /// another.
-    pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
+    pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: impl Into<Images>) -> Self {
         let asset = asset.into();
         let derived = Derived::new(&asset);
         Self::with_derived(source, asset, derived, images)
@@ -86,7 +86,7 @@ impl Model {
         source: String,
         asset: impl Into<Arc<Asset>>,
         derived: Derived,
-        images: Vec<Option<ImageData>>,
+        images: impl Into<Images>,
     ) -> Self {
         let asset = asset.into();
         let Derived { rig, extent, recognized } = derived;
@@ -97,7 +97,7 @@ impl Model {
             is_placeholder: false,
             source,
             asset,
-            images,
+            images: images.into(),
             clips: Clips::default(),
             slots: recognized.humanoid(),
             recognized,
@@ -111,7 +111,7 @@ impl Model {
 
     /// Whether the model was opened before its images had arrived, and they still haven't.
     pub fn awaits_images(&self) -> bool {
-        self.asset.warnings.0.contains(&Warning::ImagesAwaited)
+        matches!(self.images, Images::Awaited(_))
     }
 
     /// Takes images and warnings from the same model, read from its complete file.
@@ -171,7 +171,7 @@ impl Model {
 
     /// GPU memory of the textures in bytes.
     pub fn texture_bytes(&self) -> u64 {
-        self.images.iter().flatten().map(ImageData::device_bytes).sum()
+        self.images.shown().iter().flatten().map(ImageData::device_bytes).sum()
     }
 
     /// Facing direction of a recognized body at rest, in the file's axes.
