@@ -8,8 +8,9 @@ use gaitway_character::asset::Side;
 use gaitway_character::asset::Slot::{self, *};
 
 use super::known::{self, Known};
+use super::limb_words::{ARM, Fits, LEG, Parts, SURE_FIT, align};
 use super::tree::Tree;
-use super::words::Word;
+use super::words::{self, Word};
 use super::{Reason, RecognizedJoint};
 
 /// Confidence by reason.
@@ -17,8 +18,12 @@ const VOCABULARY_CONFIDENCE: f32 = 0.95;
 const WORDS_CONFIDENCE: f32 = 0.8;
 const HIERARCHY_CONFIDENCE: f32 = 0.6;
 
-/// Maximum number of heads to search; a crowd is not a body.
+/// Maximum number of heads, and of joints of a limb, to search; a crowd is not a body.
 const MAX_HEADS: usize = 64;
+const MAX_LIMB_JOINTS: usize = 64;
+
+/// Factor on the fit of a joint that moves no skin, while others do: control rigs have a copy of each limb.
+const STILL_SKIN_FACTOR: f32 = 0.5;
 
 /// The joints of one leg or arm; `extra` is its toes or its collar bone.
 #[derive(Debug, Default, Clone, Copy)]
@@ -90,65 +95,71 @@ impl Search<'_> {
         joints.iter().copied().find(|&joint| joint != above && self.tree.is_under(joint, above))
     }
 
-    /// The ancestors of a joint among `joints`, in their order.
-    fn above(&self, joints: &[JointIndex], below: JointIndex) -> impl DoubleEndedIterator<Item = JointIndex> {
-        joints.iter().copied().filter(move |&joint| joint != below && self.tree.is_under(below, joint))
+    /// Aligns the joints of a side with the parts of a limb.
+    fn limb(&self, side: Side, parts: &Parts) -> [Option<JointIndex>; 4] {
+        let fits = |joint: JointIndex| {
+            let fits = self.evidence(joint, side, parts)?;
+            fits.iter().any(|&fit| fit > 0.0).then_some((joint, fits))
+        };
+        let candidates: Vec<(JointIndex, Fits)> =
+            self.tree.skeleton.joints().filter_map(fits).take(MAX_LIMB_JOINTS).collect();
+        align(self.tree, parts, &candidates)
     }
 
-    /// The upper half of a limb: the first ancestor by a sure word, then by a vague one, then the last by the joint it hangs on.
-    fn upper_of(&self, lower: JointIndex, [sure, vague, base]: [&[JointIndex]; 3]) -> Option<JointIndex> {
-        let first = |joints| self.above(joints, lower).next();
-        first(sure).or_else(|| first(vague)).or_else(|| self.above(base, lower).next_back())
-    }
-
-    /// The joint between the upper half of a limb and its end, if there is only one.
-    fn only_between(&self, upper: JointIndex, ends: &[JointIndex]) -> Option<JointIndex> {
-        match self.tree.path(upper, self.under(ends, upper)?).as_slice() {
-            [between, _] => Some(*between),
-            _ => None,
+    /// How well a joint fits the parts of a limb, by what the vocabulary says and by the words of its name.
+    fn evidence(&self, joint: JointIndex, side: Side, parts: &Parts) -> Option<Fits> {
+        let known = self.known.and_then(|known| known.slots.get(&joint)).filter(|slot| slot.side() == Some(side));
+        let word = self.tree.word(joint).filter(|_| self.tree.names[joint.get()].side == Some(side));
+        let mut fits = word.map_or([0.0; 4], |word| parts.fits(word));
+        if let Some(&slot) = known {
+            // It means one part of the limb, not all that the word may mean elsewhere.
+            for (fit, meant) in fits.iter_mut().zip(parts.fits(known::word_of(slot))) {
+                *fit = if meant == SURE_FIT { SURE_FIT } else { *fit };
+            }
         }
+        let moves_skin = self.tree.moves_skin(joint) != Some(false);
+        (known.is_some() || word.is_some())
+            .then(|| fits.map(|fit| if moves_skin { fit } else { fit * STILL_SKIN_FACTOR }))
+    }
+
+    /// Of the joints between two parts of a limb whose names say nothing, the one that divides it most evenly.
+    fn unnamed_between(&self, upper: JointIndex, end: JointIndex) -> Option<JointIndex> {
+        let distance = |a: JointIndex, b: JointIndex| self.tree.position(a).distance(self.tree.position(b));
+        let unevenness = |joint: &JointIndex| (distance(upper, *joint) / distance(*joint, end)).ln().abs();
+        let between =
+            self.tree.path(upper, end).into_iter().filter(|&joint| joint != end && self.words[joint.get()].is_none());
+        between.min_by(|a, b| unevenness(a).total_cmp(&unevenness(b)))
     }
 
     fn leg(&self, side: Side) -> Limb {
-        let all = |word| self.all(Some(side), word);
-        let (thighs, hips, legs, shins) = (all(Word::UpperLeg), all(Word::Hip), all(Word::Leg), all(Word::LowerLeg));
-        let (feet, toes) = (all(Word::Foot), all(Word::Toes));
-        let upper_of = |lower| self.upper_of(lower, [&thighs, &legs, &hips]);
-        let mut lower = shins.first().copied();
-        let mut upper = lower.and_then(upper_of);
-        if lower.is_none() {
-            upper = thighs.first().copied();
-            lower = match upper {
-                Some(upper) => self.under(&legs, upper),
-                None => legs.first().and_then(|&first| self.under(&legs, first)).or(legs.first().copied()),
-            };
-            upper = upper.or_else(|| lower.and_then(upper_of));
-        }
-        // An unnamed joint between thigh and foot is the shin.
-        if let (Some(upper), None) = (upper, lower) {
-            lower = self.only_between(upper, &feet);
-        }
+        let [upper, named_lower, foot, toes] = self.limb(side, &LEG);
+        let lower = named_lower.or_else(|| self.unnamed_between(upper?, foot?));
         // In many game rigs, feet follow a control and are not descendants of the leg.
-        let end = lower.and_then(|lower| self.under(&feet, lower).or(feet.first().copied()));
-        let extra = end.and_then(|foot| self.under(&toes, foot).or_else(|| self.under(&feet, foot)));
+        let feet = self.all(Some(side), Word::Foot);
+        let end = foot.or_else(|| lower.and(feet.first().copied()));
+        let extra = toes.or_else(|| {
+            let foot = end?;
+            self.under(&self.all(Some(side), Word::Toes), foot).or_else(|| self.under(&feet, foot))
+        });
         Limb { extra, upper, lower, end }
     }
 
     fn arm(&self, side: Side) -> Limb {
-        let all = |word| self.all(Some(side), word);
-        let (collars, shoulders, uppers) = (all(Word::Clavicle), all(Word::Shoulder), all(Word::UpperArm));
-        let (arms, lowers, hands) = (all(Word::Arm), all(Word::LowerArm), all(Word::Hand));
-        let mut lower = lowers.first().copied();
-        let mut upper = lower.and_then(|lower| self.upper_of(lower, [&uppers, &arms, &shoulders]));
-        if lower.is_none() {
-            upper = uppers.first().or(arms.first()).or(shoulders.last()).copied();
-            lower = upper.and_then(|upper| self.under(&arms, upper).or_else(|| self.only_between(upper, &hands)));
-        }
-        let end = lower.and_then(|lower| self.under(&hands, lower));
-        let extra = upper.and_then(|upper| {
-            self.above(&collars, upper).next_back().or_else(|| self.above(&shoulders, upper).next_back())
-        });
+        let [extra, upper, named_lower, hand] = self.limb(side, &ARM);
+        let lower = named_lower.or_else(|| self.unnamed_between(upper?, hand?));
+        let end = hand.or_else(|| self.tip_below(lower?));
         Limb { extra, upper, lower, end }
+    }
+
+    /// The only joint that could be the hand of a forearm, if its name doesn't say what it is, or only that it is an end.
+    fn tip_below(&self, forearm: JointIndex) -> Option<JointIndex> {
+        let could_be = |joint: &JointIndex| {
+            let word = self.words[joint.get()];
+            (word.is_none() || words::is_end(&self.tree.names[joint.get()]))
+                && self.tree.moves_skin(*joint) != Some(false)
+        };
+        let mut found = self.tree.children(forearm).iter().copied().filter(could_be);
+        found.next().filter(|_| found.next().is_none())
     }
 
     /// The head nearest to the body: controls are often called head as well.
@@ -193,7 +204,11 @@ impl Search<'_> {
         }
         let word = |joint: JointIndex| self.words[joint.get()].map(|(word, _)| word);
         let shoulders_at = shoulders.and_then(|shoulders| path.iter().position(|&joint| joint == shoulders));
-        let named_neck = path.iter().position(|&joint| word(joint) == Some(Word::Neck));
+        // What the arms hang on is a neck only if nothing above it is: some vocabularies count the spine up to the head.
+        let is_neck =
+            |&joint: &JointIndex| word(joint) == Some(Word::Neck) || self.tree.word(joint) == Some(Word::Neck);
+        let above_shoulders = shoulders_at.and_then(|at| Some(at + 1 + path.get(at + 1..)?.iter().position(is_neck)?));
+        let named_neck = above_shoulders.or_else(|| path.iter().position(is_neck));
         let chest_end = named_neck.into_iter().chain(shoulders_at.map(|at| at + 1)).min().unwrap_or(path.len());
         let neck = match named_neck {
             Some(at) => Some((path[at], Reason::Words)),
@@ -204,8 +219,11 @@ impl Search<'_> {
             None => None,
         };
         let path = path.get(..chest_end).unwrap_or_default();
-        let mut torso: Vec<JointIndex> =
-            path.iter().copied().filter(|&joint| word(joint) == Some(Word::Torso)).collect();
+        let mut torso: Vec<JointIndex> = path
+            .iter()
+            .copied()
+            .filter(|&joint| [word(joint), self.tree.word(joint)].contains(&Some(Word::Torso)))
+            .collect();
         let reason = if torso.is_empty() { Reason::Hierarchy } else { Reason::Words };
         if torso.is_empty() {
             torso = path.iter().copied().filter(|&joint| word(joint).is_none()).collect();

@@ -82,8 +82,11 @@ pub(super) fn feet_point(asset: &Asset, tree: &Tree, parts: &BTreeMap<Slot, Reco
     let regions = evidence::regions_at_rest(asset);
     let of_foot = |foot: JointIndex| {
         let region = regions[foot.get()]?;
-        let middle = perpendicular(region.min.midpoint(region.max) - tree.position(foot), up);
-        (middle.length() > 0.1 * region.size()).then(|| middle.normalize_or_zero())
+        let middle = region.min.midpoint(region.max) - tree.position(foot);
+        let ahead = perpendicular(middle, up);
+        // What reaches down more than ahead is a shin that is called a foot.
+        let is_foot = ahead.length() > 0.1 * region.size() && ahead.length() > 0.5 * middle.dot(up).abs();
+        is_foot.then(|| ahead.normalize_or_zero())
     };
     significant(of_foot(left)? + of_foot(right)?, 2.0)
 }

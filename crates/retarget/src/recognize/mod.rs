@@ -9,6 +9,7 @@ mod facing;
 mod fingers;
 mod known;
 mod languages;
+mod limb_words;
 mod limbs;
 mod names;
 mod shape;

@@ -20,6 +20,7 @@ pub(super) struct Tree<'a> {
     pub usable: Vec<bool>,
     /// Positions in model space, in the pose that looks most like a body at rest.
     pub positions: Vec<Vec3>,
+    moves_skin: Option<Vec<bool>>,
     children: Vec<Vec<JointIndex>>,
     /// One past each joint's last descendant: joints are in depth-first order.
     ends: Vec<u32>,
@@ -49,11 +50,17 @@ impl<'a> Tree<'a> {
                 ends[parent.get()] = ends[parent.get()].max(ends[joint.get()]);
             }
         }
-        Self { skeleton, names, words, usable, positions: positions(skeleton, skeleton.rest()), children, ends }
+        let positions = positions(skeleton, skeleton.rest());
+        Self { skeleton, names, words, usable, positions, moves_skin: moves_skin(asset), children, ends }
     }
 
     pub fn word(&self, joint: JointIndex) -> Option<Word> {
         self.words[joint.get()]
+    }
+
+    /// Whether a joint moves any vertex; None without a skin.
+    pub fn moves_skin(&self, joint: JointIndex) -> Option<bool> {
+        self.moves_skin.as_ref().map(|moves| moves[joint.get()])
     }
 
     pub fn position(&self, joint: JointIndex) -> Vec3 {
@@ -134,6 +141,23 @@ fn usable(asset: &Asset) -> Vec<bool> {
         usable[joint.get()] = true;
     }
     usable
+}
+
+/// Which joints a skin gives weight on any vertex; None if there is no skin.
+fn moves_skin(asset: &Asset) -> Option<Vec<bool>> {
+    let mut moves = vec![false; asset.skeleton.len()];
+    for instance in &asset.instances {
+        let Some(skin) = instance.skin else { continue };
+        let joints = asset.skins[skin].joints();
+        for geometry in &asset.meshes[instance.mesh].primitives {
+            for vertex in 0..geometry.positions.len() {
+                for (slot, _) in geometry.influences.of_vertex(vertex).filter(|(_, weight)| *weight > 0.0) {
+                    moves[joints[usize::from(slot)].get()] = true;
+                }
+            }
+        }
+    }
+    moves.contains(&true).then_some(moves)
 }
 
 fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {

@@ -76,7 +76,7 @@ const WORDS: &[(Word, &[&str])] = &[
     (Word::UpperArm, &["upperarm", "uparm", "uarm", "humerus", "bicep", "armupper", "armup", "shldrbend"]),
     (Word::Arm, &["arm"]),
     (Word::LowerArm, &["forearm", "lowerarm", "lowarm", "elbow", "elbo", "armlower", "armlow", "forearmbend"]),
-    (Word::Hand, &["hand", "wrist"]),
+    (Word::Hand, &["hand", "wrist", "fist", "palm"]),
     (Word::UpperLeg, &["thigh", "upleg", "upperleg", "legupper", "legup", "femur", "thighbend"]),
     (Word::Leg, &["leg"]),
     (Word::LowerLeg, &["shin", "calf", "knee", "lowerleg", "lowleg", "leglower", "leglow", "tibia"]),
@@ -90,9 +90,9 @@ const WORDS: &[(Word, &[&str])] = &[
 ];
 
 /// Words that may go with any part.
-const NOISE: [&str; 16] = [
-    "bind", "jnt", "joint", "bone", "c", "center", "ctr", "def", "jt", "bn", "bnd", "skn", "skin", "env", "shj",
-    "deform",
+const NOISE: [&str; 18] = [
+    "bind", "jnt", "joint", "bone", "c", "m", "x", "center", "ctr", "def", "jt", "bn", "bnd", "skn", "skin", "env",
+    "shj", "deform",
 ];
 
 const ASIDE: [&str; 47] = [
@@ -154,7 +154,9 @@ const PALM: [&str; 5] = ["metacarpal", "carpal", "meta", "palm", "in"];
 /// Returns the part that a name describes; None for unknown words.
 pub(super) fn read(name: &Name) -> Option<Word> {
     let words: Vec<&str> = name.words.iter().map(String::as_str).filter(|word| !is_number(word)).collect();
-    if words.iter().any(|word| ASIDE.contains(word)) {
+    // Numbered palms are the bones in one.
+    let is_metacarpal = words == ["palm"] && name.words.len() > 1;
+    if is_metacarpal || words.iter().any(|word| ASIDE.contains(word)) {
         return Some(Word::Aside);
     }
     let words: Vec<&str> =
@@ -191,6 +193,11 @@ fn finger(words: &[&str]) -> Option<Word> {
         Some(word @ Word::Finger(_)) => Some(word),
         _ => None,
     }
+}
+
+/// Whether a name only says that a chain ends.
+pub(super) fn is_end(name: &Name) -> bool {
+    name.words.iter().any(|word| ["end", "leaf", "tip", "nub"].contains(&word.as_str()))
 }
 
 /// Whether a name mentions what a human body does not have.

@@ -1,9 +1,11 @@
 //! Rigs that we have no files of, built from the joint names of their tools: `A>B` makes B a child of A, `A(B, C)`
 //! both. They have no shape, so names and hierarchy must suffice.
 
-use gaitway_character::anim::{Joint, Transform};
-use gaitway_character::asset::{Asset, Slot};
+use gaitway_character::anim::{Joint, JointIndex, Transform};
+use gaitway_character::asset::{Asset, AssetParts, MeshInstance, Slot};
+use gaitway_character::mesh::{Geometry, Influences, Mesh, Skin};
 use gaitway_retarget::{Reason, Recognized, recognize};
+use glam::{Affine3A, Vec3};
 
 use crate::skeletons;
 
@@ -37,6 +39,34 @@ fn rig(text: &str) -> Asset {
         }
     }
     skeletons::asset(joints)
+}
+
+/// Gives an asset a skin of all joints, in which only `moving` have a vertex.
+fn with_skin(asset: &Asset, moving: &[&str]) -> Asset {
+    let skeleton = asset.skeleton.clone();
+    let joints: Vec<JointIndex> = skeleton.joints().collect();
+    let of = |name: &&str| joints.iter().position(|&joint| skeleton.name(joint) == *name).expect("a joint") as u16;
+    let influences = Influences {
+        stride: 4,
+        joints: moving.iter().flat_map(|name| [of(name), 0, 0, 0]).collect(),
+        weights: [1.0, 0.0, 0.0, 0.0].repeat(moving.len()),
+    };
+    let geometry = Geometry {
+        file_vertices: moving.len(),
+        positions: vec![Vec3::ZERO; moving.len()],
+        indices: vec![0; 3],
+        influences,
+        ..Geometry::default()
+    };
+    let skin = Skin::new(String::new(), joints.clone(), vec![Affine3A::IDENTITY; joints.len()], joints.len());
+    let parts = AssetParts {
+        meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
+        instances: vec![MeshInstance::new(joints[0], 0, Some(0))],
+        skins: vec![skin.expect("a skin")],
+        skeleton,
+        ..AssetParts::default()
+    };
+    Asset::new(parts).expect("an asset")
 }
 
 /// Repeats a template for both sides.
@@ -460,4 +490,70 @@ fn half_a_body_has_less_confidence() {
     let asset = rig(&format!("Hips({}, Spine>Spine1)", both(legs, ["Left", "Right"])));
     let found = check(&asset, &[("hips", "Hips"), ("leftUpperLeg", "LeftUpLeg"), ("rightToes", "RightToeBase")]);
     assert!(found.parts.values().all(|part| part.confidence < 0.7));
+}
+
+#[test]
+fn a_limb_s_names_are_read_together() {
+    // “Shoulder” is the collar bone above an upper arm, and the upper arm below a clavicle.
+    let body = |arm: &str, leg: &str| {
+        let limbs = |template| both(template, ["Left", "Right"]);
+        rig(&format!("Root>Hips(Spine1>Spine2>Chest(Neck1>Neck2>Head, {}), {})", limbs(arm), limbs(leg)))
+    };
+    for (arm, [shoulder, upper, lower, hand]) in [
+        ("~Clavicle>~Shoulder>~Elbow>~Hand", ["LeftClavicle", "LeftShoulder", "LeftElbow", "LeftHand"]),
+        ("~Scapula>~Shoulder>~Elbow>~Wrist", ["LeftScapula", "LeftShoulder", "LeftElbow", "LeftWrist"]),
+        ("~Shoulder>~Arm>~ForeArm>~Hand", ["LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand"]),
+        ("~Shoulder>~Elbow>~Fist", ["", "LeftShoulder", "LeftElbow", "LeftFist"]),
+        ("~Shoulder>~Arm0>~Arm1>~ArmEnd", ["LeftShoulder", "LeftArm0", "LeftArm1", "LeftArmEnd"]),
+    ] {
+        let asset = body(arm, "~UpLeg>~Leg>~Foot");
+        let slots = ["leftShoulder", "leftUpperArm", "leftLowerArm", "leftHand"];
+        check(&asset, &slots.into_iter().zip([shoulder, upper, lower, hand]).collect::<Vec<_>>());
+    }
+    for (leg, [upper, lower, foot, toes]) in [
+        ("~Leg>~Shin>~Foot>~ToeBase", ["LeftLeg", "LeftShin", "LeftFoot", "LeftToeBase"]),
+        ("~UpLeg>~Leg>~Foot>~Toes", ["LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToes"]),
+        ("~Hip>~Knee>~Ankle>~Ball>~Toe", ["LeftHip", "LeftKnee", "LeftAnkle", "LeftBall"]),
+        ("~Hip>~UpperLeg>~Leg>~Foot", ["LeftUpperLeg", "LeftLeg", "LeftFoot", ""]),
+    ] {
+        let asset = body("~Shoulder>~Arm>~ForeArm>~Hand", leg);
+        let slots = ["leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes"];
+        check(&asset, &slots.into_iter().zip([upper, lower, foot, toes]).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn what_the_arms_hang_on_is_no_neck_if_one_is_above() {
+    let arm = both("~_shoulder>~_upperarm>~_forearm>~_hand", ["l", "r"]);
+    let leg = both("~_thigh>~_shin>~_foot>~_toes", ["l", "r"]);
+    let asset = rig(&format!("hip(pelvis({leg}), spine1>spine2>spine3>spine4(neck1>neck2>head, {arm}))"));
+    check(&asset, &[("spine", "spine1"), ("upperChest", "spine4"), ("neck", "neck1"), ("head", "head")]);
+}
+
+#[test]
+fn m_and_x_mark_the_middle() {
+    for middle in ["M", "x", "C"] {
+        let arm = both("Scapula_~>Shoulder_~>Elbow_~>Wrist_~", ["L", "R"]);
+        let leg = both("Hip_~>Knee_~>Ankle_~>Toes_~", ["L", "R"]);
+        let text = format!("Root_M(Spine1_M>Spine2_M>Chest_M(Neck_M>Head_M, {arm}), {leg})");
+        let asset = rig(&text.replace("_M", &format!("_{middle}")));
+        check(&asset, &[("neck", &format!("Neck_{middle}")), ("head", &format!("Head_{middle}"))]);
+    }
+}
+
+/// A control rig has several arms with the same names: the one that moves the skin is the arm.
+#[test]
+fn the_arm_that_moves_the_skin_is_the_arm() {
+    let copy = |kind: &str| both(&format!("{kind}UpperArm.~>{kind}LowerArm.~>{kind}Hand.~"), ["L", "R"]);
+    let legs = both("UpperLeg.~>LowerLeg.~>Foot.~", ["L", "R"]);
+    let text = format!(
+        "Hips(Spine>Chest(Neck>Head, {}, {}, {}), {legs})",
+        both("Elbow.~", ["L", "R"]),
+        copy("ORG-"),
+        copy("DEF-")
+    );
+    let (asset, skinned) = (rig(&text), ["DEF-UpperArm.L", "DEF-LowerArm.L", "DEF-Hand.L"]);
+    let slots = ["leftUpperArm", "leftLowerArm", "leftHand"];
+    check(&asset, &slots.into_iter().zip(["ORG-UpperArm.L", "ORG-LowerArm.L", "ORG-Hand.L"]).collect::<Vec<_>>());
+    check(&with_skin(&asset, &skinned), &slots.into_iter().zip(skinned).collect::<Vec<_>>());
 }
