@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::JointIndex;
+use gaitway_character::asset::Side;
 use gaitway_character::asset::Slot::{self, *};
 
 use super::assemble::spread;
@@ -49,9 +50,14 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
     found.extend(limbs::head(shape, body));
     let has_neck = found.iter().any(|(slot, ..)| *slot == Neck);
     found.extend(trunk(shape, body, has_neck));
-    let (is_first_left, certainty) = limbs::is_first_left(shape, body, &legs);
     // Arms may be listed in another order than legs.
     let is_same_order = shape.apart(&body.arms)?.dot(body.across) > 0.0;
+    let (is_first_left, certainty) =
+        match (limbs::is_first_left(shape, body, &legs), named_left(shape, body, is_same_order)) {
+            // Names may say left and right without another word that means something; only feet that point elsewhere are surer.
+            ((_, certainty), Some(is_named_left)) if certainty < limbs::SURE => (is_named_left, limbs::SURE),
+            (seen, _) => seen,
+        };
     for (limb, twins, is_left) in
         [(&legs, &body.legs, is_first_left), (&arms, &body.arms, is_first_left == is_same_order)]
     {
@@ -71,6 +77,22 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
     }
     found.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
     Some(found)
+}
+
+/// Whether the first leg is the left one by the names of arms and legs; None if they don't say or don't agree.
+fn named_left(shape: &Shape, body: &Halves, is_same_order: bool) -> Option<bool> {
+    let side = |joint: &JointIndex| shape.tree.names[joint.get()].side;
+    let votes = [(&body.legs, true), (&body.arms, is_same_order)].into_iter().flat_map(|(twins, is_same_order)| {
+        let of_chain = |(chain, side_if_first_left): (&Vec<JointIndex>, Side)| {
+            let said: Vec<bool> =
+                chain.iter().filter_map(side).map(|said| (said == side_if_first_left) == is_same_order).collect();
+            said
+        };
+        twins.chains.iter().zip([Side::Left, Side::Right]).flat_map(of_chain).collect::<Vec<bool>>()
+    });
+    let votes: Vec<bool> = votes.collect();
+    let first = *votes.first()?;
+    (votes.len() >= 4 && votes.iter().all(|&vote| vote == first)).then_some(first)
 }
 
 /// The joints between hips and neck. A lowest one that no skin references and that never rotates only connects the

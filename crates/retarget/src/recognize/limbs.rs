@@ -20,7 +20,7 @@ pub(super) struct LimbJoint {
 const MAX_JOINTS: usize = 9;
 
 /// Confidence in an unambiguous part, and in one with an equally good alternative.
-const SURE: f32 = 0.85;
+pub(super) const SURE: f32 = 0.85;
 pub(super) const UNSURE: f32 = 0.3;
 
 /// Minimum difference in cost for the cheaper choice to be certain.

@@ -24,6 +24,7 @@ use gaitway_character::anim::{JointIndex, Pose, SampleCursor};
 use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::Vec3;
 
+use by_shape::Found;
 use evidence::Evidence;
 use tree::Tree;
 
@@ -159,14 +160,9 @@ pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
     let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| parts.len() >= MIN_FILE_SLOTS);
     let is_declared = from_file.is_some();
-    let mut left_out = BTreeMap::new();
-    let mut parts = match from_file {
-        Some(parts) => with_fingers(&tree, parts),
-        None => by_names(&tree).unwrap_or_else(|| {
-            let found = by_shape::find(&tree, &Evidence::new(asset));
-            left_out = found.left_out;
-            found.parts
-        }),
+    let Found { mut parts, left_out } = match from_file {
+        Some(parts) => Found { parts: with_fingers(&tree, parts), ..Found::default() },
+        None => find(asset, &tree),
     };
     if parts.is_empty() {
         return Recognized::default();
@@ -181,15 +177,33 @@ pub fn recognize(asset: &Asset) -> Recognized {
     let feet_point = facing::feet_point(asset, &tree, &parts);
     let mut facing = facing::find(&tree, &parts, feet_point);
     let mut contradictions = facing::contradictions(&tree, &parts, &facing);
-    let by_position = !is_declared && facing::position_decides(&parts, feet_point, &contradictions);
+    let mut by_position = !is_declared && facing::position_decides(&parts, feet_point, &contradictions);
     if by_position {
         parts = with_sides_swapped(parts);
         facing = facing::find(&tree, &parts, feet_point);
         for Contradiction::Side { slot, .. } in &mut contradictions {
             *slot = slot.mirrored();
         }
+    } else {
+        let named_otherwise = named_otherwise(&tree, &parts);
+        by_position = !named_otherwise.is_empty();
+        contradictions.extend(named_otherwise);
     }
     Recognized { parts, left_out, facing, contradictions, by_position }
+}
+
+/// The joints whose position has decided against the side in their name.
+fn named_otherwise(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Vec<Contradiction> {
+    let is_otherwise = |(slot, part): &(&Slot, &RecognizedJoint)| {
+        let named = tree.names[part.joint.get()].side;
+        part.reason == Reason::Geometry && slot.side().is_some() && named.is_some() && named != slot.side()
+    };
+    let contradiction = |(&slot, part): (&Slot, &RecognizedJoint)| Contradiction::Side {
+        slot,
+        joint: part.joint,
+        name: tree.skeleton.name(part.joint).to_owned(),
+    };
+    parts.iter().filter(is_otherwise).map(contradiction).collect()
 }
 
 /// Gives each joint the slot of the other side, with at most the confidence of a name that is wrong about the side.
@@ -212,7 +226,7 @@ fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {
 
 /// Adds fingers, which humanoid maps often leave out. Other slots may be left out on purpose.
 fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
-    for (slot, part) in by_names(tree).unwrap_or_default() {
+    for (slot, part) in assemble::find(tree, known::find(tree).as_ref()) {
         let is_free = |other: &RecognizedJoint| other.joint != part.joint;
         let above = std::iter::successors(known::parent_of(slot), |slot| known::parent_of(*slot));
         let is_under_its_parent = above
@@ -226,22 +240,57 @@ fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTre
     parts
 }
 
-/// None if the names are unknown, so that the shape may decide; empty if they belong to something else.
-fn by_names(tree: &Tree) -> Option<BTreeMap<Slot, RecognizedJoint>> {
+/// Finds a body by names and, unless they give a whole one, also by shape.
+fn find(asset: &Asset, tree: &Tree) -> Found {
     let known = known::find(tree);
-    let mut parts = assemble::find(tree, known.as_ref());
-    if has_whole_body(&parts) {
-        return Some(parts);
+    let mut named = assemble::find(tree, known.as_ref());
+    if has_whole_body(&named) {
+        return Found { parts: named, ..Found::default() };
     }
-    if known.is_some() && !names_a_creature(tree) {
-        for part in parts.values_mut() {
-            part.confidence *= PARTIAL_BODY_FACTOR;
-        }
-        return Some(parts);
+    if names_a_creature(tree) {
+        return Found::default();
     }
-    // The names are known and contradict a human body: its shape would only mislead.
+    named.values_mut().for_each(|part| part.confidence *= PARTIAL_BODY_FACTOR);
+    let mut shaped = by_shape::find(tree, &Evidence::new(asset));
+    let agree = |(slot, part): (&Slot, &RecognizedJoint)| Some(named.get(slot)?.joint == part.joint);
+    let agreements: Vec<bool> = shaped.parts.iter().filter_map(agree).collect();
+    let contradict = agreements.iter().filter(|&&agrees| !agrees).count() * 2 > agreements.len();
+    if known.is_some() && (contradict || shaped.parts.is_empty()) {
+        return Found { parts: named, ..Found::default() };
+    }
+    // What the words mean is no human body: its shape would only mislead.
     let known_words = tree.words.iter().flatten().count();
-    (known_words > tree.skeleton.len() / 4 || names_a_creature(tree)).then(BTreeMap::new)
+    let is_figure = !shaped.parts.is_empty() || has_limbs(&named);
+    if !is_figure || contradict && known_words > tree.skeleton.len() / 4 {
+        return Found::default();
+    }
+    if known.is_some() {
+        complete(tree, &mut named, shaped.parts);
+        Found { parts: named, left_out: shaped.left_out }
+    } else {
+        complete(tree, &mut shaped.parts, named);
+        shaped.left_out.retain(|slot, _| !shaped.parts.contains_key(slot));
+        shaped
+    }
+}
+
+/// Adds the parts that a body lacks and that fit in: of joints that are free, below those of the parts above and above those of
+/// the parts below.
+fn complete(tree: &Tree, body: &mut BTreeMap<Slot, RecognizedJoint>, others: BTreeMap<Slot, RecognizedJoint>) {
+    for (slot, part) in others {
+        let is_below = |below: Slot, above: Slot| {
+            std::iter::successors(known::parent_of(below), |slot| known::parent_of(*slot)).any(|other| other == above)
+        };
+        let fits = |(&other, there): (&Slot, &RecognizedJoint)| {
+            other != slot
+                && there.joint != part.joint
+                && (!is_below(slot, other) || tree.is_under(part.joint, there.joint))
+                && (!is_below(other, slot) || tree.is_under(there.joint, part.joint))
+        };
+        if body.iter().all(fits) {
+            body.insert(slot, part);
+        }
+    }
 }
 
 /// Whether hips, head, arms and legs are there. Simple figures may lack hands, feet and a spine.
@@ -250,6 +299,12 @@ fn has_whole_body(parts: &BTreeMap<Slot, RecognizedJoint>) -> bool {
     let limbs = [LeftUpperLeg, LeftLowerLeg, LeftUpperArm, LeftLowerArm];
     let sides = limbs.into_iter().chain(limbs.map(Slot::mirrored));
     [Hips, Head].into_iter().chain(sides).all(|slot| parts.contains_key(&slot))
+}
+
+/// Whether a head, arms and legs are there, as in a figure of rigid parts.
+fn has_limbs(parts: &BTreeMap<Slot, RecognizedJoint>) -> bool {
+    use Slot::*;
+    [Head, LeftUpperLeg, RightUpperLeg, LeftUpperArm, RightUpperArm].into_iter().all(|slot| parts.contains_key(&slot))
 }
 
 fn names_a_creature(tree: &Tree) -> bool {

@@ -4,7 +4,7 @@
 use gaitway_character::anim::{Joint, JointIndex, Transform};
 use gaitway_character::asset::{Asset, AssetParts, MeshInstance, Slot};
 use gaitway_character::mesh::{Geometry, Influences, Mesh, Skin};
-use gaitway_retarget::{Reason, Recognized, recognize};
+use gaitway_retarget::{Contradiction, Reason, Recognized, recognize};
 use glam::{Affine3A, Vec3};
 
 use crate::skeletons;
@@ -556,4 +556,73 @@ fn the_arm_that_moves_the_skin_is_the_arm() {
     let slots = ["leftUpperArm", "leftLowerArm", "leftHand"];
     check(&asset, &slots.into_iter().zip(["ORG-UpperArm.L", "ORG-LowerArm.L", "ORG-Hand.L"]).collect::<Vec<_>>());
     check(&with_skin(&asset, &skinned), &slots.into_iter().zip(skinned).collect::<Vec<_>>());
+}
+
+type Limb = fn(&str) -> [String; 4];
+
+/// A body in a T-pose. `left` is where the limbs of side `l` are on the X axis, and `ahead` where the toes are on the Z axis.
+fn figure([arm, leg]: [Limb; 2], left: f32, ahead: f32) -> Asset {
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut place = |name: &str, parent: Option<usize>, at: Vec3| {
+        joints.push(skeletons::joint(name, parent, Transform::from_translation(at)));
+        joints.len() - 1
+    };
+    let hips = place("root.x", None, Vec3::Y);
+    let spine = place("spine_01.x", Some(hips), Vec3::Y * 0.2);
+    let chest = place("spine_02.x", Some(spine), Vec3::Y * 0.25);
+    let neck = place("neck.x", Some(chest), Vec3::Y * 0.1);
+    place("head.x", Some(neck), Vec3::Y * 0.1);
+    for (side, x) in [("l", left), ("r", -left)] {
+        let down = [Vec3::X * 0.1 * x, Vec3::Y * -0.45, Vec3::Y * -0.45, Vec3::new(0.0, -0.07, ahead)];
+        let out = [0.03, 0.15, 0.28, 0.26].map(|length| Vec3::X * length * x);
+        for (names, top, steps) in [(leg(side), hips, down), (arm(side), chest, out)] {
+            names.iter().zip(steps).fold(top, |above, (name, step)| place(name, Some(above), step));
+        }
+    }
+    skeletons::asset(joints)
+}
+
+/// Auto-Rig Pro: half of the words are known, and the shape agrees with them.
+#[test]
+fn shape_helps_where_names_are_half_known() {
+    let arm: Limb = |side| ["shoulder", "arm_stretch", "forearm_stretch", "hand"].map(|part| format!("{part}.{side}"));
+    let leg: Limb = |side| ["thigh_stretch", "leg_stretch", "foot", "toes_01"].map(|part| format!("{part}.{side}"));
+    let found = check(
+        &figure([arm, leg], 1.0, 0.15),
+        &[
+            ("hips", "root.x"),
+            ("head", "head.x"),
+            ("leftUpperArm", "arm_stretch.l"),
+            ("leftHand", "hand.l"),
+            ("leftUpperLeg", "thigh_stretch.l"),
+            ("leftToes", "toes_01.l"),
+        ],
+    );
+    assert!(found.contradictions.is_empty() && !found.by_position, "{:?}", found.contradictions);
+}
+
+/// Only the side is a known word: it counts, unless the feet show another.
+#[test]
+fn sides_are_read_from_names_that_say_nothing_else() {
+    let limbs: [Limb; 2] = [
+        |side| ["Kata", "Ude", "Hiji", "Te"].map(|part| format!("{side}_{part}")),
+        |side| ["Momo", "Sune", "Ashi", "Yubi"].map(|part| format!("{side}_{part}")),
+    ];
+    for left in [1.0, -1.0] {
+        let found = check(&figure(limbs, left, 0.0), &[("leftUpperArm", "l_Ude"), ("rightFoot", "r_Ashi")]);
+        assert!(!found.by_position && found.contradictions.is_empty());
+    }
+    let found = check(&figure(limbs, -1.0, 0.15), &[("leftUpperArm", "r_Ude"), ("rightFoot", "l_Ashi")]);
+    let contradicts =
+        |Contradiction::Side { slot, name, .. }: &Contradiction| *slot == Slot::LeftFoot && name == "r_Ashi";
+    assert!(found.by_position && found.contradictions.iter().any(contradicts), "{:?}", found.contradictions);
+}
+
+/// Figures of rigid parts have arms and legs of one joint each.
+#[test]
+fn a_figure_of_rigid_parts_is_a_body() {
+    let parts = [("head", "head"), ("spine", "torso"), ("leftUpperArm", "arm-left"), ("rightUpperLeg", "leg-right")];
+    check(&rig("root(torso(head, arm-left, arm-right), leg-left, leg-right)"), &parts);
+    let found = recognize(&rig("root(torso(head, arm-left, arm-right))"));
+    assert!(found.parts.is_empty(), "without legs it may be anything: {:?}", found.parts);
 }
