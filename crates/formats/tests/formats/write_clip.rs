@@ -1,6 +1,8 @@
 //! Clips written alone as BVH and as VRM animations: read again, every joint is where it was.
 
-use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, Transform};
+use gaitway_character::anim::{
+    Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, PropertyTarget, PropertyValues, SampleCursor, Transform,
+};
 use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
 use gaitway_character::avatar::{Avatar, Expression};
 use gaitway_formats::{WriteError, write_bvh, write_vrma};
@@ -195,6 +197,44 @@ fn a_vrma_has_every_bone_where_the_clip_has_it_and_rests_in_a_t_pose() {
         let lengths: Vec<usize> =
             again.channels().iter().map(|channel| again.timelines()[channel.timeline as usize].len()).collect();
         assert!(lengths.iter().all(|&keys| keys == 13 || keys == 2), "{lengths:?}");
+    }
+}
+
+/// Widely used players take the tangents of a spline for keys.
+#[test]
+fn splines_become_linear_keys_of_a_vrma() {
+    let (asset, slots) = body(true);
+    let (hips, arm) = (slots.0[&Slot::Hips], slots.0[&Slot::LeftUpperArm]);
+    let (times, still) = ([0.0, 1.0], Quat::from_xyzw(0.0, 0.0, 0.0, 0.0));
+    let rest = asset.skeleton.rest().local(arm).rotation;
+    let turns = vec![still, rest, Quat::from_xyzw(2.0, 0.0, 0.0, 0.0), still, rest * Quat::from_rotation_x(1.5), still];
+    let places = vec![Vec3::ZERO, Vec3::Y, Vec3::new(4.0, 0.0, 0.0), Vec3::ZERO, Vec3::new(0.0, 1.5, 0.0), Vec3::ZERO];
+    let mut builder = ClipBuilder::new("swing", &asset.skeleton);
+    let spline = Interpolation::CubicSpline;
+    builder.channel(arm, spline, &times, Keys::Rotation(turns)).expect("a channel");
+    builder.channel(hips, spline, &times, Keys::Translation(places)).expect("a channel");
+    builder
+        .property(PropertyTarget::Expression(0), spline, &times, vec![0.0, 0.0, 3.0, 0.0, 1.0, 0.0])
+        .expect("a channel");
+    let clip = builder.build();
+    let written = read_vrma(write_vrma(&asset, &slots, None, &clip).expect("is written"));
+    let again = &written.clips[0];
+    let channels = again.channels().iter().map(|channel| channel.interpolation);
+    let properties = again.properties().iter().map(|channel| channel.interpolation);
+    assert!(channels.chain(properties).all(|interpolation| interpolation == Interpolation::Linear));
+    let bones = written.humanoid.as_ref().expect("declares its bones");
+    for secs in (0..=100).map(|step| step as f32 / 100.0) {
+        let (expected, found) = (world(&asset, &clip, secs), world(&written, again, secs));
+        for (slot, joint) in &slots.0 {
+            let (expected, found) = (expected[joint.get()], found[bones.0[slot].get()]);
+            assert!(expected.distance(found) < 1e-3, "{slot:?} at {secs}: {found} instead of {expected}");
+        }
+        let weight = |clip: &Clip| {
+            let mut values = PropertyValues::default();
+            clip.sample_properties(secs, &mut SampleCursor::default(), &mut values);
+            values.get(PropertyTarget::Expression(0)).expect("a weight").x
+        };
+        assert!((weight(&clip) - weight(again)).abs() < 1e-3, "the weight at {secs}");
     }
 }
 

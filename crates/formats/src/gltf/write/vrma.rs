@@ -4,12 +4,13 @@
 //! Players transfer each bone's rotation relative to this T-pose, in the axes of the model. Models that declare a humanoid rest
 //! in it (VRM 0.x faces −Z). For others it is derived from their reference pose by straightening arms and legs; feet keep their
 //! pitch. Bones in the file have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
+//! Splines become linear keys: three-vrm-animation, which most players use, takes their tangents for keys.
 
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{
     Channel, Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Pose, Property, PropertyChannel,
-    PropertyTarget, SampleCursor, Skeleton, Transform, model_from_joint, model_from_single_joint,
+    PropertyTarget, PropertyValues, SampleCursor, Skeleton, Transform, model_from_joint, model_from_single_joint,
 };
 use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::{Affine3A, DAffine3, DQuat, DVec3, EulerRot, Quat, Vec3};
@@ -19,7 +20,7 @@ use super::motion::nodes_and_scenes;
 use super::{WriteError, check_frames, clip, glb};
 
 const EXTENSION: &str = "VRMC_vrm_animation";
-/// Rate of keys where several channels move one bone.
+/// Rate of keys where several channels move one bone, or a spline.
 const RESAMPLED_PER_SEC: f32 = 60.0;
 /// A recognized facing this close to an axis is snapped to it.
 const FACING_TOLERANCE_RADIANS: f32 = 0.2;
@@ -53,9 +54,7 @@ pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip)
         }
     }
     for (at, channel) in properties.iter().enumerate() {
-        let times = clip.property_timelines()[channel.timeline as usize].clone();
-        let (interpolation, keys) = property_keys(channel);
-        add(bones.len() + at, (interpolation, times, keys));
+        add(bones.len() + at, source.property(channel));
     }
     let written = builder.build();
     let mut root = nodes_and_scenes(&Asset::default(), &skeleton);
@@ -222,11 +221,11 @@ impl Source<'_> {
                 let is_rest = turn.angle_between(Quat::IDENTITY) < 1e-5;
                 (!is_rest).then(|| (Interpolation::Step, vec![0.0], Keys::Rotation(vec![turn.normalize()])))
             }
-            [channel] if beside.is_empty() => {
+            [channel] if beside.is_empty() && channel.interpolation != Interpolation::CubicSpline => {
                 let at = path.iter().position(|&joint| joint == channel.joint)?;
                 let (before, after) = (before * at_rest(&path[at + 1..]), at_rest(&path[..at]) * after);
                 let Keys::Rotation(keys) = &channel.keys else { return None };
-                // Linear, so splines and keys that aren't normalized stay what they are.
+                // Linear, so keys that aren't normalized stay what they are.
                 let turned = keys.iter().map(|key| (before * key.as_dquat() * after).as_quat()).collect();
                 Some((channel.interpolation, self.times(channel).to_vec(), Keys::Rotation(turned)))
             }
@@ -257,7 +256,8 @@ impl Source<'_> {
         });
         let carried: Vec<&Channel> = carried.flatten().collect();
         let turn = DAffine3::from_quat(bone.file_from_model);
-        if !carried.is_empty() {
+        let is_spline = own.is_some_and(|own| own.interpolation == Interpolation::CubicSpline);
+        if is_spline || !carried.is_empty() {
             let times = self.resampled_times(carried.into_iter().chain(own));
             let positions = self.sample(&times, |pose| {
                 let world = model_from_single_joint(self.skeleton, pose, bone.joint);
@@ -274,27 +274,40 @@ impl Source<'_> {
             }
             None => turn,
         };
-        let is_spline = own.interpolation == Interpolation::CubicSpline;
-        let placed = keys.iter().enumerate().map(|(index, key)| {
-            let is_tangent = is_spline && index % 3 != 1;
-            let key = key.as_dvec3();
-            let placed = if is_tangent {
-                file_from_parent.transform_vector3(key)
-            } else {
-                file_from_parent.transform_point3(key)
-            };
-            placed.as_vec3()
-        });
+        let placed = keys.iter().map(|key| file_from_parent.transform_point3(key.as_dvec3()).as_vec3());
         Some((own.interpolation, self.times(own).to_vec(), Keys::Translation(placed.collect())))
     }
 
+    /// Returns the keys of a property's node: the weight of an expression is the X of a translation, the gaze is a rotation.
+    fn property(&self, channel: &PropertyChannel) -> NewKeys {
+        let own_times = &self.clip.property_timelines()[channel.timeline as usize];
+        let width = channel.target.width();
+        let (interpolation, times, values) = match channel.interpolation {
+            Interpolation::CubicSpline => {
+                let times = resampled_times(own_times.clone());
+                let (mut cursor, mut values) = (SampleCursor::default(), PropertyValues::default());
+                let sample = |&time: &f32| {
+                    self.clip.sample_properties(time, &mut cursor, &mut values);
+                    values.get(channel.target).unwrap_or_default().to_array().into_iter().take(width)
+                };
+                let values = times.iter().flat_map(sample).collect();
+                (Interpolation::Linear, times, values)
+            }
+            interpolation => (interpolation, own_times.clone(), channel.values.clone()),
+        };
+        let keys = if channel.target == PropertyTarget::LookAt {
+            let angles = values.as_chunks::<2>().0.iter();
+            let rotation =
+                |[yaw, pitch]: &[f32; 2]| Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), 0.0);
+            Keys::Rotation(angles.map(rotation).collect())
+        } else {
+            Keys::Translation(values.iter().map(|&weight| Vec3::new(weight, 0.0, 0.0)).collect())
+        };
+        (interpolation, times, keys)
+    }
+
     fn resampled_times<'a>(&self, channels: impl Iterator<Item = &'a Channel>) -> Vec<f32> {
-        let mut times: Vec<f32> = channels.flat_map(|channel| self.times(channel)).copied().collect();
-        let last = times.iter().copied().fold(0.0, f32::max);
-        times.extend((0..=(last * RESAMPLED_PER_SEC) as usize).map(|frame| frame as f32 / RESAMPLED_PER_SEC));
-        times.sort_by(f32::total_cmp);
-        times.dedup();
-        times
+        resampled_times(channels.flat_map(|channel| self.times(channel)).copied().collect())
     }
 
     fn sample<T>(&self, times: &[f32], mut value: impl FnMut(&Pose) -> T) -> Vec<T> {
@@ -306,6 +319,15 @@ impl Source<'_> {
         };
         times.iter().map(sample).collect()
     }
+}
+
+/// Adds the frames of [`RESAMPLED_PER_SEC`] until the last of `times`.
+fn resampled_times(mut times: Vec<f32>) -> Vec<f32> {
+    let last = times.iter().copied().fold(0.0, f32::max);
+    times.extend((0..=(last * RESAMPLED_PER_SEC) as usize).map(|frame| frame as f32 / RESAMPLED_PER_SEC));
+    times.sort_by(f32::total_cmp);
+    times.dedup();
+    times
 }
 
 /// Product of the joints' rotations, the topmost of which is the last.
@@ -320,23 +342,6 @@ fn node_name(asset: &Asset, target: PropertyTarget) -> Option<String> {
         PropertyTarget::Expression(index) => Some(asset.avatar.expressions.get(index)?.name.clone()),
         PropertyTarget::LookAt => Some("lookAt".to_owned()),
         _ => None,
-    }
-}
-
-/// Returns the keys of a property's node: the weight of an expression is the X of a translation, the gaze is a rotation. Splines
-/// of the gaze become linear, since tangents of angles aren't tangents of quaternions.
-fn property_keys(channel: &PropertyChannel) -> (Interpolation, Keys) {
-    if channel.target != PropertyTarget::LookAt {
-        let weights = channel.values.iter().map(|&weight| Vec3::new(weight, 0.0, 0.0)).collect();
-        return (channel.interpolation, Keys::Translation(weights));
-    }
-    let angles = channel.values.as_chunks::<2>().0.iter();
-    let rotation = |[yaw, pitch]: &[f32; 2]| Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), 0.0);
-    match channel.interpolation {
-        Interpolation::CubicSpline => {
-            (Interpolation::Linear, Keys::Rotation(angles.skip(1).step_by(3).map(rotation).collect()))
-        }
-        interpolation => (interpolation, Keys::Rotation(angles.map(rotation).collect())),
     }
 }
 
