@@ -8,7 +8,7 @@ use gaitway_character::asset::{Asset, Slot};
 
 use super::joint_map::{JointMap, MapEntry};
 use super::shared_names::shared_names;
-use crate::recognize::{Reason, Recognized, chains, recognize};
+use crate::recognize::{Reason, Recognized, RecognizedJoint, chains, recognize};
 
 /// Which joints could follow which, and why.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,7 +46,7 @@ const MIN_SHARED_NAMES: f32 = 0.8;
 /// Confidence in a shared name outside the humanoid slots.
 const NAME_CONFIDENCE: f32 = 0.9;
 
-/// Minimum number of common slots that make a body.
+/// Minimum number of common slots that make a body, unless the motion itself says what it moves.
 const MIN_SHARED_SLOTS: usize = 3;
 
 const TRUNK: [Slot; 3] = [Slot::Spine, Slot::Chest, Slot::UpperChest];
@@ -151,7 +151,10 @@ fn trunk(recognized: &Recognized) -> Vec<(Slot, JointIndex)> {
 
 fn pair_by_slots(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) {
     let shared = targets.parts.keys().filter(|slot| sources.parts.contains_key(slot)).count();
-    if shared < MIN_SHARED_SLOTS {
+    let says_so =
+        |(slot, part): (&Slot, &RecognizedJoint)| part.reason == Reason::File && targets.parts.contains_key(slot);
+    // A VRM animation may move any bones, even a single one.
+    if shared < MIN_SHARED_SLOTS && !sources.parts.iter().any(says_so) {
         return;
     }
     let mut pair = |target_slot: Slot, source_slot: Slot| {

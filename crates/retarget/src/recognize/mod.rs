@@ -149,8 +149,8 @@ const PARTIAL_BODY_FACTOR: f32 = 0.7;
 /// Confidence in a joint whose name is wrong about the side: its position overrode the name, so it needs review.
 const SWAPPED_CONFIDENCE: f32 = 0.55;
 
-/// A file's own humanoid map with fewer slots than this is ignored.
-const MIN_FILE_SLOTS: usize = 6;
+/// A file's own humanoid map with fewer slots than this may have other parts beside them.
+const WHOLE_FILE_SLOTS: usize = 6;
 
 /// A creature with a tail counts as human only from this cosine between upper body and legs.
 const MIN_CREATURE_STRAIGHTNESS: f32 = 0.8;
@@ -158,10 +158,16 @@ const MIN_CREATURE_STRAIGHTNESS: f32 = 0.8;
 /// Finds the joints of a human body; deterministic.
 pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
-    let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| parts.len() >= MIN_FILE_SLOTS);
+    let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| !parts.is_empty());
     let is_declared = from_file.is_some();
     let Found { mut parts, left_out } = match from_file {
-        Some(parts) => Found { parts: with_fingers(&tree, parts), ..Found::default() },
+        Some(parts) if parts.len() >= WHOLE_FILE_SLOTS => {
+            Found { parts: with_fingers(&tree, parts), ..Found::default() }
+        }
+        Some(mut parts) => {
+            complete(&tree, &mut parts, find(asset, &tree).parts);
+            Found { parts, ..Found::default() }
+        }
         None => find(asset, &tree),
     };
     if parts.is_empty() {

@@ -2,9 +2,9 @@
 //! both. They have no shape, so names and hierarchy must suffice.
 
 use gaitway_character::anim::{Joint, JointIndex, Transform};
-use gaitway_character::asset::{Asset, AssetParts, MeshInstance, Slot};
+use gaitway_character::asset::{Asset, AssetParts, Humanoid, MeshInstance, Slot};
 use gaitway_character::mesh::{Geometry, Influences, Mesh, Skin};
-use gaitway_retarget::{Contradiction, Reason, Recognized, recognize};
+use gaitway_retarget::{Contradiction, ProposedPair, Reason, Recognized, propose, recognize};
 use glam::{Affine3A, Vec3};
 
 use crate::skeletons;
@@ -625,4 +625,26 @@ fn a_figure_of_rigid_parts_is_a_body() {
     check(&rig("root(torso(head, arm-left, arm-right), leg-left, leg-right)"), &parts);
     let found = recognize(&rig("root(torso(head, arm-left, arm-right))"));
     assert!(found.parts.is_empty(), "without legs it may be anything: {:?}", found.parts);
+}
+
+/// A VRM animation may move any bones, even two.
+#[test]
+fn a_motion_that_says_what_it_moves_needs_no_whole_body() {
+    let arm = both("~UpperArm>~LowerArm>~Hand", ["Left", "Right"]);
+    let leg = both("~UpperLeg>~LowerLeg>~Foot", ["Left", "Right"]);
+    let model = rig(&format!("Hips(Spine>Chest(Neck>Head, {arm}), {leg})"));
+    let skeleton = rig("a>b>c").skeleton.clone();
+    let humanoid = Humanoid([(Slot::Hips, JointIndex(0)), (Slot::LeftUpperArm, JointIndex(2))].into());
+    let declared = |humanoid| {
+        let parts = AssetParts { skeleton: skeleton.clone(), humanoid, ..AssetParts::default() };
+        Asset::new(parts).expect("an asset")
+    };
+    let names = |motion: &Asset| {
+        let pair =
+            |pair: &ProposedPair| (model.skeleton.name(pair.target).to_owned(), skeleton.name(pair.source).to_owned());
+        propose(&model, motion).pairs.iter().map(pair).collect::<Vec<_>>()
+    };
+    let pair = |target: &str, source: &str| (target.to_owned(), source.to_owned());
+    assert_eq!(names(&declared(Some(humanoid))), [pair("Hips", "a"), pair("LeftUpperArm", "c")]);
+    assert_eq!(names(&declared(None)), []);
 }
