@@ -9,7 +9,7 @@ use super::map::{Contacts, Feet, Pair};
 use super::pose::{ancestry, is_within, node_locals};
 use super::transfer::{
     CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, extraction_joint, hips_channels,
-    keeps_everything, rotation_laws,
+    rotation_laws,
 };
 
 /// Why a clip cannot be retargeted.
@@ -123,12 +123,8 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     let policy = CopyPolicy::new(transfer);
     let copied = copied_channels(transfer, policy);
     let is_copied = |joint: JointIndex| copied.iter().any(|channel| channel.joint == joint);
-    if let Some(hips) = transfer.hips {
-        let path_is_copied =
-            keeps_everything(transfer.map) && policy.translations && is_copied(transfer.map.pairs[hips.pair].target);
-        if !path_is_copied {
-            channels.extend(hips_channels(transfer, hips, &laws, root_turn.as_ref()));
-        }
+    if let Some(hips) = transfer.hips.filter(|_| !policy.path) {
+        channels.extend(hips_channels(transfer, hips, &laws, root_turn.as_ref()));
     }
     let ends = detached_ends(transfer);
     // In an equal skeleton, the copied translations keep the ends in place.

@@ -73,6 +73,7 @@ impl<'a> Retargeting<'a> {
             map,
             alignment: &alignment,
             tracks: &tracks,
+            target: model.asset,
             target_skeleton,
             source_slots: source.slots,
             target_slots: model.slots,

@@ -141,7 +141,13 @@ fn names_decide(
         (Some((_, target)), Some((_, source))) => shared.get(target) == Some(source),
         _ => true,
     };
-    count > 0 && count as f32 >= MIN_SHARED_NAMES * moved.len() as f32 && shared.iter().all(means_same) && tops_agree
+    // One file's “Hips” may be what the other one's hips carry.
+    let hips_agree = match (targets.joint(Slot::Hips), sources.joint(Slot::Hips)) {
+        (Some(target), Some(source)) => shared.get(&target) == Some(&source),
+        _ => true,
+    };
+    let agree = shared.iter().all(means_same) && tops_agree && hips_agree;
+    count > 0 && count as f32 >= MIN_SHARED_NAMES * moved.len() as f32 && agree
 }
 
 /// The recognized joints between hips and neck, lowest first.

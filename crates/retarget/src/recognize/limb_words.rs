@@ -73,22 +73,18 @@ pub(super) fn align(tree: &Tree, parts: &Parts, candidates: &[(JointIndex, Fits)
     // The best choice that ends with each candidate as each part: its sum, and the candidate and part before.
     let mut best: Vec<[Choice; 4]> = Vec::with_capacity(candidates.len());
     for (at, &(joint, fits)) in candidates.iter().enumerate() {
-        let mut ends = [Choice::default(); 4];
-        for (part, end) in ends.iter_mut().enumerate().filter(|(part, _)| fits[*part] > 0.0) {
-            end.sum = fits[part] - parts.missing(0..part);
-            for (before, &(above, _)) in candidates[..at].iter().enumerate() {
-                if !tree.is_under(joint, above) {
-                    continue;
-                }
-                for earlier in (0..part).filter(|&earlier| best[before][earlier].sum > 0.0) {
-                    let sum = best[before][earlier].sum + fits[part] - parts.missing(earlier + 1..part);
-                    if sum > end.sum {
-                        *end = Choice { sum, before: Some((before, earlier)) };
-                    }
-                }
-            }
-        }
-        best.push(ends);
+        let above: Vec<usize> = (0..at).filter(|&before| tree.is_under(joint, candidates[before].0)).collect();
+        let end = |part: usize| {
+            let alone = Choice { sum: fits[part] - parts.missing(0..part), before: None };
+            let chains = above.iter().flat_map(|&before| (0..part).map(move |earlier| (before, earlier)));
+            let chains =
+                chains.filter(|&(before, earlier)| best[before][earlier].sum > 0.0).map(|(before, earlier)| {
+                    let missing = parts.missing(earlier + 1..part);
+                    Choice { sum: best[before][earlier].sum + fits[part] - missing, before: Some((before, earlier)) }
+                });
+            chains.fold(alone, |best, other| if other.sum > best.sum { other } else { best })
+        };
+        best.push([0, 1, 2, 3].map(|part| if fits[part] > 0.0 { end(part) } else { Choice::default() }));
     }
     let mut last = None;
     let mut sum = 0.0;

@@ -9,6 +9,7 @@ use glam::{Affine3A, Vec3};
 use super::languages;
 use super::names::{Name, is_number};
 use super::words::{self, Word};
+use crate::skin::moves_skin;
 
 pub(super) struct Tree<'a> {
     pub skeleton: &'a Skeleton,
@@ -141,23 +142,6 @@ fn usable(asset: &Asset) -> Vec<bool> {
         usable[joint.get()] = true;
     }
     usable
-}
-
-/// Which joints a skin gives weight on any vertex; None if there is no skin.
-fn moves_skin(asset: &Asset) -> Option<Vec<bool>> {
-    let mut moves = vec![false; asset.skeleton.len()];
-    for instance in &asset.instances {
-        let Some(skin) = instance.skin else { continue };
-        let joints = asset.skins[skin].joints();
-        for geometry in &asset.meshes[instance.mesh].primitives {
-            for vertex in 0..geometry.positions.len() {
-                for (slot, _) in geometry.influences.of_vertex(vertex).filter(|(_, weight)| *weight > 0.0) {
-                    moves[joints[usize::from(slot)].get()] = true;
-                }
-            }
-        }
-    }
-    moves.contains(&true).then_some(moves)
 }
 
 fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {

@@ -20,6 +20,8 @@ pub struct CopyPolicy {
     pub is_same_skeleton: bool,
     pub translations: bool,
     pub scales: bool,
+    /// Whether the joints on the way to the hips move as their sources do. Otherwise the hips' path holds all that they do.
+    pub path: bool,
 }
 
 impl CopyPolicy {
@@ -30,8 +32,18 @@ impl CopyPolicy {
             Keep::Drop => false,
             Keep::Auto => is_same_skeleton,
         };
-        Self { is_same_skeleton, translations: keeps(transfer.map.translations), scales: keeps(transfer.map.scales) }
+        let (translations, scales) = (keeps(transfer.map.translations), keeps(transfer.map.scales));
+        let path = translations && is_same_skeleton && follows_path(transfer);
+        Self { is_same_skeleton, translations, scales, path }
     }
+}
+
+/// Whether the options leave the path alone, and all that carries the source's hips has a joint that follows it.
+fn follows_path(transfer: &Transfer) -> bool {
+    let Some(hips) = transfer.hips_pair() else { return true };
+    let is_followed = |joint: JointIndex| transfer.map.pairs.iter().any(|pair| pair.source == joint);
+    let mut above = ancestry(transfer.tracks.skeleton, hips.source);
+    keeps_everything(transfer.map) && above.all(|joint| !transfer.tracks.is_moving(joint) || is_followed(joint))
 }
 
 /// Whether the joints of every pair have the same name, the same parent's name and the same rest.
@@ -56,9 +68,6 @@ fn is_same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skeleton) -> 
 pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChannel> {
     let Transfer { map, tracks, target_skeleton, .. } = *transfer;
     let rests = Rests { source: node_locals(tracks.skeleton), target: node_locals(target_skeleton) };
-    // On the way to the hips, channels are copied joint by joint only if the options leave the path alone; between
-    // different skeletons the hips absorb what their ancestors do.
-    let may_copy_path = policy.is_same_skeleton && (transfer.hips.is_none() || keeps_everything(map));
     let is_on_path =
         |joint: JointIndex| transfer.hips_pair().is_some_and(|hips| is_within(target_skeleton, hips.target, joint));
     let mut channels = Vec::new();
@@ -68,7 +77,7 @@ pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChanne
         for channel in tracks.clip.channels().iter().filter(|channel| channel.joint == pair.source) {
             let property = channel.keys.property();
             let is_wanted = match property {
-                Property::Translation => policy.translations && (may_copy_path || !is_on_path(pair.target)),
+                Property::Translation => policy.translations && (policy.path || !is_on_path(pair.target)),
                 Property::Scale => policy.scales,
                 Property::MorphWeights => morphs > 0,
                 Property::Rotation => false,

@@ -1,14 +1,15 @@
 //! How the hips of both skeletons correspond: which pair they are, how their heights compare, where the ground is.
 
 use gaitway_character::anim::{JointIndex, Skeleton};
-use gaitway_character::asset::{Humanoid, Slot};
+use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::DVec3;
 
 use crate::align::Alignment;
 use crate::keys::resample::union;
 use crate::keys::tracks::SourceTracks;
 use crate::map::{PathOrigin, ResolvedMap};
-use crate::pose::ancestry;
+use crate::pose::{ancestry, is_within};
+use crate::skin::moves_skin;
 
 const LEGS: [Slot; 8] = [
     Slot::LeftUpperLeg,
@@ -29,6 +30,9 @@ const GROUND_SAMPLES: usize = 32;
 pub struct Hips {
     /// Index into [`ResolvedMap::pairs`].
     pub pair: usize,
+    /// The target joint whose translation takes the path: the topmost that moves skin or is part of the trunk, so that the body
+    /// stays in one piece. Usually the hips themselves.
+    pub carrier: JointIndex,
     /// Target units per source unit.
     pub scale: f64,
     /// Reference point of the source's path, in source units: the hips at rest; on the ground plane, with [`PathOrigin::Feet`],
@@ -66,6 +70,7 @@ pub struct HipsInput<'a> {
     pub map: &'a ResolvedMap,
     pub alignment: &'a Alignment,
     pub tracks: &'a SourceTracks<'a>,
+    pub target: &'a Asset,
     pub target_skeleton: &'a Skeleton,
     pub source_slots: &'a Humanoid,
     pub target_slots: &'a Humanoid,
@@ -74,7 +79,7 @@ pub struct HipsInput<'a> {
 /// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
 /// ancestor and whose source travels stands in for them.
 pub fn match_hips(input: HipsInput) -> Option<Hips> {
-    let HipsInput { map, alignment, tracks, target_skeleton, source_slots, target_slots } = input;
+    let HipsInput { map, alignment, tracks, target_skeleton, source_slots, target_slots, .. } = input;
     let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
     let mut source_rest = alignment.source.position(map.pairs[pair].source);
     let mut target_rest = alignment.target.position(map.pairs[pair].target);
@@ -101,11 +106,25 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     }
     Some(Hips {
         pair,
+        carrier: carrier(input, map.pairs[pair].target),
         scale: if is_usable { height / source_height } else { 1.0 },
         source_rest,
         target_rest,
         height: height.max(1e-9),
     })
+}
+
+/// The joint that takes the path of these hips.
+fn carrier(input: HipsInput, hips: JointIndex) -> JointIndex {
+    let HipsInput { map, alignment, target, target_skeleton, .. } = input;
+    let trunk = [Slot::Spine, Slot::Chest, Slot::UpperChest].into_iter().filter_map(|slot| alignment.pair(map, slot));
+    let hangs_from = trunk.map(|pair| pair.target).filter(|joint| is_within(target_skeleton, hips, *joint)).min();
+    let in_skin = |joint: &JointIndex| target.skins.iter().any(|skin| skin.joints().contains(joint));
+    // Extracted travel has a joint of its own above the hips.
+    let may_carry = !map.root.extract && ancestry(target_skeleton, hips).skip(1).any(|joint| in_skin(&joint));
+    let moves = if may_carry { moves_skin(target) } else { None };
+    let skinned = moves.and_then(|moves| ancestry(target_skeleton, hips).filter(|joint| moves[joint.get()]).last());
+    [Some(hips), hangs_from, skinned].into_iter().flatten().min().unwrap_or(hips)
 }
 
 /// The midpoint of the feet at the aligned rest. None unless each foot is a descendant of its upper leg: the others don't turn with

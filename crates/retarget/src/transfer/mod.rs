@@ -19,7 +19,7 @@ pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
 pub use path_channels::hips_channels;
 pub use removed_travel::{RemovedTravel, removed_travel};
-pub use root_motion::{extraction_joint, keeps_everything};
+pub use root_motion::extraction_joint;
 
 use gaitway_character::anim::{Clip, JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Slot};
@@ -28,7 +28,7 @@ use glam::DVec3;
 use super::align::Alignment;
 use super::keys::tracks::SourceTracks;
 use super::map::{Pair, ResolvedMap};
-use super::pose::{Scratch, WorldPose, clip_locals, is_within};
+use super::pose::{Scratch, WorldPose, clip_locals};
 
 /// Two skeletons aligned for one clip: what every step from here on reads.
 #[derive(Debug, Clone, Copy)]
@@ -60,13 +60,9 @@ impl<'a> Transfer<'a> {
         self.hips.map_or(1.0, |hips| hips.scale)
     }
 
-    /// The target joint whose translation carries the hips: the hips themselves or, if they hang from a trunk whose root is in
-    /// the chest, that root.
+    /// The target joint whose translation carries the hips.
     pub fn hips_carrier(&self) -> Option<JointIndex> {
-        let hips = self.hips_pair()?.target;
-        let trunk = [Slot::Spine, Slot::Chest, Slot::UpperChest].into_iter().filter_map(|slot| self.pair(slot));
-        let above = trunk.map(|pair| pair.target).filter(|joint| is_within(self.target_skeleton, hips, *joint));
-        above.min().or(Some(hips))
+        self.hips.map(|hips| hips.carrier)
     }
 
     /// Where a joint of the source is in the common frame.

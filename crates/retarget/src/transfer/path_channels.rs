@@ -22,7 +22,6 @@ pub fn hips_channels(
     laws: &[RotationLaw],
     root_turn: Option<&Yaw>,
 ) -> Vec<NewChannel> {
-    let joint = transfer.map.pairs[hips.pair].target;
     let Some(path) = HipsPath::new(transfer, hips) else {
         return constant_channel(transfer, hips, laws).into_iter().collect();
     };
@@ -46,7 +45,7 @@ pub fn hips_channels(
     };
     let translation = |time: f32| carried(transfer, hips, laws, time, seen_from_root(path.at(time), time));
     // The tolerance is in the units of the hips' parent.
-    let carrier = transfer.hips_carrier().unwrap_or(joint);
+    let carrier = hips.carrier;
     let unit_length = rest_parent_frame(transfer, carrier).matrix3.x_axis.length().max(1e-12);
     let tolerance = MAX_OFFSET_PER_METRE * hips.height / unit_length;
     let turning = turning_times(transfer, hips, laws);
@@ -98,30 +97,27 @@ fn jumps(transfer: &Transfer, hips: &Hips) -> Vec<f32> {
 fn constant_channel(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw]) -> Option<NewChannel> {
     let (pair, tracks) = (&transfer.map.pairs[hips.pair], transfer.tracks);
     let has_channel = ancestry(tracks.skeleton, pair.source).any(|joint| tracks.has_channel[joint.get()]);
-    let carrier = transfer.hips_carrier()?;
     let translation = carried(transfer, hips, laws, 0.0, unedited(transfer, hips, 0.0));
-    has_channel.then(|| NewChannel::constant(carrier, Keys::Translation(vec![translation.as_vec3()])))
+    has_channel.then(|| NewChannel::constant(hips.carrier, Keys::Translation(vec![translation.as_vec3()])))
 }
 
 /// The local translation that brings the hips to a position: their own, or that of the joint that carries them.
 fn carried(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw], time_secs: f32, position: DVec3) -> DVec3 {
     let joint = transfer.map.pairs[hips.pair].target;
     let world_from_parent = hips_parent_frame(transfer, joint, laws, time_secs);
-    match transfer.hips_carrier().filter(|&carrier| carrier != joint) {
-        None => world_from_parent.inverse().transform_point3(position),
-        Some(carrier) => {
-            let locals = &transfer.alignment.target.locals;
-            let by = position - world_from_parent.transform_point3(locals[joint.get()].translation);
-            let parent_from_world = hips_parent_frame(transfer, carrier, laws, time_secs).inverse();
-            locals[carrier.get()].translation + parent_from_world.transform_vector3(by)
-        }
+    if hips.carrier == joint {
+        return world_from_parent.inverse().transform_point3(position);
     }
+    let locals = &transfer.alignment.target.locals;
+    let by = position - world_from_parent.transform_point3(locals[joint.get()].translation);
+    let parent_from_world = hips_parent_frame(transfer, hips.carrier, laws, time_secs).inverse();
+    locals[hips.carrier.get()].translation + parent_from_world.transform_vector3(by)
 }
 
 /// Key times of the joints between the hips and the joint that carries them, whose turning moves the hips.
 fn turning_times(transfer: &Transfer, hips: &Hips, laws: &[RotationLaw]) -> Vec<Vec<f32>> {
-    let (hips, carrier) = (transfer.map.pairs[hips.pair].target, transfer.hips_carrier());
-    let above = ancestry(transfer.target_skeleton, hips).skip(1).filter(|&joint| Some(joint) >= carrier);
+    let joint = transfer.map.pairs[hips.pair].target;
+    let above = ancestry(transfer.target_skeleton, joint).skip(1).filter(|&joint| joint >= hips.carrier);
     above.filter_map(|joint| transfer.map.pair_index(joint)).map(|pair| laws[pair].times().0).collect()
 }
 
@@ -157,10 +153,13 @@ fn transformed_channel(transfer: &Transfer, hips: &Hips, path: &HipsPath) -> Opt
         parent_frame(tracks.skeleton, pair.source, transfer.alignment.source.world_from_model, |ancestor| {
             tracks.local(ancestor, 0.0)
         });
-    let target_parent_from_world = rest_parent_frame(transfer, pair.target).inverse();
+    let target_parent_from_world = rest_parent_frame(transfer, hips.carrier).inverse();
+    let rest = &transfer.alignment.target;
+    let (carrier_rest, hips_rest) = (rest.locals[hips.carrier.get()].translation, rest.position(pair.target));
     let point = |value: &Vec3, time: f32| {
         let position = hips.target_position(world_from_source_parent.transform_point3(value.as_dvec3()));
-        target_parent_from_world.transform_point3(path.edit(position, time)).as_vec3()
+        let by = path.edit(position, time) - hips_rest;
+        (carrier_rest + target_parent_from_world.transform_vector3(by)).as_vec3()
     };
     let tangent = |value: &Vec3| {
         let tangent = hips.scale * world_from_source_parent.transform_vector3(value.as_dvec3());
@@ -177,7 +176,7 @@ fn transformed_channel(transfer: &Transfer, hips: &Hips, path: &HipsPath) -> Opt
         }
     };
     Some(NewChannel {
-        joint: pair.target,
+        joint: hips.carrier,
         interpolation: channel.interpolation,
         times: times.to_vec(),
         keys: Keys::Translation(keys),

@@ -2,10 +2,9 @@
 //! both. They have no shape, so names and hierarchy must suffice.
 
 use gaitway_character::anim::{Joint, JointIndex, Transform};
-use gaitway_character::asset::{Asset, AssetParts, Humanoid, MeshInstance, Slot};
-use gaitway_character::mesh::{Geometry, Influences, Mesh, Skin};
+use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
 use gaitway_retarget::{Contradiction, ProposedPair, Reason, Recognized, propose, recognize};
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
 use crate::skeletons;
 
@@ -39,34 +38,6 @@ fn rig(text: &str) -> Asset {
         }
     }
     skeletons::asset(joints)
-}
-
-/// Gives an asset a skin of all joints, in which only `moving` have a vertex.
-fn with_skin(asset: &Asset, moving: &[&str]) -> Asset {
-    let skeleton = asset.skeleton.clone();
-    let joints: Vec<JointIndex> = skeleton.joints().collect();
-    let of = |name: &&str| joints.iter().position(|&joint| skeleton.name(joint) == *name).expect("a joint") as u16;
-    let influences = Influences {
-        stride: 4,
-        joints: moving.iter().flat_map(|name| [of(name), 0, 0, 0]).collect(),
-        weights: [1.0, 0.0, 0.0, 0.0].repeat(moving.len()),
-    };
-    let geometry = Geometry {
-        file_vertices: moving.len(),
-        positions: vec![Vec3::ZERO; moving.len()],
-        indices: vec![0; 3],
-        influences,
-        ..Geometry::default()
-    };
-    let skin = Skin::new(String::new(), joints.clone(), vec![Affine3A::IDENTITY; joints.len()], joints.len());
-    let parts = AssetParts {
-        meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
-        instances: vec![MeshInstance::new(joints[0], 0, Some(0))],
-        skins: vec![skin.expect("a skin")],
-        skeleton,
-        ..AssetParts::default()
-    };
-    Asset::new(parts).expect("an asset")
 }
 
 /// Repeats a template for both sides.
@@ -555,7 +526,7 @@ fn the_arm_that_moves_the_skin_is_the_arm() {
     let (asset, skinned) = (rig(&text), ["DEF-UpperArm.L", "DEF-LowerArm.L", "DEF-Hand.L"]);
     let slots = ["leftUpperArm", "leftLowerArm", "leftHand"];
     check(&asset, &slots.into_iter().zip(["ORG-UpperArm.L", "ORG-LowerArm.L", "ORG-Hand.L"]).collect::<Vec<_>>());
-    check(&with_skin(&asset, &skinned), &slots.into_iter().zip(skinned).collect::<Vec<_>>());
+    check(&skeletons::with_skin(&asset, &skinned), &slots.into_iter().zip(skinned).collect::<Vec<_>>());
 }
 
 type Limb = fn(&str) -> [String; 4];

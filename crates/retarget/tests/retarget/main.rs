@@ -12,6 +12,7 @@ mod real;
 #[path = "../../../../tests/support/skeletons.rs"]
 mod skeletons;
 
+mod carriers;
 mod change;
 mod changed_people;
 mod contact_table;
