@@ -7,10 +7,16 @@ use super::plan::LegContacts;
 use crate::math::smooth;
 use crate::pose::{WorldPose, is_within};
 use crate::times::near;
-use crate::transfer::Transfer;
+use crate::transfer::{Hips, Transfer};
 
-/// A body that hovers higher than this share of the hips' height does so on purpose.
+/// A body that hovers higher than this share of the hips' height does so on purpose, unless all its contacts share a floor.
 const MAX_HOVER: f64 = 0.25;
+
+/// Contacts whose soles differ by less than this share of the hips' height are on one floor.
+const MAX_UNEVENNESS: f64 = 0.08;
+
+/// A foot that is in contact for less than this share of the time says nothing about a floor.
+const MIN_CONTACT: f64 = 0.1;
 
 /// No jump takes longer than this.
 const MAX_JUMP_SECS: f64 = 1.5;
@@ -41,9 +47,20 @@ pub fn standing_height(feet: &[(Vec<f64>, &[bool])]) -> Option<f64> {
 pub fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
     let heights = |leg: &LegContacts| poses.iter().map(|pose| leg.sole.lowest(pose)).collect();
     let feet: Vec<_> = legs.iter().map(|leg| (heights(leg), leg.touching.as_slice())).collect();
-    let hover = standing_height(&feet)? - ground;
-    let is_near = transfer.hips.is_some_and(|hips| hover.abs() < MAX_HOVER * hips.height);
-    Some(if is_near { hover } else { 0.0 })
+    let standing = standing_height(&feet)?;
+    let hover = standing - ground;
+    let is_ground = |hips: &Hips| hover.abs() < MAX_HOVER * hips.height || is_floor(&feet, standing, hips.height);
+    Some(if transfer.hips.is_some_and(is_ground) { hover } else { 0.0 })
+}
+
+/// Whether both feet stand at this height whenever they are in contact: the floor of a capture that lost its own, however high.
+fn is_floor(feet: &[(Vec<f64>, &[bool])], standing: f64, height: f64) -> bool {
+    let stands = |(heights, touching): &(Vec<f64>, &[bool])| {
+        let contacts = || heights.iter().zip(*touching).filter(|(_, touching)| **touching);
+        let is_even = contacts().all(|(sole, _)| (sole - standing).abs() < MAX_UNEVENNESS * height);
+        is_even && contacts().count() as f64 > MIN_CONTACT * heights.len() as f64
+    };
+    feet.len() > 1 && feet.iter().all(stands)
 }
 
 /// Returns the height of the lower sole.
