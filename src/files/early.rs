@@ -10,8 +10,7 @@
 use gaitway_character::anim::TextureSlot;
 use gaitway_character::asset::Asset;
 use gaitway_formats::{Early, FileSet, LoadOptions, early, load_named};
-use gaitway_scene::editor::container_of;
-use gaitway_scene::library::{ImageData, Images, Model};
+use gaitway_scene::library::{ImageData, Images, Model, container_of};
 use gaitway_scene::state::{EnvironmentChoice, MotionMap, ViewerState};
 
 /// Watches the download of a model for the moment from which it can be shown.

@@ -3,8 +3,8 @@
 
 use gaitway_character::asset::Asset;
 use gaitway_formats::FileSet;
-use gaitway_scene::editor::{Contents, ModelFiles, OpenedModel, container_of};
-use gaitway_scene::library::{Derived, Environment, ImageData, Model, Motion};
+use gaitway_scene::editor::{Contents, ModelFiles, OpenedModel};
+use gaitway_scene::library::{Derived, Environment, ImageData, Model, Motion, container_of};
 use gaitway_scene::state::MEMBER_SEPARATOR;
 
 use super::{Role, Sorted};

@@ -4,8 +4,8 @@ use std::ffi::{OsStr, OsString};
 
 use gaitway_formats::limits::MAX_FOLDER_FILES;
 use gaitway_formats::{FileSet, GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS, missing_files, next_preparation};
-use gaitway_scene::editor::{container_of, short_name};
-use gaitway_scene::library::Model;
+use gaitway_scene::editor::short_name;
+use gaitway_scene::library::{Model, container_of};
 use gaitway_scene::samples;
 
 use super::origins::Origins;

@@ -5,8 +5,8 @@ use std::ffi::OsStr;
 use std::io::ErrorKind;
 
 use gaitway_retarget::JointMapFile;
-use gaitway_scene::editor::{Contents, container_of};
-use gaitway_scene::library::{Environment, Model, Motion};
+use gaitway_scene::editor::Contents;
+use gaitway_scene::library::{Environment, Model, Motion, container_of};
 use gaitway_scene::state::{
     CharacterView, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring,
 };

@@ -41,7 +41,7 @@ fn kept(name: &str) -> RgbImage {
 
 fn drawn(scene: &Scene) -> RgbImage {
     let motion = scene.motion.as_ref().map(|motion| format!("&motion={motion}")).unwrap_or_default();
-    let link = format!("v=1&model={}{motion}&{}", scene.model, scene.view);
+    let link = format!("v=2&model={}{motion}&{}", scene.model, scene.view);
     // Without this variable, Mesa reports a spurious error.
     let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
     let command = command.args(["render", &scene.model, "--view", &link, "--size", "640x480", "--out", "-"]);

@@ -15,7 +15,7 @@ fn scenes() -> Vec<Value> {
 fn link_of(scene: &Value) -> String {
     let text = |key: &str| scene[key].as_str();
     let motion = text("motion").map(|motion| format!("&motion={motion}")).unwrap_or_default();
-    format!("v=1&model={}{motion}&{}", text("model").expect("a model"), text("view").expect("a view"))
+    format!("v=2&model={}{motion}&{}", text("model").expect("a model"), text("view").expect("a view"))
 }
 
 /// Opens all files of a scene and applies its view, as the page does.

@@ -35,7 +35,7 @@ export function readSamples() {
 }
 
 /** @param {LinkParts} parts */
-export const linkOf = ({ model, motion, view }) => `v=1&model=${model}${motion === undefined ? "" : `&motion=${motion}`}&${view}`;
+export const linkOf = ({ model, motion, view }) => `v=2&model=${model}${motion === undefined ? "" : `&motion=${motion}`}&${view}`;
 
 /**
  * Returns the file of a scene's picture.

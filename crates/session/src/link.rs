@@ -195,8 +195,13 @@ impl Link {
             return self.clone();
         }
         let files = asking.rewritten(&mut |pair| LinkRole::of(pair).map(|_| pair.to_owned()));
-        let view = self.rewritten(&mut |pair| LinkRole::of(pair).is_none().then(|| pair.to_owned()));
         let has_key = |pair: &str| pairs(&self.text).any(|other| key_of(other) == key_of(pair));
+        // The version says which clip plays if none is named: with the missing motions, what plays is as `asking` means it.
+        let version = pairs(&asking.text).find(|pair| key_of(pair) == "v").unwrap_or("v=1");
+        let view = self.rewritten(&mut |pair| match key_of(pair) {
+            "v" if !has_key("clip") => Some(version.to_owned()),
+            _ => LinkRole::of(pair).is_none().then(|| pair.to_owned()),
+        });
         let left_out = asking.rewritten(&mut |pair| {
             let is_shown = pairs(&shown.text).any(|other| other == pair);
             (LinkRole::of(pair).is_none() && !is_shown && !has_key(pair)).then(|| pair.to_owned())

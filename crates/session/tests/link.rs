@@ -162,6 +162,11 @@ fn a_shared_link_asks_for_what_is_missing_here() {
         "model=sample:pilot&motion=file:walk.bvh&motion=sample:walk&light=file:beach.hdr&v=1&copy=A:walk&clip=run&fov=20\
          &camera=1,2,3,4,5,6"
     );
+    // Which clip plays without a name is up to the version.
+    let merged = |now: &str, asking: &str| Link::from(now).with_missing(&asking.into()).text().to_owned();
+    assert_eq!(merged("v=2&model=a&t=1", "model=a&motion=file:b"), "model=a&motion=file:b&v=1&t=1");
+    assert_eq!(merged("v=2&model=a&t=1", "v=2&model=a&motion=file:b"), "model=a&motion=file:b&v=2&t=1");
+    assert_eq!(merged("v=2&model=a&clip=W", "v=1&model=a&motion=file:b"), "model=a&motion=file:b&v=2&clip=W");
     let other = "v=1&model=sample:dwarf&fov=20";
     assert_eq!(Link::from(other).with_missing(&asking.into()).text(), other, "something else is shown");
 }

@@ -3,8 +3,8 @@
 use gaitway_formats::FileSet;
 use gaitway_retarget::JointMapFile;
 
-use crate::library::{Environment, Model, Motion};
-use crate::state::{LinkError, MEMBER_SEPARATOR};
+use crate::library::{Environment, Model, Motion, container_of};
+use crate::state::LinkError;
 
 /// Opened files, ready for the library.
 #[derive(Debug, Default)]
@@ -91,9 +91,4 @@ impl Contents {
         }
         sources
     }
-}
-
-/// Returns the folder or archive a model came from: `ARCHIVE` for `ARCHIVE#!/MEMBER`, any other origin unchanged.
-pub fn container_of(origin: &str) -> &str {
-    origin.split_once(MEMBER_SEPARATOR).map_or(origin, |(container, _)| container)
 }

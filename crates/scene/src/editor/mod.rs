@@ -19,7 +19,7 @@ mod transact;
 mod validation;
 
 pub use clip_file::{ClipFormat, write_clip};
-pub use contents::{AboutLink, Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
+pub use contents::{AboutLink, Contents, ModelFiles, OpenedMap, OpenedModel};
 pub use event::Event;
 pub use export::{AWAITS_IMAGES, Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};

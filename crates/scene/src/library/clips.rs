@@ -26,6 +26,11 @@ pub struct MotionId {
 }
 
 impl MotionId {
+    /// Where the motion came from, as links have it.
+    pub(super) fn origin(&self) -> &str {
+        &self.origin
+    }
+
     /// Identifies motions by their files. Those that have an identity keep it; of others alike, each gets the first that is free.
     pub(super) fn assign(motions: &mut [Motion]) {
         let mut taken = BTreeSet::new();

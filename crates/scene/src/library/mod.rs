@@ -22,7 +22,7 @@ use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestCho
 pub use image::{ImageData, Images};
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;
-pub use model::{Derived, Finding, Model, ModelId};
+pub use model::{Derived, Finding, Model, ModelId, container_of};
 pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
 pub use take::{

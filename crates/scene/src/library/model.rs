@@ -9,6 +9,7 @@ use gaitway_character::anim::{Joint, JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, AssetParts, Humanoid, MeshInstance, SceneJoints, Warning};
 use gaitway_character::mesh::{Bounds, Mesh};
 use gaitway_retarget::{Body, Recognized, Symmetry, recognize};
+use gaitway_session::MEMBER_SEPARATOR;
 use glam::{Affine3A, Vec3};
 
 use super::borrowed::BorrowedClip;
@@ -17,6 +18,11 @@ use super::extent::Extent;
 use super::lints::{joint_of_place, lint};
 use super::rig::Rig;
 use super::{ImageData, Images};
+
+/// Returns the folder or archive a model came from: `ARCHIVE` for `ARCHIVE#!/MEMBER`, any other origin unchanged.
+pub fn container_of(origin: &str) -> &str {
+    origin.split_once(MEMBER_SEPARATOR).map_or(origin, |(container, _)| container)
+}
 
 /// Identifies a model, or a motion shown as one, within its library. 0 until the library assigns one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -122,6 +128,12 @@ impl Model {
     /// The clips that it can play.
     pub fn clips(&self) -> &Clips {
         &self.clips
+    }
+
+    /// The first clip of the motions that were opened for the model. Those in its own archive are part of it.
+    pub fn first_opened_clip(&self) -> Option<&ModelClip> {
+        let is_opened = |borrowed: &BorrowedClip| borrowed.motion.origin() != container_of(&self.origin);
+        self.clips.borrowed().find(|(_, borrowed)| is_opened(borrowed)).map(|(clip, _)| clip)
     }
 
     /// Finds one of its clips.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::{ClipQuery, find_clip};
 
+use super::playhead::chosen_clip;
 use super::{ClipChoice, NameKind, UnknownName, ViewerState};
 use crate::library::{ClipEdits, ClipId, LayeredClip, Library, Model, ModelClip, clip_file_name};
 
@@ -75,6 +76,23 @@ fn link_clip_name(library: &Library, edits: &ClipEdits, id: &ClipId) -> Option<S
     })
 }
 
+/// Returns what a link says for the first clip of the active model: nothing where a link that names no clip plays it, too. An index
+/// stands for it until the model is there.
+fn first_in_link(view: &ViewerState, library: &Library) -> ClipChoice {
+    if view.character.sources.motion.is_empty() {
+        return ClipChoice::First;
+    }
+    let Some(model) = library.active().filter(|model| !model.clips().is_empty()) else {
+        return ClipChoice::called("0");
+    };
+    let choices = [ClipChoice::First, ClipChoice::FirstOfMotions];
+    let [first, of_motions] = choices.map(|choice| chosen_clip(model, &choice).map(ModelClip::id));
+    let name = first
+        .filter(|_| first != of_motions)
+        .and_then(|first| link_clip_name(library, &view.character.edits.clips, first));
+    name.map_or(ClipChoice::First, |name| ClipChoice::called(&name))
+}
+
 /// Returns a view that refers to clips as links do.
 pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerState {
     let mut state = view.clone();
@@ -84,6 +102,7 @@ pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerSt
     let plays =
         |clip: &ClipId| clip.name().is_some() || library.active().is_some_and(|model| model.clip(clip).is_some());
     let choice = |choice: &ClipChoice| match choice {
+        ClipChoice::First => first_in_link(view, library),
         ClipChoice::Clip(clip) => called(clip).filter(|_| plays(clip)).map_or(ClipChoice::RestPose, ClipChoice::Clip),
         other => other.clone(),
     };

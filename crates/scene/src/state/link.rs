@@ -1,5 +1,5 @@
 //! The text form of a view state: `key=value` pairs joined by `&` after the `#`, and the same keys as a JSON object. Old
-//! links keep working: `v=1` fixes the defaults, and unknown keys are preserved when the link is written again. A key is one
+//! links keep working: [`Version`] fixes the defaults, and unknown keys are preserved when the link is written again. A key is one
 //! row of [`KEYS`].
 
 mod changes;
@@ -15,7 +15,7 @@ pub use gaitway_session::{Link, MEMBER_SEPARATOR, is_to_bring, with_current_memb
 pub use self::pins::read_pin;
 use self::values::*;
 use super::clip_names::with_link_names;
-use super::{UnknownName, ViewerState};
+use super::{CharacterView, ClipChoice, UnknownName, ViewerState};
 use crate::library::{LayeredClip, Library};
 
 /// A part of a link, or of an object from a script, that is not understood or that can't be shown. All other parts still apply.
@@ -78,6 +78,41 @@ impl LinkError {
             Self::UnknownShow { .. } => "show",
             Self::LooksPast => "camera",
             Self::OutOfRange { key, .. } | Self::UnknownName { key, .. } => key,
+        }
+    }
+}
+
+/// What a link leaves out means what its key `v` says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Version {
+    /// Without `clip`, the model's first clip plays, its own before those of motions. Links without `v` are of this version.
+    One,
+    /// Without `clip`, the first clip of the motions plays, if there are any.
+    Two,
+}
+
+impl Version {
+    const KEY: &str = "v";
+    const EXPECTED: &str = "1 or 2";
+    /// The one that is written.
+    const CURRENT: u32 = 2;
+
+    /// Reads the value of its key. One that is unknown is reported and read as the current one: a newer link is most like that.
+    fn read(value: &str, errors: &mut Vec<LinkError>) -> Self {
+        match value {
+            "1" => return Self::One,
+            "2" => {}
+            _ => errors.push(bad_value(Self::KEY, value, Self::EXPECTED)),
+        }
+        Self::Two
+    }
+
+    /// Chooses the clip of a view whose link names none.
+    fn complete(self, state: &mut ViewerState) {
+        let CharacterView { sources, playhead, .. } = &mut state.character;
+        if matches!(playhead.clip, ClipChoice::First | ClipChoice::FirstOfMotions) {
+            let is_of_motions = self == Self::Two && !sources.motion.is_empty();
+            playhead.clip = if is_of_motions { ClipChoice::FirstOfMotions } else { ClipChoice::First };
         }
     }
 }
@@ -360,7 +395,7 @@ const ESCAPED: &AsciiSet =
 /// Returns the part after `#`, with only what differs from the default. The library has the clips that the view refers to.
 pub fn to_link(state: &ViewerState, library: &Library) -> String {
     let (state, default) = (&with_link_names(state, library), ViewerState::default());
-    let mut text = "v=1".to_owned();
+    let mut text = format!("{}={}", Version::KEY, Version::CURRENT);
     let mut push = |key: &str, value: &str| {
         text.push('&');
         text.extend(utf8_percent_encode(key, ESCAPED));
@@ -409,11 +444,16 @@ pub fn read_layer(text: &str) -> Result<LayeredClip, &'static str> {
 pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
     let mut state = ViewerState::default();
     let mut errors = Vec::new();
+    let mut version = Version::One;
     for pair in fragment.trim_start_matches('#').split('&').filter(|pair| !pair.is_empty()) {
         let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
         let decode = |text: &str| percent_decode_str(text).decode_utf8_lossy().into_owned();
-        set_value(&mut state, &decode(key), &decode(value), &mut errors);
+        match (decode(key), decode(value)) {
+            (key, value) if key == Version::KEY => version = Version::read(&value, &mut errors),
+            (key, value) => set_value(&mut state, &key, &value, &mut errors),
+        }
     }
+    version.complete(&mut state);
     (state, errors)
 }
 
@@ -421,7 +461,7 @@ pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
 pub fn to_object(state: &ViewerState, library: &Library) -> Value {
     let state = &with_link_names(state, library);
     let mut object = Map::new();
-    object.insert("v".to_owned(), json!(1));
+    object.insert(Version::KEY.to_owned(), json!(Version::CURRENT));
     for key in KEYS {
         object.insert(key.name.to_owned(), (key.write)(state).json());
     }
@@ -432,7 +472,8 @@ pub fn to_object(state: &ViewerState, library: &Library) -> Value {
     Value::Object(object)
 }
 
-/// Returns a state with some keys of the link replaced; null resets a key to its default. Bad values are reported and skipped. The
+/// Returns a state with some keys of the link replaced; null resets a key to its default, which is that of the current version unless
+/// the object names another. Bad values are reported and skipped. The
 /// library has the clips that `base` refers to; the returned state calls them as links do.
 pub fn from_object(base: &ViewerState, library: &Library, partial: &Value) -> (ViewerState, Vec<LinkError>) {
     let mut state = with_link_names(base, library);
@@ -442,9 +483,16 @@ pub fn from_object(base: &ViewerState, library: &Library, partial: &Value) -> (V
         errors.push(LinkError::BadValue { key: "state".to_owned(), value: partial.to_string(), expected });
         return (state, errors);
     };
+    let mut version = Version::Two;
     for (name, value) in partial {
+        if name == Version::KEY {
+            if !value.is_null() {
+                version = Version::read(&plain_text(value), &mut errors);
+            }
+            continue;
+        }
         let known = key(name);
-        let repeatable = known.map_or(name != "v", |key| key.repeatable);
+        let repeatable = known.is_none_or(|key| key.repeatable);
         let texts = match value {
             Value::Array(values) if repeatable => values.iter().map(plain_text).collect(),
             Value::Array(values) => vec![values.iter().map(plain_text).collect::<Vec<_>>().join(",")],
@@ -463,6 +511,7 @@ pub fn from_object(base: &ViewerState, library: &Library, partial: &Value) -> (V
             set_value(&mut state, name, &text, &mut errors);
         }
     }
+    version.complete(&mut state);
     (state, errors)
 }
 
@@ -477,8 +526,6 @@ fn plain_text(value: &Value) -> String {
 fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<LinkError>) {
     let read = match self::key(key) {
         Some(key) => (key.read)(state, value),
-        None if key == "v" && value == "1" => Read::Done,
-        None if key == "v" => Read::Bad("1, the only version"),
         None => Read::Unknown,
     };
     let expected = match read {
@@ -495,7 +542,11 @@ fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<L
             return;
         }
     };
-    errors.push(LinkError::BadValue { key: key.to_owned(), value: shortened(value), expected });
+    errors.push(bad_value(key, value, expected));
+}
+
+fn bad_value(key: &str, value: &str, expected: &'static str) -> LinkError {
+    LinkError::BadValue { key: key.to_owned(), value: shortened(value), expected }
 }
 
 /// Returns a value as an error shows it: a long one would hide the other errors.

@@ -22,6 +22,7 @@ pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownName> {
 pub(super) fn chosen_clip<'a>(model: &'a Model, choice: &ClipChoice) -> Option<&'a ModelClip> {
     match choice {
         ClipChoice::First => model.clips().first(),
+        ClipChoice::FirstOfMotions => model.first_opened_clip().or_else(|| model.clips().first()),
         ClipChoice::RestPose => None,
         ClipChoice::Clip(clip) => look_up_clip(model, clip),
     }

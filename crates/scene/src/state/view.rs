@@ -394,6 +394,8 @@ pub enum ClipChoice {
     /// The first clip; the rest pose if there are no clips.
     #[default]
     First,
+    /// The first clip of the motions that were opened for the model; without any, as [`Self::First`].
+    FirstOfMotions,
     /// No clip: every joint at rest.
     RestPose,
     /// This clip; the rest pose while the model lacks it.

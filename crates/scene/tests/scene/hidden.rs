@@ -127,7 +127,7 @@ fn framing_everything_frames_what_is_shown() {
 fn a_link_says_what_is_hidden() {
     let hidden = Hidden { nodes: BTreeSet::from([4, 17]), materials: BTreeSet::from([None, Some(2)]) };
     let state = hiding(hidden);
-    assert_eq!(link_of(&state), "v=1&hidden=4,17,m,m2");
+    assert_eq!(link_of(&state), "v=2&hidden=4,17,m,m2");
     assert_eq!(from_link("v=1&hidden=m2,17,4,m"), (state, Vec::new()));
     for bad in ["x", "4,m-1", "-1", "m2.5"] {
         let (state, errors) = from_link(&format!("hidden={bad}"));

@@ -98,7 +98,8 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         (
             "character.sources.motion",
             with(&|state| {
-                state.character.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()]
+                state.character.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()];
+                state.character.playhead.clip = ClipChoice::FirstOfMotions;
             }),
         ),
         ("character.retarget.map", with(&|state| state.character.retarget.map = some_maps())),
@@ -333,7 +334,7 @@ fn any_camera_round_trips_exactly() {
 
 #[test]
 fn defaults_are_left_out() {
-    assert_eq!(link_of(&ViewerState::default()), "v=1");
+    assert_eq!(link_of(&ViewerState::default()), "v=2");
 }
 
 #[test]
@@ -374,6 +375,28 @@ fn links_read_as_documented() {
 }
 
 #[test]
+fn an_unknown_version_is_reported_and_read_as_the_current_one() {
+    check_bad("v=3", "v");
+    check_bad("v=", "v");
+    let motion_plays = |link: &str| from_link(link).0.character.playhead.clip == ClipChoice::FirstOfMotions;
+    assert!(motion_plays("v=3&motion=walk.bvh"));
+    assert!(!motion_plays("v=1&motion=walk.bvh"));
+}
+
+#[test]
+fn an_object_without_a_version_is_of_the_current_one() {
+    let clip = |partial| {
+        let (state, errors) = with_keys(&ViewerState::default(), &partial);
+        assert_eq!(errors, []);
+        object_of(&state)["clip"].clone()
+    };
+    assert_eq!(clip(serde_json::json!({ "motion": ["walk.bvh"] })), serde_json::Value::Null);
+    assert_eq!(clip(serde_json::json!({ "v": 2, "motion": ["walk.bvh"], "clip": null })), serde_json::Value::Null);
+    assert_eq!(clip(serde_json::json!({ "v": 1, "motion": ["walk.bvh"] })), "0");
+    assert_eq!(clip(serde_json::json!({ "v": null, "motion": ["walk.bvh"], "clip": "" })), "");
+}
+
+#[test]
 fn invalid_names_and_vertices_are_reported() {
     check_bad("names=3", "names");
     check_bad("names=3:", "names");
@@ -396,7 +419,7 @@ fn a_plain_map_is_short_and_readable() {
         },
         ..ViewerState::default()
     };
-    assert_eq!(link_of(&state), "v=1&map=1.ffffffff.0-5,1-");
+    assert_eq!(link_of(&state), "v=2&map=1.ffffffff.0-5,1-");
     check_read("map=1.ffffffff.1-,0-5", state.clone());
     // Any other text is the URL of a file.
     let of_file = |url: &str| ViewerState {
@@ -415,7 +438,7 @@ fn a_plain_map_is_short_and_readable() {
         other
     };
     let proposed = RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() };
-    assert_eq!(link_of(&with(proposed)), "v=1&map=2.ffffffff.0-5,1-");
+    assert_eq!(link_of(&with(proposed)), "v=2&map=2.ffffffff.0-5,1-");
     let edited = with(RootOptions { yaw: RootPart::Freeze, ..proposed });
     check_read(&link_of(&edited), edited);
 }
@@ -501,7 +524,6 @@ fn bad_values_are_reported_and_skipped() {
     check_bad("up=w", "up");
     check_bad("background=12345", "background");
     check_bad("background=+12345", "background");
-    check_bad("v=2", "v");
     for map in ["", "1.", "1.abc.", "1.ffffffff.1", "1.ffffffff.1-x", "1.ffffffff.1-2,1-3", "1.ffffffff..%%%", "{}"] {
         check_bad(&format!("map={map}"), "map");
     }
@@ -546,14 +568,14 @@ fn a_light_is_a_file_only_if_it_looks_like_one() {
 
 #[test]
 fn unknown_keys_are_kept() {
-    let link = "v=1&show=skeleton,fur&crowd=b&crowd=c&zoo=1%262";
+    let link = "v=2&show=skeleton,fur&crowd=b&crowd=c&zoo=1%262";
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");
     assert!(state.display.show.skeleton);
     assert_eq!(link_of(&state), link);
     // A line break does not separate values.
     let (state, _) = from_link("v=1&foo=a%0Ab");
-    assert_eq!(link_of(&state), "v=1&foo=a%0Ab");
+    assert_eq!(link_of(&state), "v=2&foo=a%0Ab");
     assert_eq!(object_of(&state)["foo"], "a\nb");
 }
 

@@ -182,7 +182,7 @@ fn malformed_pins_are_reported_and_the_rest_is_kept() {
         assert_eq!(state.character.edits.pins.keys().collect::<Vec<_>>(), [&HEAD]);
     }
     let (state, errors) = from_link("pin=9:joint:4");
-    assert_eq!((errors, link_of(&state)), (Vec::new(), "v=1&pin=9:joint:4,0,0,0".to_owned()));
+    assert_eq!((errors, link_of(&state)), (Vec::new(), "v=2&pin=9:joint:4,0,0,0".to_owned()));
 }
 
 pub fn exported(editor: &Editor, what: &Export) -> Library {

@@ -52,7 +52,7 @@ fn a_variant_is_undone_and_stays_with_its_model() {
     let (mut state, mut history, mut kept) = (ViewerState::default(), History::default(), Default::default());
     history.apply(&mut state, &library, chosen("Night"));
     let link = link_of(&state);
-    assert_eq!(link, "v=1&variant=Night");
+    assert_eq!(link, "v=2&variant=Night");
     assert_eq!(from_link(&link), (state.clone(), Vec::new()));
     assert!(history.undo(&mut state, &mut kept, &mut library));
     assert_eq!(state.character.edits.variant, None);

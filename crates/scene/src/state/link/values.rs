@@ -117,7 +117,7 @@ pub(super) fn read_clip(text: &str) -> Option<ClipChoice> {
 
 pub(super) fn write_clip(clip: &ClipChoice) -> Written {
     match clip {
-        ClipChoice::First => Written::Unset,
+        ClipChoice::First | ClipChoice::FirstOfMotions => Written::Unset,
         ClipChoice::RestPose => Written::Text(String::new()),
         ClipChoice::Clip(clip) => Written::Text(clip.to_string()),
     }
@@ -261,7 +261,7 @@ pub(super) fn read_range(text: &str) -> Option<TimeRange> {
 pub(super) fn fade_text(fade: &Fade) -> String {
     let clip = match &fade.clip {
         ClipChoice::Clip(clip) => clip.to_string(),
-        ClipChoice::First | ClipChoice::RestPose => String::new(),
+        ClipChoice::First | ClipChoice::FirstOfMotions | ClipChoice::RestPose => String::new(),
     };
     format!("{},{},{clip}", fade.elapsed_secs, fade.time_secs)
 }

@@ -7,13 +7,57 @@ use gaitway_character::asset::{Asset, AssetParts};
 use gaitway_formats::{FileSet, load};
 use gaitway_scene::editor::{ClipFormat, Contents, Editor, Event, Export};
 use gaitway_scene::library::{ClipId, Library, Model, Motion};
-use gaitway_scene::state::{ViewerState, active_clip};
+use gaitway_scene::state::{ViewerState, active_clip, from_link, to_link};
 use glam::Vec3;
 
 use super::{active, any, contents, editor, id_of, motion, motions, notices, open, open_motion};
 use crate::by_place::motion_at;
 use crate::data::moving_box;
 use crate::walk_bvh::BVH;
+
+/// The model has clips of its own as well.
+#[test]
+fn a_link_that_names_no_clip_plays_its_motion_from_version_2_on() {
+    let opened = |link: &str, motion_names: &[&str]| {
+        let motions = motion_names.iter().map(|name| motion(name)).collect();
+        let mut editor = Editor::default();
+        let contents = Contents { motions: Some(motions), ..contents(&["sample:walker"]) };
+        editor.open(contents, Some(from_link(link).0), &mut any).expect("fits");
+        editor
+    };
+    let playing = |editor: &Editor| {
+        let clip = active_clip(editor.library().active().expect("a model"), editor.state())?.id();
+        let lender = clip.motion().and_then(|motion| editor.library().motion(motion));
+        Some(lender.map_or_else(|| format!("{clip:?}"), |lender| lender.source.clone()))
+    };
+    let check = |link: &str, motions: &[&str], expected: Option<&str>| {
+        let editor = opened(link, motions);
+        assert_eq!(playing(&editor).as_deref(), expected, "{link}");
+        // Written again, it means the same.
+        let again = to_link(editor.state(), editor.library());
+        assert!(again.starts_with("v=2&"), "{again}");
+        assert_eq!(playing(&opened(&again, motions)).as_deref(), expected, "{link} → {again}");
+        again
+    };
+    let named = "model=sample:walker&motion=walk.bvh";
+    let two = "model=sample:walker&motion=walk.bvh&motion=dance.bvh";
+    assert!(!check(&format!("v=2&{named}"), &["walk.bvh"], Some("walk.bvh")).contains("clip="));
+    check(&format!("v=2&{two}"), &["walk.bvh", "dance.bvh"], Some("walk.bvh"));
+    check(&format!("v=2&{two}"), &["dance.bvh"], Some("dance.bvh"));
+    check(&format!("v=2&{named}&clip="), &["walk.bvh"], None);
+    // Its file is not there yet.
+    check(&format!("v=2&{named}"), &[], Some("Own(0)"));
+    check("v=2&model=sample:walker", &[], Some("Own(0)"));
+    check(&format!("v=1&{named}"), &["walk.bvh"], Some("Own(0)"));
+    check(named, &["walk.bvh"], Some("Own(0)"));
+    // Of the model's own archive.
+    check("v=2&model=sample:walker", &["sample:walker"], Some("Own(0)"));
+    // A motion that an earlier model has borrowed doesn't take the place of the next one's own clips.
+    let mut editor = opened("v=2&model=sample:walker&motion=walk.bvh&clip=0", &["walk.bvh"]);
+    open(&mut editor, "sample:pilot");
+    assert_eq!((playing(&editor).as_deref(), editor.library().motions().len()), (Some("Own(0)"), 1));
+    assert!(to_link(editor.state(), editor.library()).contains("&clip="));
+}
 
 #[test]
 fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
