@@ -49,10 +49,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
     ui.horizontal(|ui| {
         ui.set_height(44.0);
         ui.spacing_mut().item_spacing.x = if small { 0.0 } else { 4.0 };
-        ui.add_enabled_ui(shown.is_animated(), |ui| play_buttons(ui, shown, out));
-        ui.add_space(8.0);
-        let room = small.then(|| ui.available_width() - rest_width(ui, shown));
-        times(ui, shown, room);
+        // A tiny screen has no room for all of it.
+        let room_for_steps = ui.available_width() - play_width(ui) - GAP - rest_width(ui, shown);
+        let has_rest = !small || room_for_steps >= 0.0;
+        let has_steps = !small || room_for_steps >= 2.0 * icon_size(ui, ICON_SIZE).x;
+        ui.add_enabled_ui(shown.is_animated(), |ui| play_buttons(ui, shown, has_steps, out));
+        ui.add_space(GAP);
+        let room = small.then(|| ui.available_width() - if has_rest { rest_width(ui, shown) } else { 0.0 });
+        if room.is_none_or(|room| room >= MIN_TIMES_WIDTH) {
+            times(ui, shown, room);
+        }
+        if !has_rest {
+            return;
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if small {
                 speed_menu(ui, shown, out);
@@ -68,16 +77,25 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: b
     });
 }
 
-fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+/// Between the play buttons and the times.
+const GAP: f32 = 8.0;
+/// Less would only show a few digits.
+const MIN_TIMES_WIDTH: f32 = 40.0;
+
+fn play_width(ui: &Ui) -> f32 {
+    controls::row_height(ui, 40.0)
+}
+
+fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, has_steps: bool, out: &mut Output) {
     let (previous, next) = (controls::with_key(ui, text::PREVIOUS_FRAME), controls::with_key(ui, text::NEXT_FRAME));
-    if icon_button(ui, Icon::StepBack, previous).clicked() {
+    if has_steps && icon_button(ui, Icon::StepBack, previous).clicked() {
         out.commands.push(Command::StepFrames(-1));
     }
-    let size = controls::row_height(ui, 40.0);
-    if play_button(ui, shown.state.playback.playing && shown.is_animated(), size).clicked() {
+    let is_playing = shown.state.playback.playing && shown.is_animated();
+    if play_button(ui, is_playing, play_width(ui)).clicked() {
         out.commands.push(Command::TogglePlaying);
     }
-    if icon_button(ui, Icon::StepForward, next).clicked() {
+    if has_steps && icon_button(ui, Icon::StepForward, next).clicked() {
         out.commands.push(Command::StepFrames(1));
     }
 }
@@ -175,19 +193,11 @@ pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
 fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let mut speed = shown.state.playback.speed;
     let palette = style::palette(ui);
-    if ui
-        .add(
-            egui::DragValue::new(&mut speed)
-                .range(Playback::SPEED)
-                .speed(0.01)
-                .fixed_decimals(2)
-                .suffix("×")
-                .custom_parser(controls::read_number),
-        )
-        .on_hover_text("Speed. Drag, or click to type.")
-        .accessible_name(text::SPEED_VALUE)
-        .changed()
-    {
+    let field = controls::number(ui, [50.0, 0.0], &mut speed, |field| {
+        field.range(Playback::SPEED).speed(0.01).fixed_decimals(2).suffix("×")
+    });
+    field.on_hover_text("Speed. Drag, or click to type.").accessible_name(text::SPEED_VALUE);
+    if speed != shown.state.playback.speed {
         out.commands.push(Command::SetSpeed(speed));
     }
     ui.add_space(4.0);

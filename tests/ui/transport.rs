@@ -6,7 +6,7 @@ use gaitway::ui::text;
 use gaitway_character::anim::{LoopMode, TimeRange};
 use gaitway_scene::state::{ClipChoice, Command};
 
-use crate::bench::{NARROW, WIDE, drag, press, sample_bench};
+use crate::bench::{NARROW, WIDE, drag, press, press_key, sample_bench};
 
 #[test]
 fn play_becomes_pause() {
@@ -37,6 +37,25 @@ fn loop_modes_are_chosen_side_by_side_or_in_turn() {
     for (label, next) in in_turn {
         assert_eq!(press(&mut harness, label), [Command::SetLoopMode(next)]);
     }
+}
+
+#[test]
+fn esc_leaves_a_number_as_it_was_before_typing() {
+    let mut harness = sample_bench(WIDE);
+    let mut typed = |number: &str, key| {
+        harness.get_by_label(text::SPEED_VALUE).focus();
+        harness.run();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        harness.get_by_label(text::SPEED_VALUE).type_text(number);
+        harness.run();
+        let meanwhile = std::mem::take(&mut harness.state_mut().commands);
+        assert_eq!(meanwhile, [], "nothing is set while typing");
+        press_key(&mut harness, key)
+    };
+    assert_eq!(typed("3", egui::Key::Escape), []);
+    assert_eq!(typed("2,5", egui::Key::Enter), [Command::SetSpeed(2.5)]);
+    assert_eq!(typed("0.5", egui::Key::Escape), []);
+    assert_eq!(harness.state().state().playback.speed, 2.5);
 }
 
 #[test]

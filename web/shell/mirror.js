@@ -210,6 +210,11 @@ export class Mirror {
     const { type = "", role = null } = target instanceof HTMLInputElement || target instanceof HTMLButtonElement ? target : {};
     const kind = role === "spinbutton" ? role : type;
     const isCommand = ctrlKey || metaKey;
+    // What is being typed isn't the program's yet: the field shows its number again.
+    if (kind === "spinbutton" && key === "Escape" && target instanceof HTMLInputElement && target.dataset.typing !== undefined) {
+      delete target.dataset.typing;
+      target.value = target.ariaValueNow ?? "";
+    }
     const next = isCommand ? undefined : neighbourOf(target, key);
     if (next !== undefined) {
       if (event.type === "keydown") {

@@ -244,15 +244,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
         let width = (ui.available_width() - 12.0) / 3.0;
         for (angle, (axis, prefix)) in degrees.iter_mut().zip([("X", "X "), ("Y", "Y "), ("Z", "Z ")]) {
             let field = controls::number(ui, [width, 26.0], angle, |field| {
-                field
-                    .speed(0.5)
-                    .range(-180.0..=180.0)
-                    .max_decimals(1)
-                    // Typing an angle is a single undo step, not one per digit.
-                    .update_while_editing(false)
-                    .custom_parser(controls::read_number)
-                    .prefix(prefix)
-                    .suffix("°")
+                field.speed(0.5).range(-180.0..=180.0).max_decimals(1).prefix(prefix).suffix("°")
             });
             controls::named(&field, || text::rotation_offset_about(axis));
         }

@@ -58,13 +58,11 @@ pub fn coordinates(ui: &mut Ui, topic: &str, point: &mut Vec3) -> bool {
                     .max_decimals(2)
                     .prefix(name)
                     .suffix(" m")
-                    .custom_parser(controls::read_number)
                     // Values that round to zero have no sign.
                     .custom_formatter(|value, decimals| {
                         let value = egui::emath::round_to_decimals(value, 2) + 0.0;
                         egui::emath::format_with_decimals_in_range(value, decimals)
                     })
-                    .update_while_editing(false)
             });
             controls::named(&field, || text::labelled(topic, name.trim_end()));
         }

@@ -91,7 +91,7 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
     ui.horizontal(|ui| {
         for (edge, name) in [(0, "Width in pixels"), (1, "Height in pixels")] {
             controls::number(ui, [90.0, 26.0], &mut settings.size[edge], |field| {
-                field.range(16..=MAX_PICTURE_SIZE).suffix(" px").custom_parser(controls::read_number)
+                field.range(16..=MAX_PICTURE_SIZE).suffix(" px")
             })
             .accessible_name(name);
         }

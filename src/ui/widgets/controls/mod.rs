@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use egui::{Color32, Rect, Response, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 pub use self::choices::{choice, chooser, menu_button, option, segmented, segmented_about, tabs};
-pub use self::numbers::{SliderSettings, is_double_clicked, knob_style, number, read_number, slider};
+pub use self::numbers::{SliderSettings, is_double_clicked, knob_style, number, slider};
 use super::style;
 use crate::ui::text;
 

@@ -6,7 +6,8 @@ use super::{elided, named, row_height, sized};
 use crate::ui::text;
 use crate::ui::widgets::{accessible, style};
 
-/// Adds a field for a number, which `setup` describes.
+/// Adds a field for a number, which `setup` describes. What is typed is one edit, once Enter or a click elsewhere accepts it; Esc
+/// leaves the number as it was. Callers compare the number with the one before.
 pub fn number<N: egui::emath::Numeric>(
     ui: &mut Ui,
     size: [f32; 2],
@@ -14,11 +15,24 @@ pub fn number<N: egui::emath::Numeric>(
     setup: impl for<'a> FnOnce(egui::DragValue<'a>) -> egui::DragValue<'a>,
 ) -> Response {
     let before = *value;
-    let field = sized(ui, size, setup(egui::DragValue::new(value)));
-    if is_swiped(ui, &field) {
+    let field = egui::DragValue::new(value).custom_parser(read_number).update_while_editing(false);
+    let field = sized(ui, size, setup(field));
+    if is_swiped(ui, &field) || is_cancelled(ui, &field) {
         *value = before;
     }
     field
+}
+
+/// Returns whether Esc has taken the keyboard from this field: egui drops what was typed then, but sets it in the next frame, in
+/// which the field counts as just left, too, and Esc is no longer pressed.
+fn is_cancelled(ui: &Ui, field: &Response) -> bool {
+    let id = field.id.with("is cancelled");
+    let was_cancelled = ui.data_mut(|data| data.remove_temp(id)).unwrap_or(false);
+    let is_cancelled = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape));
+    if is_cancelled {
+        ui.data_mut(|data| data.insert_temp(id, true));
+    }
+    was_cancelled || is_cancelled
 }
 
 /// Returns whether a finger on this control moves up or down, or may be about to: then it doesn't drag the control, but scrolls
@@ -138,8 +152,6 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
                 // A link's value may lie outside and stays until it is edited.
                 .clamp_existing_to_range(false)
                 .fixed_decimals(settings.decimals)
-                // What is typed is one edit, not one per key.
-                .update_while_editing(false)
                 .custom_parser(typed)
                 .suffix(settings.suffix)
         });
@@ -152,7 +164,7 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
 }
 
 /// Reads a typed number, whose decimals may follow a comma.
-pub fn read_number(text: &str) -> Option<f64> {
+fn read_number(text: &str) -> Option<f64> {
     let text: String = text.replace('−', "-").split_whitespace().collect();
     // Beside a point, commas would separate thousands.
     let text = if text.contains('.') { text } else { text.replace(',', ".") };
