@@ -10,11 +10,15 @@ use super::widgets::controls::{self, capitals};
 use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, style, text};
 
 const MENU_WIDTH: f32 = 220.0;
+/// Margin to the sides on small screens.
+const SIDE_IF_SMALL: f32 = 6.0;
 /// Smaller screens have no room for the name.
 const NAME_WIDTH: f32 = 350.0;
+/// Buttons of a small screen besides the menu, those first that a tiny one leaves out last.
+const BY_NEED: [&str; 6] = [text::OPEN, text::INSPECTOR, text::CLIPS, text::SHARE, text::UNDO_STEP, text::REDO_STEP];
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let (side, gap) = if local.layout.is_small { (6, 0.0) } else { (10, 4.0) };
+    let (side, gap) = if local.layout.is_small { (SIDE_IF_SMALL as i8, 0.0) } else { (10, 4.0) };
     let frame = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 5, bottom: 3 });
     egui::Panel::top("header").frame(frame).resizable(false).show_separator_line(false).show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -24,6 +28,13 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));
         });
     });
+}
+
+/// Whether the screen has room for one of the buttons in [`BY_NEED`].
+fn has_room(ui: &Ui, label: &str, local: &UiState) -> bool {
+    let width = ui.ctx().content_rect().width() - 2.0 * SIDE_IF_SMALL - controls::button_width(ui, text::MENU);
+    let number = (width / icon_size(ui, ICON_SIZE).x).floor() as usize;
+    !local.layout.is_small || BY_NEED.iter().take(number).any(|shown| *shown == label)
 }
 
 /// Whether there is room for the button that shows the samples; otherwise the menu has it.
@@ -42,7 +53,7 @@ fn left(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
         ui.add_space(4.0);
     }
     if local.layout.is_small {
-        if icon_button(ui, Icon::Open, text::OPEN).clicked() {
+        if has_room(ui, text::OPEN, local) && icon_button(ui, Icon::Open, text::OPEN).clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
         return;
@@ -69,11 +80,11 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     if were_open != (local.help.is_open, local.about_open) && ui.memory(|memory| memory.focused().is_some()) {
         button.request_focus();
     }
-    let share = match local.layout.is_small {
+    let share = |ui: &mut Ui| match local.layout.is_small {
         true => icon_button(ui, Icon::Share, text::SHARE),
         false => ui.button(text::SHARE).on_hover_text("Share a link to this view and all its settings"),
     };
-    if share.clicked() {
+    if has_room(ui, text::SHARE, local) && share(ui).clicked() {
         out.actions.push(UiAction::ShareLink);
     }
     if !local.layout.is_small {
@@ -84,6 +95,9 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
         (Icon::Undo, text::UNDO_STEP, local.host.can_undo, UiAction::Undo),
     ];
     for (icon, label, enabled, action) in steps {
+        if !has_room(ui, label, local) {
+            continue;
+        }
         let label = controls::with_key(ui, label);
         if ui.add_enabled_ui(enabled, |ui| icon_button(ui, icon, label)).inner.clicked() {
             out.actions.push(action);
@@ -93,6 +107,10 @@ fn right(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
 
 /// Shows or hides a panel.
 fn panel_button(ui: &mut Ui, panel: Sheet, local: &mut UiState) {
+    let of_small = if panel == Sheet::Clips { text::CLIPS } else { text::INSPECTOR };
+    if !has_room(ui, of_small, local) {
+        return;
+    }
     let layout = &mut local.layout;
     let is_open = layout.sheet == Some(panel);
     let (icon, label) = match (panel, layout.is_small) {

@@ -343,6 +343,10 @@ const SMALL_WIDTH: f32 = 700.0;
 /// The same for screens lower than [`LOW_HEIGHT`]: phones held sideways, where side panels would leave no viewport.
 const SMALL_WIDTH_IF_LOW: f32 = 1000.0;
 const LOW_HEIGHT: f32 = 450.0;
+/// Lower screens have room for the transport, but not for the header as well.
+const MIN_HEIGHT_FOR_HEADER: f32 = 200.0;
+/// Lower screens are all viewport.
+const MIN_HEIGHT_FOR_TRANSPORT: f32 = 150.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
@@ -351,7 +355,8 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     let small = is_small(ui);
     local.layout.is_small = small;
     style::size_controls(ui, small);
-    if !shown.state.page.embed {
+    let height = ui.ctx().content_rect().height();
+    if !shown.state.page.embed && height >= MIN_HEIGHT_FOR_HEADER {
         header::show(ui, &shown, local, out);
     }
     let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
@@ -370,11 +375,13 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     }
     let side = if small { 6 } else { 12 };
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
-    egui::Panel::bottom("transport")
-        .frame(bottom)
-        .resizable(false)
-        .show_separator_line(false)
-        .show(ui, |ui| transport::show(ui, &shown, local, small, out));
+    if height >= MIN_HEIGHT_FOR_TRANSPORT {
+        egui::Panel::bottom("transport")
+            .frame(bottom)
+            .resizable(false)
+            .show_separator_line(false)
+            .show(ui, |ui| transport::show(ui, &shown, local, small, out));
+    }
     if !small && !shown.state.page.embed {
         side_panels(ui, &shown, local, out);
     }

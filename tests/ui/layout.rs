@@ -130,6 +130,32 @@ fn a_sheet_takes_a_tiny_screen() {
     }
 }
 
+/// What doesn't fit is left out.
+#[test]
+fn nothing_overlaps_on_a_tiny_screen() {
+    let shown_on = |size: [f32; 2]| {
+        let harness = sample_bench(size);
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let buttons: Vec<_> = harness
+            .query_all_by_role(Role::Button)
+            .map(|button| (button.accesskit_node().label(), button.rect()))
+            .collect();
+        for (at, (label, rect)) in buttons.iter().enumerate() {
+            assert!(screen.expand(0.5).contains_rect(*rect), "{label:?} at {rect:?} on {size:?}");
+            for (other, other_rect) in &buttons[at + 1..] {
+                assert!(!rect.shrink(0.5).intersects(other_rect.shrink(0.5)), "{label:?} and {other:?} on {size:?}");
+            }
+        }
+        [text::MENU, text::PLAY, text::FRAME_ALL].map(|label| harness.query_by_label(label).is_some())
+    };
+    assert_eq!(shown_on([320.0, 400.0]), [true; 3]);
+    assert_eq!(shown_on([260.0, 300.0]), [true; 3]);
+    assert_eq!(shown_on([200.0, 240.0])[..2], [true; 2]);
+    assert_eq!(shown_on([200.0, 160.0])[..2], [false, true]);
+    assert!(!shown_on([120.0, 100.0])[1]);
+    shown_on([120.0, 170.0]);
+}
+
 /// A phone held sideways.
 const ON_ITS_SIDE: [f32; 2] = [844.0, 390.0];
 

@@ -6,16 +6,22 @@ use gaitway_scene::state::Command;
 use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 
+/// To the edges of the viewport.
+const MARGIN: f32 = 10.0;
+
 pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let is_embedded = shown.state.page.embed;
     if is_embedded && !local.host.has_gallery {
         return;
     }
     let height = icon_size(ui, ICON_SIZE).y + 4.0;
+    if rect.height() < height + MARGIN {
+        return;
+    }
     // The viewport reaches under the corner of a sheet at its side.
     let sheet = local.layout.sheet_rect.filter(|sheet| sheet.left() > rect.left());
     let right = sheet.map_or(rect.right(), |sheet| sheet.left());
-    let strip = Rect::from_min_size(rect.min + vec2(10.0, 10.0), vec2(right - rect.left() - 20.0, height));
+    let strip = Rect::from_min_size(rect.min + vec2(MARGIN, MARGIN), vec2(right - rect.left() - 2.0 * MARGIN, height));
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     // Translucent, legible over any scene.
     let fill = style::palette(ui).panel.gamma_multiply(0.86);
