@@ -37,6 +37,18 @@ pub fn mirror_focus(has_focus: bool) {
     }
 }
 
+/// Closes the menu that is open, as a click in the canvas would; false if none is. For what the user does elsewhere on the page.
+#[wasm_bindgen]
+pub fn close_menu() -> bool {
+    let Ok(page) = page() else { return false };
+    let is_open = egui::Popup::is_any_open(&page.context);
+    if is_open {
+        egui::Popup::close_all(&page.context);
+        page.inbox.wake();
+    }
+    is_open
+}
+
 fn with_mirror(change: impl FnOnce(&mut Mirror)) {
     let Ok(page) = page() else { return };
     page.context.with_plugin(change);

@@ -77,9 +77,11 @@ lowScreen.addEventListener("change", () => showIfHigh(isHiddenByHeight || !galle
 addEventListener("keydown", (event) => {
   const isHere = event.target === document.body || gallery.contains(/** @type {Node} */ (event.target));
   if (event.key !== "Escape" || gallery.hidden || gallery.inert || !isHere) return;
-  setShown(false);
+  if (program.app?.close_menu() !== true) setShown(false);
   event.preventDefault();
 });
+// The canvas doesn't see it.
+gallery.addEventListener("pointerdown", () => program.app?.close_menu());
 // After a click the keyboard controls the viewport; after a key press the focus stays here, unless a low screen closes the samples.
 for (const card of cards)
   card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => {

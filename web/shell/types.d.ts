@@ -158,6 +158,7 @@ export interface Bindings {
   mirror_act(id: string, action: "focus" | "blur" | "click" | "more" | "less" | "set", value?: number | string): void;
   mirror_key(name: string, code: string, pressed: boolean, alt: boolean, ctrl: boolean, shift: boolean, meta: boolean): void;
   mirror_focus(hasFocus: boolean): void;
+  close_menu(): boolean;
   open(items: ReadItem[], role: "any" | "motion", isPrivate: boolean, isByHand: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
