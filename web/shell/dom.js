@@ -22,6 +22,13 @@ export const dialog = (id) => byId(id, HTMLDialogElement);
 /** Whether a dialog is open. It has to be answered before another one opens. */
 export const isDialogOpen = () => document.querySelector("dialog[open]") !== null;
 
+/** Closes what was asked or shown about the view so far, for one that the user opens. */
+export function closeDialogs() {
+  for (const id of ["open", "missing", "share"]) dialog(id).close();
+  // It isn't asked for later, as Escape would say.
+  if (dialog("bring").open) dialog("bring").close("opened");
+}
+
 /** @param {string} id */
 export const field = (id) => byId(id, HTMLInputElement);
 

@@ -1,6 +1,6 @@
 // Dropped files, folders and links, taken before the canvas sees them.
 import { refuse } from "./changes.js";
-import { byId, dialog, isDialogOpen } from "./dom.js";
+import { byId, closeDialogs, isDialogOpen } from "./dom.js";
 import { EMPTY_FOLDER } from "./open-dialog.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
@@ -53,10 +53,7 @@ function onDrag(event) {
   } else {
     const as = showSheet(event);
     hideSheet();
-    dialog("open").close();
-    dialog("bring").close("drop");
-    // Its link is that of another view.
-    dialog("share").close();
+    closeDialogs();
     droppedItems(transfer).then((items) => openByHand(items, { as }), refuse);
   }
 }

@@ -17,12 +17,13 @@ performs({
   },
   closeAsk: () => dialog("bring").close("link"),
   report({ problems, title, rest, without }) {
+    dialog("missing").close();
     sayProblem(problems.join(" "));
     showList("missing-parts", problems);
     byId("missing-title").textContent = title;
     byId("missing-rest").textContent = rest;
     byId("missing-continue").textContent = without;
-    if (panel() === null && !dialog("missing").open) showDialog("missing", button("missing-again"));
+    if (panel() === null) showDialog("missing", button("missing-again"));
   },
   closeReport: () => dialog("missing").close(),
 });

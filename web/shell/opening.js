@@ -1,7 +1,7 @@
 // Opening: what a script or the user gives becomes items of the session, and its tasks are done: files are read, and the program
 // shows them. The page keeps the files; the session knows their numbers and names.
 import { summarize } from "./changes.js";
-import { messageOf } from "./dom.js";
+import { closeDialogs, messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
 import { hideGallery } from "./gallery.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -67,6 +67,7 @@ export async function open(given, { as, by = "script" } = {}) {
  */
 export function openByHand(given, { as } = {}) {
   if (given.length === 0) return;
+  closeDialogs();
   const link = ownLink(given);
   if (link !== undefined && as !== "motion") {
     location.hash = link;

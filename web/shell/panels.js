@@ -41,12 +41,16 @@ export function sayNews(message) {
 }
 
 /**
- * Tells screen readers about an error, which the app shows as well.
+ * Tells screen readers about an error, which the app shows as well, but dimmed while a dialog is open: so that shows it, too.
  * @param {string} message
  */
 export function sayProblem(message) {
   byId("problem").textContent = message;
+  const line = document.querySelector("dialog[open] .problem");
+  if (line !== null) line.textContent = message;
 }
+
+for (const line of document.querySelectorAll("dialog .problem")) line.closest("dialog")?.addEventListener("close", () => (line.textContent = ""));
 
 /** Updating the progress with every chunk of a file would block the page. */
 const PROGRESS_INTERVAL_MS = 100;
