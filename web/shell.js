@@ -9,6 +9,7 @@ import { launch } from "./shell/instance.js";
 import "./shell/link-dialogs.js";
 import { install } from "./shell/offline.js";
 import { showOpenDialog } from "./shell/open-dialog.js";
+import "./shell/paste.js";
 import { shareScrolling } from "./shell/scrolling.js";
 import "./shell/share.js";
 
