@@ -38,6 +38,8 @@ pub const VERSION: &str = concat!("Version ", env!("CARGO_PKG_VERSION"));
 pub const QUICK_BUILD: &str = "A quick build, to try a change: larger and slower than the page that is published.";
 /// The licence, in that box.
 pub const LICENCE: &str = "Free and open source: MIT or Apache 2.0, at your option. Your files stay on your computer.";
+/// What is private, in that box.
+pub const PRIVACY: &str = "Gaitway asks nothing and tracks nothing: no account, no cookies, no analytics.";
 /// Link in that box.
 pub const DOCUMENTATION: &str = "Documentation";
 /// Link in that box.

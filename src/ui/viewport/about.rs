@@ -26,6 +26,7 @@ fn contents(ui: &mut Ui, out: &mut Output) -> bool {
         ui.add(egui::Label::new(text::QUICK_BUILD).wrap());
     }
     ui.add(egui::Label::new(RichText::new(text::LICENCE).color(weak)).wrap());
+    ui.add(egui::Label::new(RichText::new(text::PRIVACY).color(weak)).wrap());
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         for (label, url) in
