@@ -21,6 +21,8 @@ const worker = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (
 const { scope } = worker.registration;
 const PREFIX = `gaitway ${scope} `;
 const CACHE = PREFIX + VERSION;
+/** What was shared with the app, until the page takes it (shell/offline.js). It belongs to no version. */
+const SHARED = `gaitway-shared ${scope}`;
 /** `_bg`: programs of earlier versions. */
 const HASHED = /-[0-9a-f]{16}(_bg)?\.\w+$/;
 
@@ -86,11 +88,29 @@ worker.addEventListener("message", (event) => {
 
 worker.addEventListener("fetch", (event) => {
   const { method, mode, url, headers } = event.request;
+  if (method === "POST" && mode === "navigate" && url === `${scope}share`) return event.respondWith(share(event.request));
   if (method !== "GET" || !url.startsWith(scope) || headers.has("range")) return;
   const path = url.slice(scope.length).split(/[?#]/)[0];
   if (mode === "navigate" ? path === "" || path === "index.html" : FILES.includes(path) || HASHED.test(path))
     event.respondWith(answer(event.request, mode === "navigate" ? "./" : path));
 });
+
+/**
+ * Keeps what another app shares (`share_target` in the manifest) and leads to the page, which opens it.
+ * @param {Request} request
+ */
+async function share(request) {
+  // What can't be read is as good as nothing: the page says so.
+  const form = await request.formData().catch(() => new FormData());
+  await caches.delete(SHARED);
+  const cache = await caches.open(SHARED);
+  const files = form.getAll("files").filter((file) => file instanceof File);
+  for (const [index, file] of files.entries()) await cache.put(`shared/${index}`, new Response(file, { headers: { "x-name": encodeURIComponent(file.name) } }));
+  // Apps put a URL in either.
+  const text = ["url", "text"].map((name) => form.get(name) ?? "").join("\n");
+  if (files.length === 0) await cache.put("shared/text", new Response(text));
+  return Response.redirect(`${scope}?shared`, 303);
+}
 
 /**
  * @param {Request} request

@@ -35,7 +35,7 @@ pub use error::OpenError;
 pub(crate) use error::describe;
 pub use image_limits::ImageLimits;
 pub use png::encode_png;
-pub use read::Item;
+pub use read::{Item, extensions};
 #[cfg(not(target_arch = "wasm32"))]
 pub use save::{SaveError, create_temporary, is_stream, refuse_input, save_file};
 pub use sort::{Role, SortError, Sorted, read_map, sort};

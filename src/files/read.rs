@@ -37,6 +37,14 @@ const MAX_ROUNDS: usize = 4;
 /// Extensions that identify the model among the items, besides those of files that may be motions.
 const MODEL_EXTENSIONS: [&str; 2] = ["obj", "zip"];
 
+/// Extensions of files that go with a model, in lower case: its parts, an environment, a joint map.
+const COMPANION_EXTENSIONS: [&str; 4] = ["skel", "attach", "hdr", "json"];
+
+/// Returns the extensions of all files that can be opened but images and buffers, in lower case.
+pub fn extensions() -> impl Iterator<Item = &'static str> {
+    GLTF_EXTENSIONS.into_iter().chain(OTHER_MOTION_EXTENSIONS).chain(MODEL_EXTENSIONS).chain(COMPANION_EXTENSIONS)
+}
+
 pub(super) async fn read_items<S: Source>(
     source: &S,
     items: Vec<Item>,

@@ -6,5 +6,6 @@ mod address;
 mod build_gltf;
 mod decode;
 mod early;
+mod extensions;
 mod samples;
 mod sets;

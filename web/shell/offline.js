@@ -1,16 +1,44 @@
 // The page as an installed app: it works offline after the first visit (sw.js), announces new versions, and opens files
 // that the system hands it.
+import { refuse } from "./changes.js";
 import { button, byId } from "./dom.js";
 import { openByHand } from "./opening.js";
 import { program } from "./running.js";
+import { urlsWithin } from "./urls.js";
+
+/** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 
 /** In a frame of another site nobody visits this page, so nothing is stored; a sandboxed one may not even ask. */
 const isStored = parent === window && "serviceWorker" in navigator;
 
 export function install() {
   window.launchQueue?.setConsumer(async ({ files }) => openByHand(await Promise.all(files.map((handle) => handle.getFile()))));
+  if (new URLSearchParams(location.search).has("shared")) openShared();
   // Don't delay the first image.
   if (isStored) program.started.then(register, register);
+}
+
+/** Opens what another app has shared, which the service worker keeps until then. Only once: a reload doesn't open it again. */
+async function openShared() {
+  const address = new URL(location.href);
+  address.searchParams.delete("shared");
+  history.replaceState(history.state, "", address);
+  const name = `gaitway-shared ${new URL("./", location.href)}`;
+  const cache = await caches.open(name);
+  const items = await Promise.all((await cache.keys()).map(async (key) => sharedItems(await cache.match(key))));
+  await caches.delete(name);
+  if (items.flat().length > 0) openByHand(items.flat());
+  else refuse("What was shared has no file or URL that Gaitway could open.");
+}
+
+/**
+ * @param {Response | undefined} response
+ * @returns {Promise<(string | NamedFile)[]>}
+ */
+async function sharedItems(response) {
+  if (response === undefined) return [];
+  const name = response.headers.get("x-name");
+  return name === null ? urlsWithin(await response.text()) : [{ name: decodeURIComponent(name), content: await response.blob() }];
 }
 
 /**
