@@ -209,6 +209,10 @@ impl Random {
         }
     }
 
+    fn skinning(&mut self) -> SkinningMode {
+        self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion])
+    }
+
     fn set(&mut self, state: &mut ViewerState, field: usize) {
         let CharacterView { sources, retarget, edits, playhead } = &mut state.character;
         match field {
@@ -237,10 +241,7 @@ impl Random {
                 let (a, b) = (f64::from(self.number()), f64::from(self.number()));
                 playhead.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
             }
-            14 => {
-                state.display.skinning =
-                    self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion])
-            }
+            14 => state.display.skinning = self.skinning(),
             15 => edits.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
             16 => {
                 let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
