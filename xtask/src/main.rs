@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+mod clang;
 mod data;
 mod page;
 mod process;

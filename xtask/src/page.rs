@@ -11,13 +11,13 @@ use std::thread;
 use anyhow::{Context, anyhow};
 use wasm_bindgen_cli_support::Bindgen;
 
-use crate::process::{Step, repository, run, target_folder, text};
-use crate::setup;
+use crate::clang;
+use crate::process::{Step, repository, run, run_with, target_folder, text};
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
-/// The packages in parts/ that are built as separate modules.
-const PARTS: [&str; 7] = ["draco", "fbx", "ktx2", "meshopt", "npz", "qr", "x"];
+/// The packages in parts/ that are built as separate modules, besides that of [`build_fbx_part`].
+const PARTS: [&str; 6] = ["draco", "ktx2", "meshopt", "npz", "qr", "x"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
@@ -65,13 +65,14 @@ impl Build {
     fn compile(self, features: &[&str]) -> anyhow::Result<()> {
         let features = [&["viewer"], features].concat().join(",");
         let cargo = ["build", "--bin", "gaitway", "--no-default-features", "--features", &features];
-        run_cargo(&cargo, &self.for_the_page()?, &[])
+        run_cargo(&cargo, &self.for_the_page()?, &[], &[])
     }
 }
 
-fn run_cargo(arguments: &[&str], more: &[String], last: &[&str]) -> anyhow::Result<()> {
-    let more = more.iter().map(String::as_str);
-    run("cargo", &arguments.iter().copied().chain(more).chain(last.iter().copied()).collect::<Vec<_>>())
+fn run_cargo(arguments: &[&str], more: &[String], last: &[&str], variables: &[(&str, String)]) -> anyhow::Result<()> {
+    let more: Vec<&str> = more.iter().map(String::as_str).collect();
+    let variables: Vec<(&str, &str)> = variables.iter().map(|(name, value)| (*name, value.as_str())).collect();
+    run_with("cargo", &[arguments, &more, last].concat(), &variables)
 }
 
 /// Removes the builder's folders from panic locations: paths in dependencies begin with the registry's folder.
@@ -105,12 +106,16 @@ pub fn build(build: Build, features: &[&str], url: Option<&str>) -> anyhow::Resu
         Build::Optimized => optimized_programs(features)?,
         Build::Quick => quick_program(features)?,
     }
-    let has_clang = setup::has_clang();
-    PARTS.into_iter().try_for_each(|part| build_part(build, part, has_clang))?;
+    PARTS.into_iter().try_for_each(|part| build_part(build, part, &[]))?;
+    let without_fbx = build_fbx_part(build)?;
     let (dist, programs) = (dist(), build.programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
-    run("node", &arguments)
+    run("node", &arguments)?;
+    if let Some(reason) = without_fbx {
+        eprintln!("\nThis page will not open FBX files: {reason:#}");
+    }
+    Ok(())
 }
 
 fn optimized_programs(features: &[&str]) -> anyhow::Result<()> {
@@ -223,24 +228,28 @@ fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
     run("node", &[&wasm_opt, &WASM_FEATURES[..], &[text(from)?, "-o", text(to)?]].concat())
 }
 
-/// Returns why a part cannot be built, and what the page won't do.
-fn omission(part: &str, has_clang: bool) -> Option<&'static str> {
-    (part == "fbx" && !has_clang).then_some("clang for wasm32 is missing, so this page will not open FBX files")
+/// Builds the only part that needs a C compiler. If there is none, the page goes without the part, and the reason is returned.
+fn build_fbx_part(build: Build) -> anyhow::Result<Option<anyhow::Error>> {
+    match clang::for_wasm() {
+        Ok(variables) => build_part(build, "fbx", &variables).map(|()| None),
+        Err(reason) => {
+            // Left over from an earlier build.
+            let _ = fs::remove_file(part_path(build, "fbx"));
+            Ok(Some(reason))
+        }
+    }
 }
 
-fn build_part(build: Build, part: &str, has_clang: bool) -> anyhow::Result<()> {
-    let folder = build.programs().join("parts");
-    fs::create_dir_all(&folder)?;
-    let wasm = folder.join(format!("{part}.wasm"));
-    if let Some(omission) = omission(part, has_clang) {
-        eprintln!("{omission}");
-        // Left over from an earlier build.
-        let _ = fs::remove_file(wasm);
-        return Ok(());
-    }
+fn part_path(build: Build, part: &str) -> PathBuf {
+    build.programs().join(format!("parts/{part}.wasm"))
+}
+
+fn build_part(build: Build, part: &str, variables: &[(&str, String)]) -> anyhow::Result<()> {
+    let wasm = part_path(build, part);
+    fs::create_dir_all(build.programs().join("parts"))?;
     let package = format!("gaitway-{part}");
     let cargo = ["rustc", "--package", &package, "--bin", &package];
-    run_cargo(&cargo, &build.for_the_page()?, &["--", "-C", MAX_PART_MEMORY])?;
+    run_cargo(&cargo, &build.for_the_page()?, &["--", "-C", MAX_PART_MEMORY], variables)?;
     let compiled = build.compiled(&package);
     if build == Build::Quick {
         fs::copy(compiled, wasm)?;

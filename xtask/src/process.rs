@@ -57,25 +57,27 @@ pub fn run_with(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -
 
 /// A running command, for callers that need more than [`run_with`] offers.
 pub struct Step {
-    shown: String,
+    command: String,
     start: Instant,
 }
 
 impl Step {
     pub fn start(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
-        let set: String = variables.iter().map(|(name, value)| format!("{name}=\"{value}\" ")).collect();
-        let shown = format!("{set}{program} {}", arguments.join(" "));
-        eprintln!("\n> {shown}");
-        Self { shown, start: Instant::now() }
+        // PATH is long, and its last part is the reader's own.
+        let set = variables.iter().filter(|(name, _)| *name != "PATH");
+        let set: String = set.map(|(name, value)| format!("{name}=\"{value}\" ")).collect();
+        let command = format!("{program} {}", arguments.join(" "));
+        eprintln!("\n> {set}{command}");
+        Self { command, start: Instant::now() }
     }
 
     /// Records the time. An error says which command failed.
     pub fn end(self, outcome: anyhow::Result<()>) -> anyhow::Result<()> {
         let took = self.start.elapsed();
         eprintln!("  {:.1} s", took.as_secs_f32());
-        let outcome = outcome.with_context(|| self.shown.clone());
+        let outcome = outcome.with_context(|| self.command.clone());
         if let Ok(mut times) = TIMES.lock() {
-            times.push((self.shown, took));
+            times.push((self.command, took));
         }
         outcome
     }

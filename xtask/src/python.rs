@@ -20,10 +20,19 @@ pub fn is_present() -> bool {
     output(PYTHON, &["-c", "import ensurepip, venv"]).is_some()
 }
 
+/// Returns an interpreter that has pip, if there is Python: the system's or, where distributions leave pip out of it, the
+/// environment's.
+pub fn with_pip() -> Option<String> {
+    let has_pip = |python: &String| output(python, &["-m", "pip", "--version"]).is_some();
+    let own = interpreter().ok()?;
+    let found = [PYTHON.to_owned(), own.clone()].into_iter().find(has_pip);
+    found.or_else(|| (is_present() && make_environment().is_ok()).then_some(own))
+}
+
 /// Makes the environment. Without Ray or Blender, its test is skipped, and the next call tries again.
 pub fn setup() -> anyhow::Result<()> {
     if output(&program("python")?, &["--version"]).is_none() || !is_installed(REQUIREMENTS) {
-        run(PYTHON, &["-m", "venv", "--clear", text(&environment())?])?;
+        make_environment()?;
         install(REQUIREMENTS)?;
     }
     for (name, requirements) in LARGE {
@@ -53,6 +62,10 @@ pub fn test(cli: &str) -> anyhow::Result<()> {
     let build = ["develop", "--locked", "--quiet", "--manifest-path", "python/Cargo.toml"];
     run_with(&program("maturin")?, &build, &[("VIRTUAL_ENV", text(&environment())?)])?;
     run_with(&program("python")?, &["-m", "pytest", "--quiet", "python"], &[("GAITWAY_CLI", cli)])
+}
+
+fn make_environment() -> anyhow::Result<()> {
+    run(PYTHON, &["-m", "venv", "--clear", text(&environment())?])
 }
 
 fn environment() -> PathBuf {

@@ -19,12 +19,7 @@ pub fn page() -> anyhow::Result<()> {
     npm_packages()
 }
 
-/// Whether there is a C compiler for wasm, which the page's FBX reader needs. Apple's clang isn't one.
-pub fn has_clang() -> bool {
-    output("clang", &["--print-targets"]).is_some_and(|targets| targets.contains("wasm32"))
-}
-
-/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver, clang and Python with some packages.
+/// What the tests need on top of [`page`]: a browser, ffmpeg, a software Vulkan driver and Python with some packages.
 pub fn tests() -> anyhow::Result<()> {
     let missing = missing_packages();
     if !missing.is_empty() {
@@ -60,9 +55,6 @@ fn missing_packages() -> Vec<&'static str> {
         missing.push("python3-venv");
     }
     if cfg!(target_os = "linux") {
-        if !has_clang() {
-            missing.push("clang");
-        }
         if !has_vulkan_driver() {
             missing.push("mesa-vulkan-drivers");
         }
