@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use crate::process::{is_ci, output, repository, run};
+use crate::process::{output, repository, run};
 use crate::python;
 
 const WASM: &str = "wasm32-unknown-unknown";
@@ -28,16 +28,16 @@ pub fn tests() -> anyhow::Result<()> {
     python::setup()
 }
 
-/// Installs system packages, but only on a CI machine; anyone else is told the command.
+/// Installs system packages where that takes no password; otherwise the error has the command.
 fn system_packages(missing: &[&str]) -> anyhow::Result<()> {
     let names = missing.join(" ");
     if !cfg!(target_os = "linux") || output("apt-get", &["--version"]).is_none() {
         bail!("missing: {names}. Install the equivalents for this system, and set CHROMIUM to the browser's path");
     }
-    if !is_ci() {
+    let is_root = output("id", &["-u"]).as_deref() == Some("0");
+    if !is_root && output("sudo", &["-n", "true"]).is_none() {
         bail!("missing: {names}. Install with: sudo apt-get install --no-install-recommends {names}");
     }
-    let is_root = output("id", &["-u"]).as_deref() == Some("0");
     let (program, first): (&str, &[&str]) = if is_root { ("apt-get", &[]) } else { ("sudo", &["-n", "apt-get"]) };
     run(program, &[first, &["update"]].concat())?;
     run(program, &[first, &["install", "--yes", "--no-install-recommends"], missing].concat())
@@ -46,7 +46,7 @@ fn system_packages(missing: &[&str]) -> anyhow::Result<()> {
 fn missing_packages() -> Vec<&'static str> {
     let mut missing = Vec::new();
     if chromium().is_none() {
-        missing.push("chromium");
+        missing.push(if is_ubuntu() { "chromium-browser" } else { "chromium" });
     }
     if output("ffmpeg", &["-version"]).is_none() {
         missing.push("ffmpeg");
@@ -77,6 +77,10 @@ pub fn chromium() -> Option<PathBuf> {
     ];
     let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
     named.into_iter().chain(COMMON_PATHS.map(PathBuf::from)).find(|path| path.exists())
+}
+
+fn is_ubuntu() -> bool {
+    fs::read_to_string("/etc/os-release").is_ok_and(|release| release.lines().any(|line| line == "ID=ubuntu"))
 }
 
 fn has_wasm_target() -> bool {
