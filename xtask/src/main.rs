@@ -10,6 +10,7 @@ mod python;
 mod setup;
 mod sizes;
 mod test;
+mod trunk;
 
 use std::process::ExitCode;
 
@@ -20,6 +21,7 @@ const USAGE: &str = "\
 cargo xtask serve [--port N]   builds the page quickly and serves it on 127.0.0.1 (port 8080)
 cargo xtask build [--url URL]  builds the page into dist/, small and fast, for any host; link previews need the URL it will have
 cargo xtask build --bench      the same, with the hooks that benches/web measures through
+cargo xtask trunk              builds the page for `trunk serve` and `trunk build`, which call it
 cargo xtask test               runs every check and test, the cheap ones first
 cargo xtask data               downloads the public test models into ../shared/data (or $GAITWAY_DATA)
 cargo xtask pictures           redraws the pictures in README.md, docs/ and the gallery
@@ -45,6 +47,7 @@ fn run() -> anyhow::Result<()> {
         ["build", "--url", url] => build_page(&[], Some(&site_url(url)?)),
         ["build", "--bench"] => build_page(&["bench"], None),
         ["pictures"] => redraw_pictures(),
+        ["trunk"] => trunk::run(),
         ["test"] => test::run(),
         ["data"] => data::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
@@ -59,8 +62,8 @@ fn run() -> anyhow::Result<()> {
 
 fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(Build::Optimized, features, url)?;
-    sizes::compress_and_print(features.is_empty())
+    page::build(Build::Optimized, features, url, &page::dist())?;
+    sizes::compress_and_print(features.is_empty(), &page::dist())
 }
 
 /// The site's base URL, with the trailing slash that relative URLs need.
@@ -78,7 +81,7 @@ fn redraw_pictures() -> anyhow::Result<()> {
 
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(Build::Quick, &[], None)?;
+    page::build(Build::Quick, &[], None, &page::dist())?;
     println!("{}", process::time_table());
     page::serve(port)
 }

@@ -100,16 +100,16 @@ pub fn dist() -> PathBuf {
     repository().join("dist")
 }
 
-/// `url` is the site's future URL, for link previews.
-pub fn build(build: Build, features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
+/// Builds the page into a folder. `url` is the site's future URL, for link previews.
+pub fn build(build: Build, features: &[&str], url: Option<&str>, dist: &Path) -> anyhow::Result<()> {
     match build {
         Build::Optimized => optimized_programs(features)?,
         Build::Quick => quick_program(features)?,
     }
     PARTS.into_iter().try_for_each(|part| build_part(build, part, &[]))?;
     let without_fbx = build_fbx_part(build)?;
-    let (dist, programs) = (dist(), build.programs());
-    let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
+    let programs = build.programs();
+    let mut arguments = vec!["xtask/site/finish.mjs", text(dist)?, text(&programs)?];
     arguments.extend(url);
     run("node", &arguments)?;
     if let Some(reason) = without_fbx {

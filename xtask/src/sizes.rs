@@ -3,7 +3,8 @@
 //! Most of a program is not ours: egui, its text, wgpu and the standard library. The text font takes 19 KB (Latin, see
 //! assets/font); the browser draws other scripts and decodes all textures but KTX2.
 
-use crate::page::dist;
+use std::path::Path;
+
 use crate::process::{run, target_folder, text};
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
@@ -22,12 +23,12 @@ const MAX_BYTES: [(&str, u32); 11] = [
 ];
 
 /// If `limited`, fails when anything exceeds [`MAX_BYTES`].
-pub fn compress_and_print(limited: bool) -> anyhow::Result<()> {
-    let (dist, kept) = (dist(), target_folder().join("compressed"));
+pub fn compress_and_print(limited: bool, dist: &Path) -> anyhow::Result<()> {
+    let kept = target_folder().join("compressed");
     let limit = |bytes: u32| if limited { bytes.to_string() } else { "Infinity".to_owned() };
     let limits = MAX_BYTES.map(|(name, bytes)| format!("{name}={}", limit(bytes)));
     run(
         "node",
-        &[&["xtask/site/sizes.mjs", text(&dist)?, text(&kept)?], &limits.each_ref().map(String::as_str)[..]].concat(),
+        &[&["xtask/site/sizes.mjs", text(dist)?, text(&kept)?], &limits.each_ref().map(String::as_str)[..]].concat(),
     )
 }

@@ -20,8 +20,8 @@ pub fn run() -> anyhow::Result<()> {
     let cli = cli();
     let cli = text(&cli)?;
     python::test(cli)?;
-    page::build(page::Build::Optimized, &[], None)?;
-    sizes::compress_and_print(true)?;
+    page::build(page::Build::Optimized, &[], None, &page::dist())?;
+    sizes::compress_and_print(true, &page::dist())?;
     node_tests(cli)
 }
 
