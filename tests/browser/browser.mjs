@@ -3,6 +3,7 @@
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
+import { test } from "node:test";
 import { chromium } from "playwright-core";
 import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, hasData } from "../three/data.mjs";
@@ -37,6 +38,19 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
 
 /** @type {Backend[]} */
 export const BACK_ENDS = ["webgpu", "webgl2"];
+
+/**
+ * Returns a function that declares tests of what doesn't depend on how the page draws: each runs on one back end, in turn.
+ * @param {Backend} renderer The back end of a suite that is declared for each of them.
+ */
+export function onOneBackEnd(renderer) {
+  let declared = 0;
+  /** @type {(name: string, body: (t: import("node:test").TestContext) => Promise<void>, options?: import("node:test").TestOptions) => void} */
+  const declare = (name, body, options = {}) => {
+    if (declared++ % BACK_ENDS.length === BACK_ENDS.indexOf(renderer)) test(name, options, body);
+  };
+  return declare;
+}
 
 /** Small, since a software renderer draws it. */
 export const VIEWPORT = { width: 800, height: 600 };

@@ -1,9 +1,9 @@
 // The page without a pointer: by keyboard, and by what browsers tell assistive technology.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import { after, before, describe, test } from "node:test";
+import { after, before, describe } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, control, eventually, fragment, startSite, state, until, untilStill, whenBorrowed, whenModel } from "./browser.mjs";
+import { BACK_ENDS, control, eventually, fragment, onOneBackEnd, startSite, state, until, untilStill, whenBorrowed, whenModel } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const WALK = "bvh/cmu_01_01.bvh";
@@ -78,13 +78,14 @@ for (const renderer of BACK_ENDS)
     before(async () => (site = await startSite({ isOffScreen: true })));
     after(async () => await site?.close());
 
+    const once = onOneBackEnd(renderer);
     /**
      * @param {string} name
      * @param {() => string} link
      * @param {(page: TestPage) => Promise<void>} body
      */
     const onPage = (name, link, body) =>
-      test(name, async () => {
+      once(name, async () => {
         const page = await site.page({ renderer, link: link(), viewport: { width: 1440, height: 900 } });
         try {
           await whenMirrored(page);

@@ -10,7 +10,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, onOneBackEnd, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown, withLessPatience } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -32,22 +32,6 @@ const missing = (page) => page.locator("#missing-parts li").allInnerTexts();
 const whenMissing = (page) => page.locator("#missing").waitFor({ state: "visible" });
 /** @param {TestPage} page */
 const linkOf = (page) => page.locator("#share-link").inputValue();
-
-/**
- * Stops the program as a trap does.
- * @param {TestPage} page
- */
-const stop = (page) => page.evaluate(() => void dispatchEvent(new ErrorEvent("error", { error: new WebAssembly.RuntimeError("unreachable") })));
-/** @param {TestPage} page */
-async function restart(page) {
-  await page.locator("#stopped-again").click();
-  await whenReady(page);
-}
-/** @param {TestPage} page */
-async function stopAndRestart(page) {
-  await stop(page);
-  await restart(page);
-}
 
 for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
@@ -73,21 +57,25 @@ for (const renderer of BACK_ENDS)
       if (folder !== undefined) fs.rmSync(folder, { recursive: true });
     });
 
+    /** Only the picture depends on the back end. */
+    const once = onOneBackEnd(renderer);
+
     /**
-     * @param {string} name
      * @param {() => string} link
      * @param {(page: TestPage) => Promise<void>} body
      * @param {() => void} [before] Runs in the page before its scripts.
      */
-    const onPage = (name, link, body, before) =>
-      test(name, async () => {
-        const page = await site.page({ renderer, link: link(), before });
-        try {
-          await body(page);
-        } finally {
-          await page.finish();
-        }
-      });
+    const withPage = (link, body, before) => async () => {
+      const page = await site.page({ renderer, link: link(), before });
+      try {
+        await body(page);
+      } finally {
+        await page.finish();
+      }
+    };
+
+    /** @type {(name: string, ...given: Parameters<typeof withPage>) => void} */
+    const onPage = (name, ...given) => once(name, withPage(...given));
 
     onPage(
       "gives the reason for each part that can't be loaded and shows the rest",
@@ -197,7 +185,7 @@ for (const renderer of BACK_ENDS)
       assert.match((await page.locator("#news").textContent()) ?? "", /3 clips/);
     });
 
-    onPage("is the same scene in another browser", () => fragment([["model", site.data(XBOT)]]), async (page) => {
+    const theSame = async (/** @type {TestPage} */ page) => {
       await open(page, site.data(DANCE));
       await apply(page, { t: 1.25, play: 0, camera: "30,10,4,0,1,0", show: "skeleton", root: "in-place", feet: "plant", speed: 0.5, exposure: 0.5 });
       await share(page);
@@ -219,7 +207,8 @@ for (const renderer of BACK_ENDS)
       } finally {
         await other.finish();
       }
-    });
+    };
+    test("is the same scene in another browser", withPage(() => fragment([["model", site.data(XBOT)]]), theSame));
 
     onPage("says which files a link can't include", () => fragment([["model", site.data(XBOT)]]), async (page) => {
       await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
@@ -292,25 +281,6 @@ for (const renderer of BACK_ENDS)
       for (const part of ["motion=file:walk.bvh", "clip=run", "fov=30", "camera=10,5,30,9,1,9"]) assert.ok(link.includes(part), `${part} in ${link}`);
     });
 
-    onPage("goes back from a program that has stopped to files that the page holds", () => "model=sample:walker&play=0", async (page) => {
-      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
-      await whenModel(page, "Fox.glb");
-      await until(page, () => location.hash.includes("Fox.glb"));
-      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
-      await until(page, () => location.hash.includes("CesiumMan.glb"));
-      await stop(page);
-      await page.goBack();
-      await restart(page);
-      assert.deepEqual((await state(page)).model, ["Fox.glb"]);
-      await whenShown(page, FOX_VERTICES);
-      assert.equal(await page.locator("#bring").isVisible(), false);
-      // What has been gone to once isn't gone to again.
-      await drop(page, [{ name: "Man.glb", url: site.data(CESIUM_MAN) }]);
-      await whenModel(page, "Man.glb");
-      await stopAndRestart(page);
-      assert.deepEqual((await state(page)).model, ["Man.glb"]);
-    });
-
     onPage("waits for an archive that the user has to bring and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
       fs.writeFileSync(path.join(folder, "two.zip"), TWO());
       assert.match(await page.locator("#bring-files").innerText(), /^two\.zip \(model\)$/);
@@ -363,7 +333,7 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual(page.troubles, []);
     });
 
-    test("downloads a model once, whatever its address", async () => {
+    once("downloads a model once, whatever its address", async () => {
       fs.copyFileSync(dataFile(FOX), path.join(folder, "red+fox.glb"));
       // Unescaped, as some people write it.
       const page = await site.page({ renderer, link: `model=${servers.own.origin}/red+fox.glb&play=0` });
@@ -410,7 +380,7 @@ for (const renderer of BACK_ENDS)
       return { context, page, inside, call, frame, withheld };
     }
 
-    test("answers the page around it, but tells it nothing about dropped files", async () => {
+    once("answers the page around it, but tells it nothing about dropped files", async () => {
       const { context, page, inside, call, frame, withheld } = await embedded();
       try {
         const { embed, model } = (await call("state")).result;
@@ -459,7 +429,7 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    test("leaves the keyboard to the page around it until the user comes in", async () => {
+    once("leaves the keyboard to the page around it until the user comes in", async () => {
       /** @param {string} link */
       const inside = (link) => `${site.address.replace("127.0.0.1", "localhost")}?renderer=${renderer}#${fragment([["model", link], ["embed", 1], ["play", 0]])}`;
       for (const { model, dialog } of [{ model: "sample:walker" }, { model: "file:Mine.glb", dialog: "#bring" }, { model: `${CLOSED}/a.glb`, dialog: "#missing" }]) {
@@ -488,7 +458,7 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    test("leaves scrolling to the page around it", async () => {
+    once("leaves scrolling to the page around it", async () => {
       const inside = `${site.address}?renderer=${renderer}#${fragment([["model", "sample:walker"], ["embed", 1], ["play", 0]])}`;
       fs.writeFileSync(path.join(folder, "scrolling.html"), `<!doctype html><title>Around</title><style>body { margin: 0; height: 2000px }</style><iframe width="640" height="400" src="${inside.replaceAll("&", "&amp;")}"></iframe>`);
       const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, deviceScaleFactor: PIXEL_RATIO, hasTouch: true });
@@ -543,7 +513,7 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    test("doesn't let the page around it read a dropped model by adding a file to it", async () => {
+    once("doesn't let the page around it read a dropped model by adding a file to it", async () => {
       const { context, page, call, frame, withheld } = await embedded();
       try {
         const { bytes, document: plain } = triangle({ uri: "body.bin" });

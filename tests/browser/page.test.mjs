@@ -5,7 +5,7 @@ import { after, before, describe, test } from "node:test";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { loadScene } from "../three/scene.mjs";
 import { triangle } from "../three/triangle.mjs";
-import { BACK_ENDS, VIEWPORT, apply, colorsOf, controls, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, resize, startSite, state, stats, until, untilStill, whenModel, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, VIEWPORT, apply, colorsOf, controls, drop, eventually, framesDrawnDuring, meanDifference, onOneBackEnd, open, picture, pose, resize, startSite, state, stats, until, untilStill, whenModel, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -73,24 +73,29 @@ console.warn = () => {};
  * Returns a function that declares tests on fresh pages of a site, which must report no errors.
  * @param {import("../../web/shell/types.d.ts").Backend} renderer
  * @param {() => import("./browser.mjs").Site} site
+ * @param {(name: string, body: (t: import("node:test").TestContext) => Promise<void>, options: import("node:test").TestOptions) => void} declare
  */
 const onFreshPages =
-  (renderer, site) =>
+  (renderer, site, declare = (name, body, options) => void test(name, options, body)) =>
   /**
    * @param {string} name
    * @param {{ data?: boolean, link?: () => string, isCalm?: boolean }} options
    * @param {(page: import("./browser.mjs").TestPage, t: import("node:test").TestContext) => Promise<void>} body
    */
   (name, { data = false, link, isCalm }, body) =>
-    test(name, { skip: data ? skipWithoutData : false }, async (t) => {
-      const page = await site().page({ renderer, link: link?.(), ...(isCalm === undefined ? {} : { isCalm }) });
-      try {
-        await body(page, t);
-        assert.deepEqual(page.troubles, []);
-      } finally {
-        await page.finish();
-      }
-    });
+    declare(
+      name,
+      async (t) => {
+        const page = await site().page({ renderer, link: link?.(), ...(isCalm === undefined ? {} : { isCalm }) });
+        try {
+          await body(page, t);
+          assert.deepEqual(page.troubles, []);
+        } finally {
+          await page.finish();
+        }
+      },
+      { skip: data ? skipWithoutData : false },
+    );
 
 for (const renderer of BACK_ENDS) {
   describe(`screen on ${renderer}`, () => {
@@ -164,6 +169,9 @@ for (const renderer of BACK_ENDS) {
       });
 
     const onPage = onFreshPages(renderer, () => site);
+    /** For what doesn't depend on the back end. */
+    const once = onOneBackEnd(renderer);
+    const onPageOnce = onFreshPages(renderer, () => site, once);
 
     onSharedPage("requests nothing from other hosts and works in any folder", {}, async (page) => {
       const { origin } = new URL(page.url());
@@ -341,21 +349,7 @@ for (const renderer of BACK_ENDS) {
       await eventually(async () => (await controls(page, "button", `Close ${name}`).count()) === 1, "it replaces the one without its image");
     };
 
-    for (const order of ["a .gltf, then its files", "files, then their .gltf"])
-      onPage(`puts ${order} together`, {}, async (page) => {
-        const { gltf, buffer, image } = inPieces();
-        const isFirst = order.startsWith("a .gltf");
-        const [first, second, third] = isFirst ? [gltf, buffer, image] : [buffer, image, gltf];
-        await drop(page, [first]);
-        await whenLacking(page, "own.bin");
-        await drop(page, [second]);
-        // Without its image, it is shown.
-        await (isFirst ? whenModel(page, "own.gltf") : whenLacking(page, "own.png"));
-        await drop(page, [third]);
-        await whenWhole(page, "own.gltf");
-      });
-
-    onPage("names the .gltf that lacks a file, not the file that was dropped last", {}, async (page) => {
+    onPageOnce("names the .gltf that lacks a file, not the file that was dropped last", {}, async (page) => {
       const { gltf, buffer, image } = inPieces();
       await drop(page, [gltf]);
       await whenLacking(page, "own.bin");
@@ -366,7 +360,7 @@ for (const renderer of BACK_ENDS) {
       await whenModel(page, "own.gltf");
     });
 
-    onPage("gives a .gltf only the files that it lacks", {}, async (page) => {
+    onPageOnce("gives a .gltf only the files that it lacks", {}, async (page) => {
       const { gltf, buffer, image } = inPieces();
       await drop(page, [gltf, buffer]);
       await whenModel(page, "own.gltf");
@@ -386,7 +380,7 @@ for (const renderer of BACK_ENDS) {
       await whenWhole(page, "other.gltf");
     });
 
-    onPage("puts files together that are dropped without waiting", {}, async (page) => {
+    onPageOnce("puts files together that are dropped without waiting", {}, async (page) => {
       const { gltf, buffer, image } = inPieces("my own");
       for (const file of [gltf, buffer, image]) await drop(page, [file]);
       await whenWhole(page, "my own.gltf");
@@ -425,7 +419,7 @@ for (const renderer of BACK_ENDS) {
       }
     });
 
-    test("gives every error a code", async () => {
+    once("gives every error a code", async () => {
       const page = await site.page({ renderer });
       try {
         const codes = await page.evaluate(async (missing) => {
@@ -487,7 +481,7 @@ for (const renderer of BACK_ENDS) {
       }
     });
 
-    test("stops at an error inside the program, also where a script catches it, and restarts with the same view", async () => {
+    once("stops at an error inside the program, also where a script catches it, and restarts with the same view", async () => {
       const page = await site.page({ renderer, link: "model=sample:walker&play=0&t=0.5", before: trapOnce });
       await assert.rejects(pose(page), /unreachable/);
       const again = page.locator("#stopped-again");
@@ -500,7 +494,7 @@ for (const renderer of BACK_ENDS) {
       await page.finish();
     });
 
-    test("tells message and place of a panic, for a report that can be copied", async () => {
+    once("tells message and place of a panic, for a report that can be copied", async () => {
       const page = await site.page({ renderer, before: panicOnce });
       await assert.rejects(pose(page), /unreachable/);
       await page.locator("#stopped-again").waitFor({ state: "visible" });

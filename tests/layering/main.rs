@@ -233,6 +233,22 @@ fn violations_are_recognized() {
 }
 
 #[test]
+fn a_package_without_unit_tests_has_none() {
+    let mut untested = 0;
+    for (root, ..) in PACKAGES {
+        let package = Path::new(root).parent().unwrap();
+        if fs::read_to_string(package.join("Cargo.toml")).unwrap().contains("[lib]\ntest = false") {
+            untested += 1;
+            let mut files = Vec::new();
+            sources(Path::new(root), &["rs"], &mut files);
+            files.retain(|file| fs::read_to_string(file).unwrap().contains("#[test]"));
+            assert!(files.is_empty(), "nobody runs the tests in {files:?}");
+        }
+    }
+    assert!(untested > 0, "no package is without unit tests");
+}
+
+#[test]
 fn modules_use_only_lower_ranks() {
     let mut all = Vec::new();
     for (path, text) in all_sources() {
