@@ -95,7 +95,7 @@ fn skin_above_the_hips_goes_along() {
         let model = skinned(&body(&top, legs_on), &[]);
         check_in_one_piece(&model, &retargeted(&model, &motion), &[]);
     }
-    // A root without skin is for whoever places the character.
+    // A root without skin stays where the character is placed.
     let model = skinned(&body(&["root", "Hips"], "Hips"), &["root"]);
     check_in_one_piece(&model, &retargeted(&model, &motion), &["root"]);
 }
