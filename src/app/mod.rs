@@ -27,5 +27,3 @@ pub use device::native_options;
 pub use device::web_options;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{WindowError, run_native};
-#[cfg(target_arch = "wasm32")]
-pub use scene_texture::RehearsalPart;

@@ -221,17 +221,6 @@ impl App {
         }
     }
 
-    /// Does a part of drawing a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
-    #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(
-        &mut self,
-        character: &gaitway_scene::library::Model,
-        frame: &gaitway_scene::frame::Frame,
-        part: super::RehearsalPart,
-    ) {
-        self.viewport.scene.rehearse(character, frame, part);
-    }
-
     /// Uploads an image of the next model; see [`Self::forget_images`].
     #[cfg(target_arch = "wasm32")]
     pub fn upload_image(&mut self, image: &web_sys::ImageBitmap, srgb: bool) {

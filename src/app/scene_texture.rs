@@ -13,31 +13,6 @@ pub(super) struct SceneTexture {
     displayed: Option<([u32; 2], bool)>,
 }
 
-/// A part of drawing the first picture. Each blocks the page for a while.
-#[cfg(target_arch = "wasm32")]
-#[derive(Debug, Clone, Copy)]
-pub enum RehearsalPart {
-    /// What draws the ground is created.
-    Ground,
-    /// What draws the studio's background is created.
-    Backdrop,
-    /// The environment is computed.
-    Light,
-    /// The model is uploaded.
-    Upload,
-    /// The model is drawn; pipelines that it needs are created.
-    Picture,
-    /// The picture is refined.
-    Refinement,
-}
-
-#[cfg(target_arch = "wasm32")]
-impl RehearsalPart {
-    /// All parts, in order. There are two pictures, of more and more surfaces, since pipelines take the longest of all.
-    pub const ALL: [Self; 7] =
-        [Self::Ground, Self::Backdrop, Self::Light, Self::Upload, Self::Picture, Self::Picture, Self::Refinement];
-}
-
 impl SceneTexture {
     pub fn new(gpu: RenderState) -> Self {
         let options = RendererOptions::for_adapter(&gpu.adapter.get_info());
@@ -99,25 +74,6 @@ impl SceneTexture {
         self.renderer.draw_refined(&self.gpu.device, &self.gpu.queue, frame, size);
         self.displayed = None;
         self.last_image()
-    }
-
-    /// Does a part of drawing a model off screen before any other. The last part forgets it: its id may be that of the next one.
-    #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, model: &Model, frame: &Frame, part: RehearsalPart) {
-        const SIZE: [u32; 2] = [64, 64];
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        match part {
-            RehearsalPart::Ground => self.renderer.prepare_ground(device),
-            RehearsalPart::Backdrop => self.renderer.prepare_backdrop(device),
-            RehearsalPart::Light => self.renderer.prepare_light(device, queue, frame),
-            // A model that can't be uploaded is skipped.
-            RehearsalPart::Upload => drop(self.renderer.upload(device, queue, model)),
-            RehearsalPart::Picture => drop(self.renderer.draw(device, queue, frame, SIZE)),
-            RehearsalPart::Refinement => {
-                while self.renderer.refine(device, queue, frame) {}
-                self.renderer.retain(&[]);
-            }
-        }
     }
 
     /// Never draws to the texture of the last image again.

@@ -6,7 +6,6 @@ mod bench;
 mod calls;
 mod mirror;
 mod page;
-mod rehearsal;
 mod session;
 mod shell;
 

@@ -16,7 +16,6 @@ use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
 use super::calls::{forget_images, progress_of, rest_progress, upload_image, with_app};
-use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
@@ -111,12 +110,9 @@ pub async fn run(
         let (shell, limits, early) = (shell.clone(), image_limits.clone(), first.clone());
         Box::pin(async move { first_contents(wanted, items, motion_items, is_private, &shell, &limits, &early).await })
     };
-    // Request the files first: the network takes longest. Meanwhile, create the device and rehearse.
+    // Request the files first: the network takes longest. Meanwhile, create the device.
     let shown = pin!(async {
         start_app(canvas, &shell, image_limits).await?;
-        if first.borrow().is_none() {
-            rehearse(&*page()?).await?;
-        }
         // Nothing has to wake it: it is polled after what fills the slot.
         poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, String>(first)))).await
     });

@@ -183,21 +183,6 @@ impl Renderer {
         self.models.retain(|model| keep.contains(&model.id));
     }
 
-    /// Creates what draws grid and shadow on the ground, unless it exists. [`Self::draw`] does it as well; it takes a while.
-    pub fn prepare_ground(&mut self, device: &wgpu::Device) {
-        self.pipelines.prepare_ground(device, &self.layouts);
-    }
-
-    /// The same for what draws the studio's background.
-    pub fn prepare_backdrop(&mut self, device: &wgpu::Device) {
-        self.pipelines.prepare_backdrop(device, &self.layouts);
-    }
-
-    /// Computes a frame's environment, unless it is the current one. So does [`Self::draw`]; it takes a while.
-    pub fn prepare_light(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) {
-        self.light.choose(device, queue, &self.layouts, Source::of(frame));
-    }
-
     /// Draws the frame into a texture of this size in pixels. Returns a view of an Rgba8Unorm texture, gamma-encoded with
     /// premultiplied alpha, which stays the same until the size changes. Models that are not uploaded are skipped.
     pub fn draw(
@@ -213,10 +198,10 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
-        self.prepare_ground(device);
-        self.prepare_backdrop(device);
+        self.pipelines.prepare_ground(device, &self.layouts);
+        self.pipelines.prepare_backdrop(device, &self.layouts);
         // A browser compiles the pipelines in another process meanwhile.
-        self.prepare_light(device, queue, frame);
+        self.light.choose(device, queue, &self.layouts, Source::of(frame));
         if matches!(frame.look.background, Background::Environment | Background::Blurred) {
             self.light.prepare_sky(device, queue, &self.layouts);
             self.pipelines.prepare_sky(device, &self.layouts, frame.look.tone_map);

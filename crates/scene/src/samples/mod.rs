@@ -3,10 +3,7 @@
 //!
 //! `assets/samples/gallery.json` lists the scenes of the start screen; page, build and tests read that one table.
 
-mod rehearsal;
 mod walker;
-
-pub use rehearsal::rehearsal_files;
 
 use crate::library::Model;
 

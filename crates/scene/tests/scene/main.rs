@@ -48,7 +48,6 @@ mod random;
 #[path = "../../../../tests/support/read_back.rs"]
 mod read_back;
 mod real_models;
-mod rehearsal;
 mod scale;
 #[path = "../../../../tests/support/skeletons.rs"]
 mod skeletons;
