@@ -10,7 +10,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, onOneBackEnd, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenShown, withLessPatience } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, onOneBackEnd, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -32,6 +32,22 @@ const missing = (page) => page.locator("#missing-parts li").allInnerTexts();
 const whenMissing = (page) => page.locator("#missing").waitFor({ state: "visible" });
 /** @param {TestPage} page */
 const linkOf = (page) => page.locator("#share-link").inputValue();
+
+/**
+ * Stops the program as a trap does.
+ * @param {TestPage} page
+ */
+const stop = (page) => page.evaluate(() => void dispatchEvent(new ErrorEvent("error", { error: new WebAssembly.RuntimeError("unreachable") })));
+/** @param {TestPage} page */
+async function restart(page) {
+  await page.locator("#stopped-again").click();
+  await whenReady(page);
+}
+/** @param {TestPage} page */
+async function stopAndRestart(page) {
+  await stop(page);
+  await restart(page);
+}
 
 for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
@@ -279,6 +295,25 @@ for (const renderer of BACK_ENDS)
       // The camera would look at where nobody is without the motion.
       assert.equal((await state(page)).camera, "auto");
       for (const part of ["motion=file:walk.bvh", "clip=run", "fov=30", "camera=10,5,30,9,1,9"]) assert.ok(link.includes(part), `${part} in ${link}`);
+    });
+
+    onPage("goes back from a program that has stopped to files that the page holds", () => "model=sample:walker&play=0", async (page) => {
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await whenModel(page, "Fox.glb");
+      await until(page, () => location.hash.includes("Fox.glb"));
+      await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
+      await until(page, () => location.hash.includes("CesiumMan.glb"));
+      await stop(page);
+      await page.goBack();
+      await restart(page);
+      assert.deepEqual((await state(page)).model, ["Fox.glb"]);
+      await whenShown(page, FOX_VERTICES);
+      assert.equal(await page.locator("#bring").isVisible(), false);
+      // What has been gone to once isn't gone to again.
+      await drop(page, [{ name: "Man.glb", url: site.data(CESIUM_MAN) }]);
+      await whenModel(page, "Man.glb");
+      await stopAndRestart(page);
+      assert.deepEqual((await state(page)).model, ["Man.glb"]);
     });
 
     onPage("waits for an archive that the user has to bring and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {

@@ -4,7 +4,7 @@ import { refuse } from "./changes.js";
 import { button, byId } from "./dom.js";
 import { openByHand } from "./opening.js";
 import { program } from "./running.js";
-import { urlsWithin } from "./urls.js";
+import { urlWithin } from "./urls.js";
 
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 
@@ -38,7 +38,9 @@ async function openShared() {
 async function sharedItems(response) {
   if (response === undefined) return [];
   const name = response.headers.get("x-name");
-  return name === null ? urlsWithin(await response.text()) : [{ name: decodeURIComponent(name), content: await response.blob() }];
+  if (name !== null) return [{ name: decodeURIComponent(name), content: await response.blob() }];
+  const url = urlWithin(await response.text());
+  return url === undefined ? [] : [url];
 }
 
 /**

@@ -18,7 +18,4 @@ const linkTo = (link) => `${location.origin}${location.pathname}#${link}`;
  * Returns the first URL within a text, as other apps share one with a title.
  * @param {string} text
  */
-export function urlsWithin(text) {
-  const [url] = text.match(/https?:\/\/\S+/i) ?? [];
-  return url !== undefined && URL.canParse(url) ? [url] : [];
-}
+export const urlWithin = (text) => text.match(/https?:\/\/\S+/gi)?.find((url) => URL.canParse(url));

@@ -38,7 +38,8 @@ fn cargo_checks() -> anyhow::Result<()> {
     for targets in [&["--workspace", "--all-targets"][..], &core, &wasm] {
         process::run("cargo", &[&["clippy"], targets, &["--", "-D", "warnings"]].concat())?;
     }
-    let packages = ["", "-character", "-formats", "-json-text", "-retarget", "-scene", "-render", "-python"];
+    let packages =
+        ["", "-character", "-formats", "-json-text", "-retarget", "-session", "-scene", "-render", "-python"];
     let packages = packages.map(|name| format!("--package=gaitway{name}"));
     let packages = packages.each_ref().map(String::as_str);
     let doc = [&["doc", "--no-deps"][..], &packages].concat();

@@ -74,7 +74,6 @@ impl<'a> Retargeting<'a> {
             alignment: &alignment,
             tracks: &tracks,
             target: model.asset,
-            target_skeleton,
             source_slots: source.slots,
             target_slots: model.slots,
         });

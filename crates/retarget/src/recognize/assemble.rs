@@ -23,7 +23,7 @@ const MAX_HEADS: usize = 64;
 const MAX_LIMB_JOINTS: usize = 64;
 
 /// Factor on the fit of a joint that moves no skin, while others do: control rigs have a copy of each limb.
-const STILL_SKIN_FACTOR: f32 = 0.5;
+const STILL_FACTOR: f32 = 0.5;
 
 /// The joints of one leg or arm; `extra` is its toes or its collar bone.
 #[derive(Debug, Default, Clone, Copy)]
@@ -97,17 +97,13 @@ impl Search<'_> {
 
     /// Aligns the joints of a side with the parts of a limb.
     fn limb(&self, side: Side, parts: &Parts) -> [Option<JointIndex>; 4] {
-        let fits = |joint: JointIndex| {
-            let fits = self.evidence(joint, side, parts)?;
-            fits.iter().any(|&fit| fit > 0.0).then_some((joint, fits))
-        };
-        let candidates: Vec<(JointIndex, Fits)> =
-            self.tree.skeleton.joints().filter_map(fits).take(MAX_LIMB_JOINTS).collect();
-        align(self.tree, parts, &candidates)
+        let fits = self.tree.skeleton.joints().map(|joint| (joint, self.fits(joint, side, parts)));
+        let candidates = fits.filter(|(_, fits)| fits.iter().any(|&fit| fit > 0.0)).take(MAX_LIMB_JOINTS);
+        align(self.tree, parts, &candidates.collect::<Vec<_>>())
     }
 
     /// How well a joint fits the parts of a limb, by what the vocabulary says and by the words of its name.
-    fn evidence(&self, joint: JointIndex, side: Side, parts: &Parts) -> Option<Fits> {
+    fn fits(&self, joint: JointIndex, side: Side, parts: &Parts) -> Fits {
         let known = self.known.and_then(|known| known.slots.get(&joint)).filter(|slot| slot.side() == Some(side));
         let word = self.tree.word(joint).filter(|_| self.tree.names[joint.get()].side == Some(side));
         let mut fits = word.map_or([0.0; 4], |word| parts.fits(word));
@@ -117,9 +113,8 @@ impl Search<'_> {
                 *fit = if meant == SURE_FIT { SURE_FIT } else { *fit };
             }
         }
-        let moves_skin = self.tree.moves_skin(joint) != Some(false);
-        (known.is_some() || word.is_some())
-            .then(|| fits.map(|fit| if moves_skin { fit } else { fit * STILL_SKIN_FACTOR }))
+        let factor = if self.tree.moves_skin(joint) == Some(false) { STILL_FACTOR } else { 1.0 };
+        fits.map(|fit| factor * fit)
     }
 
     /// Of the joints between two parts of a limb whose names say nothing, the one that divides it most evenly.

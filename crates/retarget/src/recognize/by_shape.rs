@@ -81,16 +81,13 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
 
 /// Whether the first leg is the left one by the names of arms and legs; None if they don't say or don't agree.
 fn named_left(shape: &Shape, body: &Halves, is_same_order: bool) -> Option<bool> {
-    let side = |joint: &JointIndex| shape.tree.names[joint.get()].side;
-    let votes = [(&body.legs, true), (&body.arms, is_same_order)].into_iter().flat_map(|(twins, is_same_order)| {
-        let of_chain = |(chain, side_if_first_left): (&Vec<JointIndex>, Side)| {
-            let said: Vec<bool> =
-                chain.iter().filter_map(side).map(|said| (said == side_if_first_left) == is_same_order).collect();
-            said
-        };
-        twins.chains.iter().zip([Side::Left, Side::Right]).flat_map(of_chain).collect::<Vec<bool>>()
-    });
-    let votes: Vec<bool> = votes.collect();
+    let mut votes = Vec::new();
+    for (twins, is_same_order) in [(&body.legs, true), (&body.arms, is_same_order)] {
+        for (chain, side_if_first_left) in twins.chains.iter().zip([Side::Left, Side::Right]) {
+            let said = chain.iter().filter_map(|joint| shape.tree.names[joint.get()].side);
+            votes.extend(said.map(|said| (said == side_if_first_left) == is_same_order));
+        }
+    }
     let first = *votes.first()?;
     (votes.len() >= 4 && votes.iter().all(|&vote| vote == first)).then_some(first)
 }

@@ -161,13 +161,7 @@ pub fn recognize(asset: &Asset) -> Recognized {
     let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| !parts.is_empty());
     let is_declared = from_file.is_some();
     let Found { mut parts, left_out } = match from_file {
-        Some(parts) if parts.len() >= WHOLE_FILE_SLOTS => {
-            Found { parts: with_fingers(&tree, parts), ..Found::default() }
-        }
-        Some(mut parts) => {
-            complete(&tree, &mut parts, find(asset, &tree).parts);
-            Found { parts, ..Found::default() }
-        }
+        Some(parts) => Found { parts: completed_map(asset, &tree, parts), ..Found::default() },
         None => find(asset, &tree),
     };
     if parts.is_empty() {
@@ -230,19 +224,21 @@ fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {
     humanoid.0.iter().map(|(&slot, &joint)| (slot, declared(joint))).collect()
 }
 
-/// Adds fingers, which humanoid maps often leave out. Other slots may be left out on purpose.
-fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
-    for (slot, part) in assemble::find(tree, known::find(tree).as_ref()) {
-        let is_free = |other: &RecognizedJoint| other.joint != part.joint;
-        let above = std::iter::successors(known::parent_of(slot), |slot| known::parent_of(*slot));
-        let is_under_its_parent = above
-            .filter_map(|slot| parts.get(&slot))
-            .next()
-            .is_some_and(|above| tree.is_under(part.joint, above.joint));
-        if slot.is_finger() && !parts.contains_key(&slot) && parts.values().all(is_free) && is_under_its_parent {
-            parts.insert(slot, part);
-        }
-    }
+/// Adds what a humanoid map lacks: fingers, which maps often leave out, while other slots may be left out on purpose; to a map of a
+/// few bones, everything.
+fn completed_map(
+    asset: &Asset,
+    tree: &Tree,
+    mut parts: BTreeMap<Slot, RecognizedJoint>,
+) -> BTreeMap<Slot, RecognizedJoint> {
+    let others = if parts.len() >= WHOLE_FILE_SLOTS {
+        let mut named = assemble::find(tree, known::find(tree).as_ref());
+        named.retain(|slot, _| slot.is_finger());
+        named
+    } else {
+        find(asset, tree).parts
+    };
+    complete(tree, &mut parts, others);
     parts
 }
 

@@ -95,7 +95,10 @@ const NOISE: [&str; 18] = [
     "shj", "deform",
 ];
 
-const ASIDE: [&str; 47] = [
+/// Words of joints that only show where a chain ends.
+const ENDS: [&str; 4] = ["end", "leaf", "tip", "nub"];
+
+const ASIDE: [&str; 43] = [
     "twist",
     "roll",
     "ik",
@@ -107,10 +110,6 @@ const ASIDE: [&str; 47] = [
     "ctl",
     "helper",
     "dummy",
-    "end",
-    "leaf",
-    "tip",
-    "nub",
     "site",
     "endsite",
     "effector",
@@ -156,7 +155,7 @@ pub(super) fn read(name: &Name) -> Option<Word> {
     let words: Vec<&str> = name.words.iter().map(String::as_str).filter(|word| !is_number(word)).collect();
     // Numbered palms are the bones in one.
     let is_metacarpal = words == ["palm"] && name.words.len() > 1;
-    if is_metacarpal || words.iter().any(|word| ASIDE.contains(word)) {
+    if is_metacarpal || words.iter().any(|word| ASIDE.contains(word) || ENDS.contains(word)) {
         return Some(Word::Aside);
     }
     let words: Vec<&str> =
@@ -197,7 +196,7 @@ fn finger(words: &[&str]) -> Option<Word> {
 
 /// Whether a name only says that a chain ends.
 pub(super) fn is_end(name: &Name) -> bool {
-    name.words.iter().any(|word| ["end", "leaf", "tip", "nub"].contains(&word.as_str()))
+    name.words.iter().any(|word| ENDS.contains(&word.as_str()))
 }
 
 /// Whether a name mentions what a human body does not have.

@@ -70,8 +70,8 @@ pub struct HipsInput<'a> {
     pub map: &'a ResolvedMap,
     pub alignment: &'a Alignment,
     pub tracks: &'a SourceTracks<'a>,
+    /// The file of the target, for its skins.
     pub target: &'a Asset,
-    pub target_skeleton: &'a Skeleton,
     pub source_slots: &'a Humanoid,
     pub target_slots: &'a Humanoid,
 }
@@ -79,7 +79,7 @@ pub struct HipsInput<'a> {
 /// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
 /// ancestor and whose source travels stands in for them.
 pub fn match_hips(input: HipsInput) -> Option<Hips> {
-    let HipsInput { map, alignment, tracks, target_skeleton, source_slots, target_slots, .. } = input;
+    let HipsInput { map, alignment, tracks, target, source_slots, target_slots } = input;
     let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
     let mut source_rest = alignment.source.position(map.pairs[pair].source);
     let mut target_rest = alignment.target.position(map.pairs[pair].target);
@@ -99,7 +99,8 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     }
     if map.root.origin == PathOrigin::Feet
         && let Some(source_feet) = between_feet(tracks.skeleton, source_slots, |joint| alignment.source.position(joint))
-        && let Some(target_feet) = between_feet(target_skeleton, target_slots, |joint| alignment.target.position(joint))
+        && let Some(target_feet) =
+            between_feet(&target.skeleton, target_slots, |joint| alignment.target.position(joint))
     {
         source_rest -= source_feet.with_y(0.0);
         target_rest -= target_feet.with_y(0.0);
@@ -116,14 +117,14 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
 
 /// The joint that takes the path of these hips.
 fn carrier(input: HipsInput, hips: JointIndex) -> JointIndex {
-    let HipsInput { map, alignment, target, target_skeleton, .. } = input;
+    let HipsInput { map, alignment, target, .. } = input;
     let trunk = [Slot::Spine, Slot::Chest, Slot::UpperChest].into_iter().filter_map(|slot| alignment.pair(map, slot));
-    let hangs_from = trunk.map(|pair| pair.target).filter(|joint| is_within(target_skeleton, hips, *joint)).min();
+    let hangs_from = trunk.map(|pair| pair.target).filter(|joint| is_within(&target.skeleton, hips, *joint)).min();
     let in_skin = |joint: &JointIndex| target.skins.iter().any(|skin| skin.joints().contains(joint));
     // Extracted travel has a joint of its own above the hips.
-    let may_carry = !map.root.extract && ancestry(target_skeleton, hips).skip(1).any(|joint| in_skin(&joint));
+    let may_carry = !map.root.extract && ancestry(&target.skeleton, hips).skip(1).any(|joint| in_skin(&joint));
     let moves = if may_carry { moves_skin(target) } else { None };
-    let skinned = moves.and_then(|moves| ancestry(target_skeleton, hips).filter(|joint| moves[joint.get()]).last());
+    let skinned = moves.and_then(|moves| ancestry(&target.skeleton, hips).filter(|joint| moves[joint.get()]).last());
     [Some(hips), hangs_from, skinned].into_iter().flatten().min().unwrap_or(hips)
 }
 
@@ -139,13 +140,13 @@ fn between_feet(skeleton: &Skeleton, slots: &Humanoid, position: impl Fn(JointIn
 }
 
 fn travelling_pair(input: HipsInput) -> Option<usize> {
-    let HipsInput { map, alignment, tracks, target_skeleton, .. } = input;
+    let HipsInput { map, alignment, tracks, target, .. } = input;
     if !alignment.pair_of_slot.is_empty() {
         return None;
     }
     map.pairs.iter().position(|pair| {
         let has_mapped_ancestor =
-            ancestry(target_skeleton, pair.target).skip(1).any(|joint| map.source_of(joint).is_some());
+            ancestry(&target.skeleton, pair.target).skip(1).any(|joint| map.source_of(joint).is_some());
         let travels = ancestry(tracks.skeleton, pair.source).any(|joint| tracks.translations[joint.get()].is_moving());
         !has_mapped_ancestor && travels
     })

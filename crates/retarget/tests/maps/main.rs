@@ -1,6 +1,7 @@
 //! Joint maps: recognition of humanoid slots, proposals for two skeletons, and the file form.
 
 mod data;
+mod evidence;
 mod facing;
 mod files;
 #[path = "../../../../tests/support/numpy.rs"]

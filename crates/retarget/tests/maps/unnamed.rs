@@ -146,8 +146,12 @@ fn animals_with_useless_names_are_no_bodies() {
     }
 }
 
-/// A body in a T-pose without names: what its left arm consists of, as distances outwards.
-fn figure(arm: &[f32]) -> Asset {
+/// How far the toes of a figure are in front of its ankles.
+const AHEAD: f32 = 0.15;
+
+/// A body in a T-pose without names: what its left arm consists of, as distances outwards, and where its toes are. Its joints are
+/// the trunk's upwards, then the left leg and arm, then the right ones.
+pub fn figure(arm: &[f32], ahead: f32) -> Asset {
     let mut joints: Vec<Joint> = Vec::new();
     let mut place = |parent: Option<usize>, at: Vec3| {
         joints.push(skeletons::joint("", parent, Transform::from_translation(at)));
@@ -160,7 +164,7 @@ fn figure(arm: &[f32]) -> Asset {
     place(Some(neck), Vec3::Y * 0.1);
     for side in [1.0, -1.0] {
         let mut at = hips;
-        for step in [Vec3::X * 0.1 * side, Vec3::Y * -0.45, Vec3::Y * -0.45, Vec3::new(0.0, -0.07, 0.15)] {
+        for step in [Vec3::X * 0.1 * side, Vec3::Y * -0.45, Vec3::Y * -0.45, Vec3::new(0.0, -0.07, ahead)] {
             at = place(Some(at), step);
         }
         let mut at = chest;
@@ -176,7 +180,7 @@ fn figure(arm: &[f32]) -> Asset {
 fn check_arm(arm: &[f32], expected: [Option<usize>; 4]) {
     use Slot::{LeftHand, LeftLowerArm, LeftShoulder, LeftUpperArm};
     const FIRST: usize = 9;
-    let asset = figure(arm);
+    let asset = figure(arm, AHEAD);
     let found = recognize(&asset);
     let place = |slot| found.joint(slot).map(|joint| asset.skeleton.source_index(joint) - FIRST);
     assert_eq!([LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand].map(place), expected, "{arm:?}");
@@ -194,7 +198,7 @@ fn a_collar_bone_is_short_and_begins_at_the_spine() {
 #[test]
 fn what_is_not_certain_is_left_out_and_said() {
     // A chain of equal segments could begin with any part.
-    let found = recognize(&figure(&[0.15, 0.15, 0.15, 0.15, 0.15, 0.15]));
+    let found = recognize(&figure(&[0.15, 0.15, 0.15, 0.15, 0.15, 0.15], AHEAD));
     assert!(found.joint(Slot::LeftUpperLeg).is_some(), "the legs are clear");
     assert_eq!(found.joint(Slot::LeftLowerArm), None);
     let part = found.left_out.get(&Slot::LeftLowerArm).expect("said");
