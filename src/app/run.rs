@@ -7,7 +7,7 @@ use std::time::Duration;
 use gaitway_render::texture_formats;
 use gaitway_scene::editor::{Admit, Contents, Editor, OpenedModel};
 use gaitway_scene::library::{Library, ModelId, Motion};
-use gaitway_scene::state::{Command, PageOptions, ViewerState, to_link};
+use gaitway_scene::state::{Command, Embed, PageOptions, ViewerState, to_link};
 
 use super::recording::Recording;
 use super::timing::Timing;
@@ -355,7 +355,7 @@ impl App {
     /// Opens the view without the page that embeds it.
     fn open_page(&self) {
         let state = self.editor.shared_state();
-        let page = PageOptions { embed: false, ..state.page.clone() };
+        let page = PageOptions { embed: Embed::Off, ..state.page.clone() };
         self.host.open_page(&to_link(&ViewerState { page, ..state }, self.editor.library()));
     }
 

@@ -116,10 +116,16 @@ async fn open_motion<S: Source>(
             found.motions.unwrap_or_default()
         }
         Err(error) => {
-            contents.problems.push(source.describe_omission("motion", &error));
+            omit(source, "motion", &error, contents);
             Vec::new()
         }
     }
+}
+
+/// Notes that a view is opened without one of its files.
+fn omit<S: Source>(source: &S, part: &str, error: &OpenError, contents: &mut Contents) {
+    contents.problems.push(source.describe_omission(part, error));
+    contents.failure.get_or_insert(error.code());
 }
 
 /// Adds the image that lights a view to the contents. A failure becomes a problem of the contents.
@@ -130,7 +136,7 @@ async fn open_environment<S: Source>(source: &S, origin: &String, contents: &mut
             contents.environment = Some(Environment { origin: origin.clone(), ..found });
         }
         Ok(_) => contents.problems.push(format!("{origin}: expected an .hdr image")),
-        Err(error) => contents.problems.push(source.describe_omission("light", &error)),
+        Err(error) => omit(source, "light", &error, contents),
     }
 }
 
@@ -143,7 +149,7 @@ async fn read_map_of<S: Source>(
 ) -> Option<MotionMap> {
     let MotionMap::File(address) = &map else { return Some(map) };
     let read = open_map(source, address.as_ref(), progress).await;
-    let read = read.inspect_err(|error| contents.problems.push(source.describe_omission("map", error)));
+    let read = read.inspect_err(|error| omit(source, "map", error, contents));
     read.ok().map(|map| MotionMap::of_file(&map))
 }
 
@@ -156,13 +162,12 @@ async fn open_models<S: Source>(
 ) -> Result<Contents, OpenError> {
     let items = models.iter().map(|model| Item::Address(model.into())).collect();
     let (read, failed) = read_available(source, items, progress).await?;
-    let problems: Vec<String> = failed.iter().map(|error| source.describe_omission("model", error)).collect();
     let mut contents = match open_read(source, read, Role::Model).await {
         Ok(contents) => contents,
         // The rest is nothing without what is missing, such as the .skel of an .obj.
         Err(error) => return Err(failed.into_iter().next().unwrap_or(error)),
     };
-    contents.problems.extend(problems);
+    failed.iter().for_each(|error| omit(source, "model", error, &mut contents));
     if let [model] = models
         && !contents.models.iter().any(|opened| opened.model.origin == *model)
     {

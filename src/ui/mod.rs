@@ -356,10 +356,10 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     local.layout.is_small = small;
     style::size_controls(ui, small);
     let height = ui.ctx().content_rect().height();
-    if !shown.state.page.embed && height >= MIN_HEIGHT_FOR_HEADER {
+    if !shown.state.page.embed.is_on() && height >= MIN_HEIGHT_FOR_HEADER {
         header::show(ui, &shown, local, out);
     }
-    let has_sheet = small && !shown.state.page.embed && local.layout.sheet.is_some();
+    let has_sheet = small && !shown.state.page.embed.is_on() && local.layout.sheet.is_some();
     let below_header = ui.available_rect_before_wrap();
     let side_sheet = has_sheet.then(|| sheet::side_rect(below_header)).flatten();
     if has_sheet && side_sheet.is_none() && sheet::takes_all(below_header) {
@@ -373,16 +373,16 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         place.resizable(false).show_separator_line(false).show(ui, |_| ());
         local.layout.sheet_raised = local.layout.sheet_raised.min(0.0);
     }
-    let side = if small { 6 } else { 12 };
-    let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
-    if height >= MIN_HEIGHT_FOR_TRANSPORT {
+    if height >= MIN_HEIGHT_FOR_TRANSPORT && shown.state.page.embed.has_transport() {
+        let side = if small { 6 } else { 12 };
+        let bottom = egui::Frame::new().inner_margin(egui::Margin { left: side, right: side, top: 2, bottom: 6 });
         egui::Panel::bottom("transport")
             .frame(bottom)
             .resizable(false)
             .show_separator_line(false)
             .show(ui, |ui| transport::show(ui, &shown, local, small, out));
     }
-    if !small && !shown.state.page.embed {
+    if !small && !shown.state.page.embed.is_on() {
         side_panels(ui, &shown, local, out);
     }
     let free = ui.available_rect_before_wrap();

@@ -15,7 +15,7 @@ const MAX_SHARE_OF_TRACKS: f32 = 0.25;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, small: bool, out: &mut Output) {
     // A low screen has no room for them.
-    let has_tracks = !shown.state.page.embed && ui.ctx().content_rect().height() >= LOW_HEIGHT;
+    let has_tracks = !shown.state.page.embed.is_on() && ui.ctx().content_rect().height() >= LOW_HEIGHT;
     let has_feet = shown.state.display.show.source && has_tracks;
     let feet_gutter = if has_feet { feet::gutter(ui, shown) } else { 0.0 };
     let gutters = if has_tracks { [layers::gutter(ui, shown), pins::gutter(ui, shown)] } else { [0.0; 2] };

@@ -250,7 +250,7 @@ pub fn summary() -> Result<String, JsValue> {
             "unlisted": unlisted.map(|model| short_name(&model.source)).collect::<Vec<_>>(),
             "clip": clip,
             "playing": state.playback.playing,
-            "isEmbedded": state.page.embed,
+            "isEmbedded": state.page.embed.is_on(),
             "notice": app.notice(),
             "problem": app.problem(),
         })
@@ -457,7 +457,7 @@ async fn show(
         _ => Kind::Map,
     };
     if !shell_reports && !contents.problems.is_empty() {
-        page.shell.warn(&contents.problems.join("\n"));
+        page.shell.warn(&contents.problems.join("\n"), contents.failure.map(code_text));
     }
     let (promise, reply) =
         promise::<Vec<String>>(|problems| problems.into_iter().map(JsValue::from).collect::<Array>().into());
@@ -545,10 +545,15 @@ impl From<Refusal> for JsValue {
     }
 }
 
-fn error(code: ErrorCode, message: &str) -> JsValue {
+/// Returns a code as scripts get it.
+pub(super) fn code_text(code: ErrorCode) -> String {
+    json!(code).as_str().unwrap_or_default().to_owned()
+}
+
+pub(super) fn error(code: ErrorCode, message: &str) -> JsValue {
     let error = js_sys::Error::new(message);
     // Only a frozen object refuses a property.
-    let _ = Reflect::set(&error, &"code".into(), &json!(code).as_str().into());
+    let _ = Reflect::set(&error, &"code".into(), &code_text(code).into());
     error.into()
 }
 

@@ -12,10 +12,12 @@ use gaitway_scene::editor::{AboutLink, Contents, ExportedFile, short_name};
 use gaitway_scene::library::{Environment, Library, Model, ModelId};
 use gaitway_scene::samples;
 use gaitway_scene::state::{EnvironmentChoice, Link, ViewerState, from_link, to_link};
+use gaitway_session::ErrorCode;
 use js_sys::Array;
+use serde_json::json;
 use wasm_bindgen::prelude::*;
 
-use super::calls::{forget_images, progress_of, rest_progress, upload_image, with_app};
+use super::calls::{error, forget_images, progress_of, rest_progress, upload_image, with_app};
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
@@ -90,7 +92,7 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to a JSON list of problems; call [`drawn`](super::calls::drawn), [`begin`](super::calls::begin) and
+/// requested, to `{problems, code}`, the first problem's kind; call [`drawn`](super::calls::drawn), [`begin`](super::calls::begin) and
 /// [`complete`](super::calls::complete) next. Rejects, and leaves nothing behind, if no device is available, nothing could be opened
 /// or the model doesn't fit on the device.
 #[wasm_bindgen]
@@ -101,7 +103,8 @@ pub async fn run(
     motion_items: Array,
     is_private: bool,
     shell: Shell,
-) -> Result<String, JsError> {
+) -> Result<String, JsValue> {
+    let unsupported = |problem: String| (ErrorCode::Unsupported, problem);
     shell::set_shell(shell.clone());
     let first: Rc<RefCell<Option<First>>> = Rc::default();
     let image_limits = ImageLimits::default();
@@ -112,19 +115,20 @@ pub async fn run(
     };
     // Request the files first: the network takes longest. Meanwhile, create the device.
     let shown = pin!(async {
-        start_app(canvas, &shell, image_limits).await?;
+        start_app(canvas, &shell, image_limits).await.map_err(|problem| (ErrorCode::NoGraphics, problem))?;
         // Nothing has to wake it: it is polled after what fills the slot.
-        poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, String>(first)))).await
+        poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, (ErrorCode, String)>(first)))).await
     });
     let started = async {
         let ((contents, state, missing), rest) = match select(all, shown).await {
             Either::Left((all, shown)) => {
-                first.replace(Some(all?));
+                first.replace(Some(all.map_err(unsupported)?));
                 (shown.await?, None)
             }
             Either::Right((early, rest)) => (early?, Some(rest as Rest)),
         };
-        let page = page()?;
+        let page = page().map_err(unsupported)?;
+        let failure = contents.failure;
         let name = contents.models.first().map(|opened| short_name(&opened.model.source));
         let shown = with_app(&page, |app| {
             let contents = Contents { problems: missing, about_link, ..contents };
@@ -132,19 +136,19 @@ pub async fn run(
             Ok::<_, String>((app.library().active().map(|model| model.id), problems))
         });
         forget_images(&page);
-        let (model, problems) = shown??;
+        let (model, problems) = shown.flatten().map_err(unsupported)?;
         if let (Some(model), Some(rest), Some(name)) = (model, rest, name) {
             page.rest.replace(Some((model, rest)));
             page.inbox.send(Message::OpenProgress(progress_of(&name, 0, 0)));
         }
         page.inbox.wake();
-        Ok::<_, String>(problems)
+        Ok::<_, (ErrorCode, String)>(json!({ "problems": problems, "code": failure }))
     };
-    let problems = started.await.map_err(|error| {
+    let shown = started.await.map_err(|(code, problem)| {
         destroy();
-        JsError::new(&error)
+        error(code, &problem)
     })?;
-    Ok(serde_json::json!(problems).to_string())
+    Ok(shown.to_string())
 }
 
 async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell, image_limits: ImageLimits) -> Result<(), String> {
@@ -211,7 +215,9 @@ async fn first_contents(
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }
         Err(error) => {
+            let failure = Some(error.code());
             let (contents, view, problems) = open_fallback(limits, wanted, vec![error.to_string()], &progress).await?;
+            let contents = Contents { failure, ..contents };
             // The view names the user's files although they could not be read.
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }

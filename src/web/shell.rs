@@ -84,9 +84,9 @@ extern "C" {
     #[wasm_bindgen(method, js_name = setTheme)]
     pub fn set_theme(this: &Shell, theme: &str);
 
-    /// Shows a warning, or one per line; it replaces the one before.
+    /// Shows a warning, or one per line; it replaces the one before. The code tells scripts what kind of failure it is about.
     #[wasm_bindgen(method)]
-    pub fn warn(this: &Shell, message: &str);
+    pub fn warn(this: &Shell, message: &str, code: Option<String>);
 
     /// Shows the panels' accessibility tree; see [`crate::app::mirror`].
     #[wasm_bindgen(method)]

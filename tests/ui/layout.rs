@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::ui::{Layout, Progress, Sheet, Tab, UiAction, text};
 use gaitway_retarget::ClipLayer;
 use gaitway_scene::library::{ClipId, LayeredClip};
-use gaitway_scene::state::Command;
+use gaitway_scene::state::{Command, Embed};
 
 use crate::bench::{
     Bench, NARROW, WIDE, bench, drag, model_with_clips, motion_bench, painted, press, press_key, sample_bench,
@@ -178,7 +178,7 @@ fn a_phone_on_its_side_is_mostly_viewport() {
             let close = harness.get_by_label(text::CLOSE_SHEET).rect();
             assert!(close.left() >= beside.right() && close.top() >= whole.top(), "{close:?} beside {beside:?}");
         }
-        harness.state_mut().change(|state| state.page.embed = true);
+        harness.state_mut().change(|state| state.page.embed = Embed::Page);
         harness.run();
         assert!(harness.state().viewport.area() >= 0.5 * size[0] * size[1], "embedded, {size:?}");
     }
@@ -335,7 +335,7 @@ fn posing_can_be_ended_on_any_screen() {
 fn embedded_there_is_only_picture_and_transport() {
     let mut harness = sample_bench(WIDE);
     harness.state_mut().change(|state| {
-        state.page.embed = true;
+        state.page.embed = Embed::Page;
     });
     harness.run();
     assert_eq!(harness.state().viewport.width(), WIDE[0]);
@@ -348,6 +348,12 @@ fn embedded_there_is_only_picture_and_transport() {
     harness.run();
     press(&mut harness, text::OPEN_PAGE);
     assert_eq!(harness.state().actions, [UiAction::OpenPage]);
+    for (embed, has_transport) in [(Embed::Transport, true), (Embed::Viewport, false)] {
+        harness.state_mut().change(|state| state.page.embed = embed);
+        harness.run();
+        assert_eq!(harness.query_by_label(text::PLAY).is_some(), has_transport, "{embed:?}");
+        assert!(harness.query_by_label(text::OPEN_PAGE).is_none(), "{embed:?}");
+    }
 }
 
 /// Sizes of the first screen, each with the height of the samples below the canvas and the viewport's minimum share.

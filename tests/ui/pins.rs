@@ -9,7 +9,7 @@ use gaitway_character::anim::TimeRange;
 use gaitway_retarget::{Pin, PinGoal, PinTimes};
 use gaitway_scene::editor::Export;
 use gaitway_scene::library::ClipId;
-use gaitway_scene::state::Command;
+use gaitway_scene::state::{Command, Embed};
 use glam::Vec3;
 
 use crate::bench::{Bench, NARROW, WIDE, drag, painted, press, sample_bench};
@@ -220,7 +220,7 @@ fn a_pin_with_times_has_a_track_under_the_timeline() {
         let (name, is_cut, rect) = name.expect("the pin's name");
         assert!(name.ends_with(": Head"), "{name}");
         assert!(!is_cut && rect.right() <= timeline.left() + 8.0, "{rect:?} left of {timeline:?}");
-        harness.state_mut().change(|state| state.page.embed = true);
+        harness.state_mut().change(|state| state.page.embed = Embed::Page);
         harness.run();
         assert!(harness.query_by_label(&track).is_none(), "an embedded view has none");
     }

@@ -213,4 +213,6 @@ pub enum ErrorCode {
     Cancelled,
     /// The program or its graphics device has stopped.
     LostDevice,
+    /// The browser has no graphics API that Gaitway can use.
+    NoGraphics,
 }

@@ -69,7 +69,7 @@ impl VertexProbe {
 
 /// Finds the vertex under the pointer while the probe is on; returns whether the pointer is on the mesh.
 pub fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) -> bool {
-    if !local.vertex_probe.is_on(shown) || shown.state.page.embed {
+    if !local.vertex_probe.is_on(shown) || shown.state.page.embed.is_on() {
         return false;
     }
     let clicked = response.clicked();
@@ -127,8 +127,10 @@ pub fn mark(
     shown: &Shown<'_>,
     local: &mut UiState,
 ) -> Option<()> {
-    let choice =
-        local.vertex_probe.vertex(shown).filter(|_| local.vertex_probe.is_on(shown) && !shown.state.page.embed)?;
+    let choice = local
+        .vertex_probe
+        .vertex(shown)
+        .filter(|_| local.vertex_probe.is_on(shown) && !shown.state.page.embed.is_on())?;
     let (model, character) = (shown.library.active()?, character_in(shown, index)?);
     let formula = &mut local.vertex_probe.formula;
     if !vertex_formula(model, character, choice, formula) {

@@ -1,7 +1,7 @@
 //! The buttons in the upper right corner of the viewport.
 
 use egui::{Align, Layout, Rect, RichText, Ui, vec2};
-use gaitway_scene::state::Command;
+use gaitway_scene::state::{Command, Embed};
 
 use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
@@ -10,8 +10,8 @@ use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 const MARGIN: f32 = 10.0;
 
 pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let is_embedded = shown.state.page.embed;
-    if is_embedded && !local.host.has_gallery {
+    let is_embedded = shown.state.page.embed.is_on();
+    if is_embedded && (shown.state.page.embed != Embed::Page || !local.host.has_gallery) {
         return;
     }
     let height = icon_size(ui, ICON_SIZE).y + 4.0;

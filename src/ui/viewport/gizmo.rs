@@ -43,7 +43,7 @@ struct Gizmo {
 /// Shows the gizmo while posing manually; returns whether it has captured the pointer.
 pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
     let Canvas { ui, painter, response, shown } = canvas;
-    let wanted = local.joint_card.is_posing && !shown.state.page.embed;
+    let wanted = local.joint_card.is_posing && !shown.state.page.embed.is_on();
     let Some(gizmo) = wanted.then(|| gizmo(response, shown)).flatten() else {
         local.viewport.grab = None;
         return false;

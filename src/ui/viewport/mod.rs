@@ -107,7 +107,7 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
 
 /// Marks a transparent background.
 fn checkerboard(painter: &Painter, rect: Rect, shown: &Shown<'_>, palette: style::Palette) {
-    if shown.state.display.background != Background::Transparent || shown.state.page.embed {
+    if shown.state.display.background != Background::Transparent || shown.state.page.embed.is_on() {
         return;
     }
     let size = 12.0;

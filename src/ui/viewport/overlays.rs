@@ -7,7 +7,7 @@ use crate::ui::{Output, Shown, UiState, is_small, motion, style};
 
 /// Call last; `viewport` is the viewport's rectangle.
 pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if is_small(ui) && !shown.state.page.embed {
+    if is_small(ui) && !shown.state.page.embed.is_on() {
         sheet::show(ui, &shown, local, out);
     } else {
         local.layout.sheet = None;

@@ -18,7 +18,7 @@ const GRAB_POINTS: f32 = 12.0;
 pub fn show(canvas: Canvas<'_>, local: &mut UiState, out: &mut Output) -> bool {
     let Canvas { ui, painter, response, shown } = canvas;
     let pins = &shown.state.character.edits.pins;
-    if pins.is_empty() || shown.state.page.embed {
+    if pins.is_empty() || shown.state.page.embed.is_on() {
         return false;
     }
     let pane = pane_at(shown, response.rect, response.hover_pos());

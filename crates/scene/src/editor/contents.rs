@@ -2,6 +2,7 @@
 
 use gaitway_formats::FileSet;
 use gaitway_retarget::JointMapFile;
+use gaitway_session::ErrorCode;
 
 use crate::library::{Environment, Model, Motion, container_of};
 use crate::state::LinkError;
@@ -23,6 +24,8 @@ pub struct Contents {
     pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
+    /// What kind of failure the first of them is, where that is known.
+    pub failure: Option<ErrorCode>,
     /// Of the link whose view is opened.
     pub about_link: AboutLink,
 }

@@ -63,8 +63,9 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, is_by_hand, mut problems, about_link } =
-            contents;
+        let Contents {
+            models, motions, map, environment, is_map_private, is_by_hand, mut problems, about_link, ..
+        } = contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));

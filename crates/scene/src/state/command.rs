@@ -5,8 +5,8 @@ use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{Contacts, Feet, JointMap, Pin, RootOptions, Unmapped};
 
 use super::{
-    Background, CameraChoice, Channel, ClipChoice, ClipEdit, EnvironmentChoice, Hidden, KeyLight, MapEdit, MotionMap,
-    ToneMap, UpAxis, ViewerState,
+    Background, CameraChoice, Channel, ClipChoice, ClipEdit, Embed, EnvironmentChoice, Hidden, KeyLight, MapEdit,
+    MotionMap, ToneMap, UpAxis, ViewerState,
 };
 use crate::library::{ClipId, LayeredClip, LookTarget, MotionId};
 
@@ -154,7 +154,7 @@ pub enum Command {
     /// Sets what is behind the scene.
     SetBackground(Background),
     /// Sets whether the page shows only the viewport and the transport.
-    SetEmbed(bool),
+    SetEmbed(Embed),
     /// Replaces the joint map of a motion in the library, and of all that share its skeleton; `None` restores the proposed map.
     SetMap {
         /// One of the library's.

@@ -381,7 +381,7 @@ const KEYS: &[Key] = &[
         write_background,
         "studio, transparent, environment, blurred or rrggbb"
     ),
-    key!("embed", page.embed, flag, write_flag, "0 or 1"),
+    key!("embed", page.embed, read_embed, write_embed, "0, 1, transport or viewport"),
 ];
 
 fn key(name: &str) -> Option<&'static Key> {

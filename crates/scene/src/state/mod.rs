@@ -54,6 +54,6 @@ pub use take::{active_take, moment, take_of};
 pub use unknown::{NameKind, UnknownName};
 pub use variant::active_variant;
 pub use view::{
-    Background, CameraOptions, CharacterView, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback,
+    Background, CameraOptions, CharacterView, ClipChoice, Display, Edits, Embed, Fade, Inspect, PageOptions, Playback,
     Playhead, RetargetEdits, SavedMotion, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

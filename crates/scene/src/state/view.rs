@@ -355,12 +355,39 @@ impl Default for CameraOptions {
     }
 }
 
+/// What an embedded view shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Embed {
+    /// Everything: the view isn't embedded.
+    #[default]
+    Off,
+    /// The viewport, the transport, and a button that opens the view in a page of its own.
+    Page,
+    /// The viewport and the transport.
+    Transport,
+    /// The viewport alone.
+    Viewport,
+}
+
+impl Embed {
+    /// Whether another page embeds the view.
+    pub fn is_on(self) -> bool {
+        self != Self::Off
+    }
+
+    /// Whether the transport is shown.
+    pub fn has_transport(self) -> bool {
+        self != Self::Viewport
+    }
+}
+
 /// What the page does with the view.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PageOptions {
-    /// Show nothing but the viewport and the transport.
-    pub embed: bool,
+    /// How much is left out because another page embeds the view.
+    pub embed: Embed,
     /// Unknown link keys with all their values, preserved when the link is written again; for `show`, its unknown words.
     pub unknown: BTreeMap<String, Vec<String>>,
 }

@@ -11,9 +11,9 @@ use gaitway_retarget::{
     Unmapped,
 };
 use gaitway_scene::state::{
-    Background, CameraChoice, Channel, CharacterView, ClipChoice, Display, EnvironmentChoice, Fade, Hidden, KeyLight,
-    LinkError, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, ToneMap,
-    UpAxis, VertexChoice, ViewerState, from_link,
+    Background, CameraChoice, Channel, CharacterView, ClipChoice, Display, Embed, EnvironmentChoice, Fade, Hidden,
+    KeyLight, LinkError, MotionMap, NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show,
+    ToneMap, UpAxis, VertexChoice, ViewerState, from_link,
 };
 use glam::Vec3;
 
@@ -260,7 +260,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
             }),
         ),
         ("display.background", with(&|state| state.display.background = Background::Color([0, 128, 255]))),
-        ("page.embed", with(&|state| state.page.embed = true)),
+        ("page.embed", with(&|state| state.page.embed = Embed::Transport)),
         (
             "page.unknown",
             with(&|state| {

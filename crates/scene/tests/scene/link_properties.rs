@@ -11,9 +11,9 @@ use gaitway_retarget::{
     Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway_scene::state::{
-    Background, CameraChoice, CameraOptions, Channel, CharacterView, ClipChoice, EnvironmentChoice, Fade, Hidden,
-    Inspect, KeyLight, LightSetup, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap,
-    UpAxis, VertexChoice, ViewerState, from_link,
+    Background, CameraChoice, CameraOptions, Channel, CharacterView, ClipChoice, Embed, EnvironmentChoice, Fade,
+    Hidden, Inspect, KeyLight, LightSetup, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show,
+    ToneMap, UpAxis, VertexChoice, ViewerState, from_link,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -272,7 +272,7 @@ impl Random {
             22 if self.often() => edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
             32..=36 => self.set_avatar(state, field),
-            _ => state.page.embed = self.often(),
+            _ => state.page.embed = self.one(&[Embed::Off, Embed::Page, Embed::Transport, Embed::Viewport]),
         }
     }
 }

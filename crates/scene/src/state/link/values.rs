@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::{Read, Written};
 use crate::library::LookTarget;
 use crate::state::{
-    Background, CameraChoice, Channel, ClipChoice, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
+    Background, CameraChoice, Channel, ClipChoice, Embed, Fade, Hidden, Inspect, MotionMap, OrbitCamera, Show, UpAxis,
     VertexChoice,
 };
 use crate::state::{EnvironmentChoice, KeyLight, LightSetup, ToneMap, ViewerState, map_code};
@@ -61,6 +61,23 @@ pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("-y", UpAxis::MinusY),
     ("-z", UpAxis::MinusZ),
 ];
+
+/// Embedding was a flag at first; scripts still get its first two values as one.
+pub(super) fn read_embed(text: &str) -> Option<Embed> {
+    match text {
+        "transport" => Some(Embed::Transport),
+        "viewport" => Some(Embed::Viewport),
+        _ => flag(text).map(|is_on| if is_on { Embed::Page } else { Embed::Off }),
+    }
+}
+
+pub(super) fn write_embed(embed: &Embed) -> Written {
+    match embed {
+        Embed::Off | Embed::Page => Written::Flag(embed.is_on()),
+        Embed::Transport => Written::Text("transport".to_owned()),
+        Embed::Viewport => Written::Text("viewport".to_owned()),
+    }
+}
 
 fn word_of<T: PartialEq>(words: &[(&str, T)], value: &T) -> String {
     words.iter().find(|(_, other)| other == value).map_or(String::new(), |(word, _)| (*word).to_owned())
