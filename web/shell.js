@@ -12,6 +12,7 @@ import { showOpenDialog } from "./shell/open-dialog.js";
 import "./shell/paste.js";
 import { shareScrolling } from "./shell/scrolling.js";
 import "./shell/share.js";
+import { pauseOutOfSight } from "./shell/sight.js";
 
 window.gaitway = gaitway;
 
@@ -25,6 +26,7 @@ new ResizeObserver(([{ contentBoxSize, devicePixelContentBoxSize }]) => {
   if (Math.abs(difference) > 2) Reflect.deleteProperty(ResizeObserverEntry.prototype, "devicePixelContentBoxSize");
 }).observe(byId("stage"));
 
+pauseOutOfSight();
 launch(forcedBackend()).then(addBenches, () => {});
 answerParent();
 shareScrolling();

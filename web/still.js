@@ -10,6 +10,8 @@
    * @type {Record<string, string>}
    */
   const images = JSON.parse(still.dataset.images ?? "{}");
+  /** The element around the frame has a poster of its own; see shell/viewer.js. */
+  const isViewer = parent !== window && new URLSearchParams(location.search).has("viewer");
   /** The link of the first screen. */
   const first = still.dataset.link ?? "";
 
@@ -33,7 +35,7 @@
    * @param {boolean} isLocal
    */
   function show(link, isLocal) {
-    const models = isLocal ? [] : modelsOf(link || first).filter((model) => Object.hasOwn(images, model));
+    const models = isLocal || isViewer ? [] : modelsOf(link || first).filter((model) => Object.hasOwn(images, model));
     still.hidden = models.length !== 1;
     if (!still.hidden && still.getAttribute("src") !== images[models[0]]) still.src = images[models[0]];
   }

@@ -2,7 +2,8 @@
 import { open } from "./opening.js";
 import { parts } from "./parts.js";
 import { program, running, unlessEnded, whenComplete } from "./running.js";
-import { send } from "./session.js";
+import { facts, send } from "./session.js";
+import { addressOf } from "./share.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 
@@ -28,6 +29,12 @@ export const gaitway = {
   state: () => ask("state"),
   pose: () => ask("pose"),
   stats: () => ask("stats"),
+  async toLink() {
+    await running();
+    // Whoever opens it sees the whole page.
+    const pairs = facts().link.split("&").filter((pair) => !pair.startsWith("embed="));
+    return addressOf(pairs.join("&"));
+  },
   async apply(partial) {
     const app = await running();
     const { loaded } = JSON.parse(await unlessEnded(app.apply(JSON.stringify(partial ?? null))));

@@ -1,4 +1,6 @@
 // What the browser lends, full screen and the theme of page and panels, which is remembered; and the font of both.
+import { isViewer } from "./viewer.js";
+
 const KEY = "gaitway-theme";
 
 export const hasFullscreen = () => document.fullscreenEnabled;
@@ -11,6 +13,8 @@ export function toggleFullscreen() {
 
 /** Returns `light`, `dark` or, for the system's theme, nothing. */
 export function theme() {
+  // The element's own origin may be that of any site: nothing is stored there.
+  if (isViewer) return "";
   try {
     return localStorage.getItem(KEY) ?? "";
   } catch {
@@ -22,6 +26,7 @@ export function theme() {
 /** @param {string} name */
 export function setTheme(name) {
   document.documentElement.style.colorScheme = name;
+  if (isViewer) return;
   try {
     localStorage.setItem(KEY, name);
   } catch {

@@ -39,13 +39,14 @@ export const likelyBackend = () => forcedBackend() ?? (hasBackend("webgpu") ? "w
 
 /**
  * Returns what this browser lacks and what to try, in sentences; null if it has everything.
- * @returns {{ missing: string[], attempts: string[] } | null}
+ * @returns {{ code: "unsupported" | "no-graphics", missing: string[], attempts: string[] } | null}
  */
 export function missingCapabilities() {
   const wasm = missingWasm();
   const graphics = hasBackend("webgpu") || hasBackend("webgl2") ? [] : ["Graphics: neither WebGPU nor WebGL2 is available."];
   const missing = [...wasm, ...graphics];
-  return missing.length === 0 ? null : { missing, attempts: wasm.length > 0 ? [TRY_BROWSER] : TRY_GRAPHICS };
+  if (missing.length === 0) return null;
+  return wasm.length > 0 ? { code: "unsupported", missing, attempts: [TRY_BROWSER] } : { code: "no-graphics", missing, attempts: TRY_GRAPHICS };
 }
 
 function missingWasm() {

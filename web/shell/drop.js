@@ -5,6 +5,7 @@ import { EMPTY_FOLDER } from "./open-dialog.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
 import { isStageEmpty, program } from "./running.js";
+import { allowsFiles } from "./viewer.js";
 
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 /** @typedef {import("./types.d.ts").Role} Role */
@@ -45,6 +46,8 @@ function onDrag(event) {
   if (transfer === null || !transfer.types.some((type) => type === "Files" || type === "text/uri-list")) return;
   event.preventDefault();
   event.stopPropagation();
+  // The browser would show a file in the frame's place.
+  if (!allowsFiles) return void (transfer.dropEffect = "none");
   if (event.type === "dragenter" || event.type === "dragover") {
     transfer.dropEffect = "copy";
     showSheet(event);

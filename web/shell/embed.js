@@ -1,18 +1,20 @@
 // Gaitway in a frame of another page: `window.gaitway` by messages. The page around it sends `{gaitway: 1, id, call,
-// arguments}` and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error, code}`; events are `{gaitway: 1, event}`. It
-// never learns anything about files that the user dropped or chose in the frame.
+// arguments}` and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error, code}`; events are `{gaitway: 1, event}`, some with more.
+// It never learns anything about files that the user dropped or chose in the frame.
 import { messageOf } from "./dom.js";
 import { codeOf, coded } from "./errors.js";
 import { open } from "./opening.js";
-import { whenComplete } from "./running.js";
+import { LOADING_PROGRAM } from "./panels.js";
+import { isStageEmpty, whenComplete } from "./running.js";
 import { facts } from "./session.js";
+import { drawingFor } from "./sight.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 /**
  * @typedef {(...given: any[]) => unknown} Call Arguments come from another page; the functions themselves check them.
  */
 
-const READS = /** @type {const} */ (["state", "pose", "stats", "screenshot"]);
+const READS = /** @type {const} */ (["state", "pose", "stats", "screenshot", "toLink"]);
 const withheld = () => coded("cross-origin", "withheld: the user has opened local files in this frame; what they show stays here");
 
 /** @type {Record<string, Call>} */
@@ -36,7 +38,7 @@ async function answer(call, given) {
   const isPrivateNow = () => wasPrivate || facts().isPrivate || facts().seenPrivate !== seen;
   let result;
   try {
-    result = await CALLS[call](...given);
+    result = await drawingFor(Promise.resolve(CALLS[call](...given)));
   } catch (error) {
     // Error messages name joints and files.
     throw isPrivateNow() ? withheld() : error;
@@ -47,10 +49,24 @@ async function answer(call, given) {
   return undefined;
 }
 
-/** @param {"ready" | "failed" | "change"} event */
-function tell(event) {
-  // Events carry nothing private, so any page may have them.
-  parent.postMessage({ gaitway: 1, event }, "*");
+/**
+ * Any page may have events, so they carry nothing private.
+ * @param {"ready" | "failed" | "change" | "progress" | "error"} event
+ * @param {object} [more]
+ */
+function tell(event, more) {
+  parent.postMessage({ gaitway: 1, event, ...more }, "*");
+}
+
+/** What the program takes of the time until something is shown; files take the rest. */
+const PROGRAM_SHARE = 0.5;
+/** How much has arrived, from 0 to 1. It never goes back. */
+let progress = 0;
+
+/** @param {{ what: string, share: number }} download */
+function tellProgress({ what, share }) {
+  progress = Math.max(progress, what === LOADING_PROGRAM ? PROGRAM_SHARE * share : PROGRAM_SHARE + (1 - PROGRAM_SHARE) * share);
+  tell("progress", { progress });
 }
 
 /** Answers the page around this one, if there is one. */
@@ -68,5 +84,10 @@ export function answerParent() {
     }
   });
   addEventListener("gaitway:change", () => tell("change"));
-  whenComplete().then(() => tell("ready"), () => tell("failed"));
+  addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || tellProgress(detail));
+  addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || tell("error", { error: message, code }));
+  drawingFor(whenComplete()).then(
+    () => tell("ready", { isEmpty: isStageEmpty() }),
+    () => tell("failed"),
+  );
 }

@@ -4,14 +4,14 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus } from "./dom.js";
-import { coded } from "./errors.js";
+import { codeOf, coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { setInert, showGallery } from "./gallery.js";
 import { Mirror } from "./mirror.js";
 import { keepOffline } from "./offline.js";
 import { showOpenDialog } from "./open-dialog.js";
 import { readAgain } from "./opening.js";
-import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
+import { LOADING_PROGRAM, noteLinkFailure, panel, reportProblem, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { cancelRecording, download, record } from "./recording.js";
 import { programs } from "./request.js";
@@ -66,10 +66,12 @@ async function start(renderer) {
   showPanel("loading");
   const { link, isLocal } = facts();
   dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link, isLocal } }));
-  showProgress("Loading Gaitway", 0, 0);
+  showProgress(LOADING_PROGRAM, 0, 0);
   const lacking = missingCapabilities();
-  if (lacking !== null) throw cannotRun("unsupported", lacking.missing, lacking.attempts);
+  if (lacking !== null) throw cannotRun(lacking.code, lacking.missing, lacking.attempts);
   const problems = [];
+  /** @type {import("./types.d.ts").ErrorCode} */
+  let code = "unsupported";
   let hasProgram = false;
   for (const attempt of renderer === null ? await backendsToTry() : [renderer]) {
     /** @type {Bindings} */
@@ -89,9 +91,10 @@ async function start(renderer) {
       program.completed.then(() => keepOffline(programFiles(attempt)));
       return;
     }
-    problems.push(problem);
+    code = problem.code;
+    problems.push(problem.message);
   }
-  throw hasProgram ? cannotRun("unsupported", problems, graphicsToTry(renderer)) : cannotRun("not-found", problems, TRY_DOWNLOAD);
+  throw hasProgram ? cannotRun(code, problems, graphicsToTry(renderer)) : cannotRun("not-found", problems, TRY_DOWNLOAD);
 }
 
 /**
@@ -103,6 +106,7 @@ async function start(renderer) {
 function cannotRun(code, problems, attempts) {
   showCannotRun(problems, attempts);
   const message = problems.join(" ");
+  reportProblem(message, code);
   send({ event: "cannotRun", failure: { code, message } });
   return coded(code, message);
 }
@@ -121,6 +125,7 @@ function graphicsToTry(renderer) {
  * @param {Bindings} bindings
  * @param {Backend} renderer
  * @param {View} view
+ * @returns {Promise<import("./types.d.ts").GaitwayError | null>}
  */
 async function startOn(bindings, renderer, { link, model, motion, isPrivate }) {
   const [items, motionItems] = await Promise.all([model, motion].map(readAgain));
@@ -135,11 +140,13 @@ async function startOn(bindings, renderer, { link, model, motion, isPrivate }) {
   /** @type {string[]} */
   let problems;
   try {
-    problems = JSON.parse(await unlessEnded(bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings, renderer))));
+    const shown = JSON.parse(await unlessEnded(bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings, renderer))));
+    problems = shown.problems;
+    noteLinkFailure(shown.code);
   } catch (error) {
     if (panel() === "stopped") throw error;
     end(bindings);
-    return `${BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
+    return coded(codeOf(error) ?? "unsupported", `${BACKEND_NAMES[renderer]}: ${messageOf(error)}`);
   }
   program.app = bindings;
   await unlessEnded(showFirstFrame(canvas, bindings, presentFrames));
@@ -220,9 +227,10 @@ function callsFor(bindings, renderer) {
     setTheme,
     progress: showProgress,
     changed: (link) => queueMicrotask(() => isCurrent() && viewChanged(link)),
-    warn: (message) => {
+    warn: (message, code) => {
       console.warn(message);
       sayProblem(message);
+      reportProblem(message, code ?? null);
     },
     // Deferred: the program borrows its side of the mirror during this call, and moving the focus would call it back.
     mirror: (tree) => queueMicrotask(() => isCurrent() && mirror?.show(tree)),
@@ -237,6 +245,7 @@ function callsFor(bindings, renderer) {
 function stopped(message, stack = new Error().stack) {
   if (panel() === "stopped" || panel() === "cannot-run") return;
   endWaiting(message);
+  reportProblem(message, "lost-device");
   // Not from inside the instance's own call.
   queueMicrotask(() => send({ event: "stopped", reason: message }));
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);

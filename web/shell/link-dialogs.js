@@ -1,12 +1,13 @@
 // The dialogs about a link: which of its files the user has to bring, and what of it couldn't be loaded.
 import { button, byId, dialog, field, focusCanvas, showDialog, showList } from "./dom.js";
 import { openByHand } from "./opening.js";
-import { panel, sayProblem } from "./panels.js";
+import { panel, reportProblem, sayProblem } from "./panels.js";
 import { performs, send } from "./session.js";
+import { allowsFiles, isViewer } from "./viewer.js";
 
 performs({
   ask({ files, others, isOwn }) {
-    if (panel() !== null || dialog("bring").open) return;
+    if (panel() !== null || dialog("bring").open || !allowsFiles) return;
     dialog("bring").returnValue = "";
     showList("bring-files", files);
     byId("bring-others").hidden = others === null;
@@ -23,7 +24,8 @@ performs({
     byId("missing-title").textContent = title;
     byId("missing-rest").textContent = rest;
     byId("missing-continue").textContent = without;
-    if (panel() === null) showDialog("missing", button("missing-again"));
+    reportProblem(problems.join(" "));
+    if (panel() === null && !isViewer) showDialog("missing", button("missing-again"));
   },
   closeReport: () => dialog("missing").close(),
 });

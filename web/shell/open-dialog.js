@@ -5,6 +5,7 @@ import { showGallery } from "./gallery.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
 import { facts } from "./session.js";
+import { allowsFiles } from "./viewer.js";
 
 /** @typedef {import("./types.d.ts").Openable} Openable */
 /** @typedef {import("./types.d.ts").Role} Role */
@@ -31,7 +32,7 @@ const TEXTS = {
 
 /** @param {"any" | "motion"} [kind] */
 export function showOpenDialog(kind = "any") {
-  if (panel() !== null || isDialogOpen()) return;
+  if (panel() !== null || isDialogOpen() || !allowsFiles) return;
   role = kind === "motion" ? kind : undefined;
   byId("open-form", HTMLFormElement).reset();
   const { title, what, example, sample } = TEXTS[kind];
@@ -82,7 +83,7 @@ addEventListener(
   "keydown",
   (event) => {
     const isOpen = event.key.toLowerCase() === "o" && (event.ctrlKey || event.metaKey) && !event.shiftKey && !event.altKey;
-    if (!isOpen || panel() !== null) return;
+    if (!isOpen || panel() !== null || !allowsFiles) return;
     event.preventDefault();
     event.stopPropagation();
     showOpenDialog();

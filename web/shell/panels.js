@@ -52,9 +52,30 @@ export function sayProblem(message) {
 
 for (const line of document.querySelectorAll("dialog .problem")) line.closest("dialog")?.addEventListener("close", () => (line.textContent = ""));
 
+/**
+ * What kind of failure the first problem of the link is.
+ * @type {import("./types.d.ts").ErrorCode | null}
+ */
+let linkFailure = null;
+
+/** @param {import("./types.d.ts").ErrorCode | null} code */
+export const noteLinkFailure = (code) => void (linkFailure = code);
+
+/**
+ * Reports a problem to the page around this one.
+ * @param {string} message
+ * @param {import("./types.d.ts").ErrorCode | null} [code] That of the link's problems if absent.
+ */
+export function reportProblem(message, code = linkFailure) {
+  dispatchEvent(new CustomEvent("gaitway:problem", { detail: { message, code } }));
+}
+
 /** Updating the progress with every chunk of a file would block the page. */
 const PROGRESS_INTERVAL_MS = 100;
 let progressAt = -Infinity;
+
+/** What is loaded before any file. */
+export const LOADING_PROGRAM = "Loading Gaitway";
 
 /**
  * Shows loading progress. A total of 0 means that it is unknown.
@@ -67,6 +88,7 @@ export function showProgress(what, received, total) {
   if (hasMore && performance.now() < progressAt + PROGRESS_INTERVAL_MS) return;
   progressAt = performance.now();
   const isKnown = total > 0;
+  dispatchEvent(new CustomEvent("gaitway:progress", { detail: { what, share: isKnown ? Math.min(1, received / total) : 0 } }));
   const bar = byId("loading-progress", HTMLProgressElement);
   if (isKnown) bar.value = Math.min(1, received / total);
   else bar.removeAttribute("value");

@@ -3,6 +3,7 @@ import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
 import { program } from "./running.js";
 import { urlsIn } from "./urls.js";
+import { allowsFiles } from "./viewer.js";
 
 /** Inputs without a caret. */
 const NO_TEXT = /^(button|checkbox|file|radio|range|submit)$/;
@@ -16,7 +17,7 @@ const isTextField = (target) => target instanceof HTMLTextAreaElement || (target
 addEventListener(
   "paste",
   (event) => {
-    if (event.clipboardData === null || isTextField(event.target) || (panel() !== null && panel() !== "loading")) return;
+    if (!allowsFiles || event.clipboardData === null || isTextField(event.target) || (panel() !== null && panel() !== "loading")) return;
     event.preventDefault();
     event.stopPropagation();
     const files = [...event.clipboardData.files];

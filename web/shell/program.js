@@ -1,7 +1,7 @@
 // Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is
 // downloaded only if the first can't be used.
 import { likelyBackend } from "./capabilities.js";
-import { showProgress } from "./panels.js";
+import { LOADING_PROGRAM, showProgress } from "./panels.js";
 import { programs, request } from "./request.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
@@ -103,7 +103,7 @@ async function compile(requested, bytes) {
     transform(chunk, controller) {
       if (received < MODELS_START * bytes && received + chunk.byteLength >= MODELS_START * bytes) dispatchEvent(new CustomEvent("gaitway:part-loaded"));
       received += chunk.byteLength;
-      showProgress("Loading Gaitway", received, bytes);
+      showProgress(LOADING_PROGRAM, received, bytes);
       controller.enqueue(chunk);
     },
   });

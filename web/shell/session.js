@@ -2,6 +2,8 @@
 // the instances of the program: the one that was loaded last makes the next text of each event. Events are passed on here, one
 // after the other; what follows from them is done by the modules that import this one.
 
+import { isViewer } from "./viewer.js";
+
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 /** @typedef {import("./types.d.ts").Effect} Effect */
 /** @typedef {import("./types.d.ts").Facts} Facts */
@@ -56,8 +58,8 @@ export function continueWith(bindings) {
 
 /** @type {Partial<Performers>} */
 const performers = {
-  push: ({ state, link }) => history.pushState(entryState(state), "", `#${link}`),
-  replace: ({ state, link }) => history.replaceState(entryState(state), "", link === null ? undefined : `#${link}`),
+  push: ({ state, link }) => isViewer || history.pushState(entryState(state), "", `#${link}`),
+  replace: ({ state, link }) => isViewer || history.replaceState(entryState(state), "", link === null ? undefined : `#${link}`),
 };
 
 /** @type {(state: { number: number, own: boolean }) => EntryState} */

@@ -3,15 +3,15 @@ import { byId, button, copyText, dialog, field, listOf, messageOf, showList } fr
 import { parts } from "./parts.js";
 import { program } from "./running.js";
 import { performs } from "./session.js";
+import { OWN_PARAMETERS } from "./viewer.js";
 
 /**
  * Returns the address of the page with a link.
  * @param {string} link
  */
-function addressOf(link) {
+export function addressOf(link) {
   const page = new URL(location.href);
-  // The back end is a matter of this machine.
-  page.searchParams.delete("renderer");
+  OWN_PARAMETERS.forEach((name) => page.searchParams.delete(name));
   page.hash = "";
   return `${page.href}#${link}`;
 }

@@ -23,7 +23,7 @@ export type Role = "motion" | undefined;
 export type Backend = "webgpu" | "webgl2";
 
 /** What kind of failure an error is; see `ErrorCode` in src/files/error.rs. */
-export type ErrorCode = "not-found" | "cross-origin" | "unsupported" | "malformed" | "too-large" | "cancelled" | "lost-device";
+export type ErrorCode = "not-found" | "cross-origin" | "unsupported" | "malformed" | "too-large" | "cancelled" | "lost-device" | "no-graphics";
 
 /** What the calls of `window.gaitway` reject with. */
 export interface GaitwayError extends Error {
@@ -110,7 +110,7 @@ export interface ShellCalls {
   setTheme(theme: string): void;
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
-  warn(message: string): void;
+  warn(message: string, code?: ErrorCode): void;
   mirror(tree: string): void;
   stopped(message: string): void;
 }
@@ -233,7 +233,8 @@ export interface State {
   pose: string;
   pin: string[];
   names: string;
-  embed: boolean;
+  /** As a flag: a view that another page embeds, with a button that opens it in a page of its own. */
+  embed: boolean | "transport" | "viewport";
   exposure: number;
   root: string | null;
   feet: string | null;
@@ -255,6 +256,8 @@ export interface Gaitway {
   open(items: Openable | Openable[] | FileList, options?: { as?: Role }): Promise<InspectDocument>;
   apply(partial: object): Promise<void>;
   screenshot(): Promise<Blob>;
+  /** Returns a link to the current view, in a page of its own. */
+  toLink(): Promise<string>;
   /** Answered at once while the program runs, otherwise as a promise. */
   state(): State | Promise<State>;
   pose(): PoseDocument | Promise<PoseDocument>;
@@ -283,5 +286,8 @@ declare global {
     "gaitway:loading": CustomEvent<{ link: string; isLocal: boolean }>;
     "gaitway:change": CustomEvent<null>;
     "gaitway:part-loaded": CustomEvent<null>;
+    /** `what`: the program or a file. */
+    "gaitway:progress": CustomEvent<{ what: string; share: number }>;
+    "gaitway:problem": CustomEvent<{ message: string; code: ErrorCode | null }>;
   }
 }
