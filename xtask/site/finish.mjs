@@ -1,5 +1,6 @@
 // Makes the site: the page with its scripts and styles, the programs, samples with their images, icons, manifest and
-// service worker. Everything but index.html, manifest.webmanifest and sw.js is named after a hash of its content.
+// service worker. Everything but index.html, manifest.webmanifest, sw.js and the
+// module of the element is named after a hash of its content.
 // Arguments: the folder of the site, that of the programs, and the URL that the site will have (optional).
 import crypto from "node:crypto";
 import fs from "node:fs";
@@ -153,10 +154,32 @@ const firstLink = scenes.length === 0 ? "" : linkOf(scenes[0]);
 html = replaced(html, 'id="loading-still"', `id="loading-still" data-link="${escaped(firstLink)}" data-images="${escaped(JSON.stringify(images))}"`);
 html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 
+fs.mkdirSync(path.join(dist, "viewer"));
+fs.writeFileSync(path.join(dist, "viewer/gaitway.js"), await bundled("npm/viewer/gaitway.js"));
+fs.writeFileSync(path.join(dist, "viewer/index.html"), await examples());
+
+/** The live examples of the element. What they show as code is the code that runs. */
+async function examples() {
+  let html = text("web/examples/index.html");
+  const page = (/** @type {string} */ file) => path.posix.join("..", file);
+  html = replaced(html, 'href="examples.css"', `href="${page(put("viewer", "examples", ".css", await bundled("web/examples/examples.css")))}"`);
+  html = replaced(html, 'src="examples.js"', `src="${page(put("viewer", "examples", ".js", await minified("web/examples/examples.js", { target: TARGET })))}"`);
+  html = html.replace(/"picture:(\w+)"/g, (_, name) => `"${page(stills[scenes.findIndex((scene) => scene.name === name)].large)}"`);
+  const script = text("web/examples/examples.js").split("\n// Shown on the page.\n")[1];
+  html = replaced(html, "<!-- script -->", escaped(script.trim()));
+  return html.replace(/<figure>\n([^]*?)\n\s*<pre><!-- markup --><\/pre>/g, (whole, markup) => whole.replace("<!-- markup -->", () => escaped(unindented(markup))));
+}
+
+/** @param {string} markup */
+function unindented(markup) {
+  const indent = /^ */.exec(markup)?.[0] ?? "";
+  return markup.split("\n").map((line) => line.replace(indent, "")).join("\n");
+}
+
 const files = fs
   .readdirSync(dist, { recursive: true, encoding: "utf8" })
   .map((file) => file.split(path.sep).join("/"))
-  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.startsWith("parts/") && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
+  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.startsWith("parts/") && !file.startsWith("viewer/") && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
   .sort();
 const version = hashOf(html, files.join("\n"), fs.readFileSync(path.join(dist, "manifest.webmanifest")), fs.readFileSync("web/sw.js"));
 fs.writeFileSync(index, replaced(html, "<title>", `<meta name="gaitway-version" content="${version}">\n    <title>`));
