@@ -1,6 +1,6 @@
 //! What the frame loop leaves to the platform: file dialogs, links, recording, and change notifications.
 
-use gaitway_scene::editor::ExportedFile;
+use gaitway_scene::editor::{ExportedFile, Scene};
 use gaitway_scene::library::{Library, ModelId};
 use gaitway_scene::state::ViewerState;
 
@@ -53,6 +53,17 @@ pub trait Host {
 
     /// Saves a file for the user. Sends [`Message::Saved`](super::Message::Saved), unless the user changes their mind.
     fn save_file(&self, file: ExportedFile, inbox: &Inbox);
+
+    /// Whether the host can save pages that show a scene by themselves.
+    fn can_save_page(&self) -> bool {
+        false
+    }
+
+    /// Saves a page that shows a scene by itself, once the user has chosen how. `has_ktx2`: images of the model have to be
+    /// transcoded. Called only if [`Host::can_save_page`] returns true.
+    fn save_page(&self, scene: Scene, has_ktx2: bool) {
+        let _ = (scene, has_ktx2);
+    }
 
     /// Starts recording a video: asks for one frame after the other with [`App::video_frame`](super::App::video_frame), saves the
     /// file, and sends [`Message::Recorded`](super::Message::Recorded) at the end, whatever it is.

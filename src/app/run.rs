@@ -69,6 +69,7 @@ impl App {
         let mut panels = UiState::default();
         panels.host.has_gallery = host.has_gallery();
         panels.host.has_fullscreen = host.has_fullscreen();
+        panels.host.can_save_page = host.can_save_page();
         panels.host.has_validator = host.has_validator();
         cc.egui_ctx.set_theme(host.theme());
         let app = Self {
@@ -302,6 +303,7 @@ impl App {
             UiAction::ShowGallery => return self.host.show_gallery(),
             UiAction::ChooseMotion => return self.host.choose_files(Role::Motion, &self.inbox),
             UiAction::Save(what) => return self.save(what),
+            UiAction::SavePage => return self.save_page(),
             UiAction::Record(settings) => return self.start_recording(settings),
             UiAction::CancelRecording => return self.host.cancel_recording(),
             UiAction::Validate => return self.start_validation(),

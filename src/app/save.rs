@@ -7,7 +7,7 @@ use gaitway_scene::library::Model;
 use super::App;
 #[cfg(target_arch = "wasm32")]
 use super::Message;
-use crate::files::encode_png;
+use crate::files::{encode_png, has_ktx2};
 use crate::ui::Saved;
 
 impl App {
@@ -27,6 +27,15 @@ impl App {
         }
         match self.file(what) {
             Ok(file) => self.host.save_file(file, &self.inbox),
+            Err(error) => self.add_error(&error),
+        }
+    }
+
+    /// Saves a page that shows the scene by itself.
+    pub(super) fn save_page(&mut self) {
+        let has_ktx2 = self.editor.library().active().is_some_and(|model| has_ktx2(&model.asset));
+        match self.editor.scene() {
+            Ok(scene) => self.host.save_page(scene, has_ktx2),
             Err(error) => self.add_error(&error),
         }
     }

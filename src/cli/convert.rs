@@ -10,10 +10,17 @@ use super::failure::{Failure, Outcome};
 use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
 use super::output::{print_error, warn, write_output};
 use super::retarget::{choose_clip, clip_format_of, model_extensions};
-use super::{ConvertArguments, Unit, open, print_warnings};
+use super::{ConvertArguments, Unit, open, print_warnings, web_page};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
+    if web_page::is_page(&arguments.out) {
+        return web_page::run(arguments, disk);
+    }
+    if !arguments.page.is_none() {
+        let failure = Failure::expected("an .html for --motion, --map, --title, --renderer and --page", "another file");
+        return Err(failure.with_hint("use `gaitway retarget` for a model with a motion").at("--out"));
+    }
     let (bytes, extensions) = match &arguments.view {
         Some(link) => (posed(arguments, link, disk)?, vec!["glb"]),
         None => unposed(arguments, disk)?,

@@ -1,6 +1,7 @@
 //! The command line: thin wrappers around the functions that the page uses.
 
 mod batch;
+mod card;
 mod change;
 mod convert;
 mod edit;
@@ -21,6 +22,7 @@ mod render;
 mod retarget;
 #[cfg(feature = "render")]
 mod sequence;
+mod web_page;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -38,7 +40,7 @@ use gaitway_scene::library::Model;
 use gaitway_scene::state::{ClipChoice, Command, unknown_clip};
 use serde_json::json;
 
-use crate::files::{Disk, Opened};
+use crate::files::{Backend, Disk, Opened};
 use edit::EditOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;
@@ -67,8 +69,10 @@ enum Action {
     Map(MapArguments),
     /// Retargets a clip to a model, appends it to the model's own clips, and reports how well it fits.
     Retarget(Box<RetargetArguments>),
-    /// Converts any supported model to a single .glb, or one of its clips to .bvh or .vrma.
+    /// Converts any supported model to a single .glb, one of its clips to .bvh or .vrma, or a scene to a page that shows it.
     Convert(ConvertArguments),
+    /// Writes a page with a title and a picture of its own, for previews, that leads to a link.
+    Card(CardArguments),
     /// Renders the same image as the page, or the frames of a clip, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
@@ -264,10 +268,11 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip.
-    #[arg(long, value_name = "OUT.glb|.bvh|.vrma")]
+    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip. An .html is a page that
+    /// shows the scene by itself, without a network.
+    #[arg(long, value_name = "OUT.glb|.bvh|.vrma|.html")]
     out: PathBuf,
-    /// The clip to change, or to write as .bvh or .vrma, by name or index [default: the first].
+    /// The clip to change, to write as .bvh or .vrma, or to show in an .html, by name or index [default: the first].
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
     #[command(flatten)]
@@ -275,9 +280,74 @@ struct ConvertArguments {
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
-    /// A link of the page, or its part after `#`: the pose and joint names with which an .obj is written as .glb [default: the rest pose].
+    /// A link of the page, or its part after `#`: the view that an .html shows, or the pose and joint names with which an .obj is
+    /// written as .glb [default: the rest pose].
     #[arg(long, value_name = "LINK")]
     view: Option<String>,
+    #[command(flatten)]
+    page: PageArguments,
+}
+
+/// What only a page has.
+#[derive(Debug, Args)]
+struct PageArguments {
+    #[command(flatten)]
+    motion: MotionArguments,
+    /// Of an .html: its title [default: the model's name].
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Of an .html: what it draws with. With WebGPU it is smaller, but not every browser opens it [default: webgl2].
+    #[arg(long, value_enum)]
+    renderer: Option<RendererArgument>,
+    /// Of an .html: the folder with the page's program, such as dist of `cargo xtask build` [default: $GAITWAY_PAGE, or beside
+    /// this program].
+    #[arg(long, value_name = "FOLDER")]
+    page: Option<PathBuf>,
+}
+
+impl PageArguments {
+    fn is_none(&self) -> bool {
+        let MotionArguments { motion, map } = &self.motion;
+        motion.is_none() && map.is_none() && self.title.is_none() && self.renderer.is_none() && self.page.is_none()
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum RendererArgument {
+    Webgl2,
+    Webgpu,
+}
+
+impl From<RendererArgument> for Backend {
+    fn from(argument: RendererArgument) -> Self {
+        match argument {
+            RendererArgument::Webgl2 => Self::WebGl2,
+            RendererArgument::Webgpu => Self::WebGpu,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+struct CardArguments {
+    /// A link of the page.
+    link: String,
+    /// Copies of the link's model, for the picture [default: the link's own, if that is a sample].
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The page to write. Its picture goes beside it.
+    #[arg(long, value_name = "OUT.html")]
+    out: PathBuf,
+    #[command(flatten)]
+    motion: MotionArguments,
+    /// The title [default: the model's name].
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// The text below the title.
+    #[arg(long, value_name = "TEXT")]
+    text: Option<String>,
+    /// The URL that the card will have: many sites need it to show the picture.
+    #[arg(long, value_name = "URL")]
+    url: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -412,6 +482,7 @@ fn run(arguments: Arguments) -> Outcome {
         Some(Action::Pose(arguments)) => pose::run(&arguments, &disk),
         Some(Action::Retarget(arguments)) => retarget::run(&arguments, &disk),
         Some(Action::Convert(arguments)) => convert::run(&arguments, &disk),
+        Some(Action::Card(arguments)) => card::run(&arguments, &disk),
         #[cfg(feature = "render")]
         Some(Action::Render(arguments)) => render::run(&arguments, &disk),
         None => open_window(arguments.files),
@@ -442,24 +513,29 @@ fn print_warnings(file: &str, warnings: &Warnings) {
     }
 }
 
-/// Applies the given options and keeps the rest. With `has_motion`, retargeted clips come first.
-fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outcome {
-    editor.apply(Command::SetPlaying(false));
-    if let Some(model) = editor.library().active() {
-        let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
-        let choice = match &moment.clip {
-            Some(name) => Some(retargeted(name).unwrap_or_else(|| ClipChoice::called(name))),
-            None => retargeted("0"),
-        };
-        if let Some(choice) = choice {
-            editor.apply(Command::SetClip(choice));
-        }
+/// Shows a clip by name or index. With `has_motion`, retargeted clips come first, and the default is the first of them.
+fn show_clip(editor: &mut Editor, clip: Option<&str>, has_motion: bool) -> Outcome {
+    let Some(model) = editor.library().active() else { return Ok(()) };
+    let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
+    let choice = match clip {
+        Some(name) => Some(retargeted(name).unwrap_or_else(|| ClipChoice::called(name))),
+        None => retargeted("0"),
+    };
+    if let Some(choice) = choice {
+        editor.apply(Command::SetClip(choice));
     }
-    if let (Some(_), Some(model)) = (&moment.clip, editor.library().active())
+    if let (Some(_), Some(model)) = (clip, editor.library().active())
         && let Some(unknown) = unknown_clip(model, editor.state())
     {
         return Err(Failure::from(unknown).in_file(&model.source));
     }
+    Ok(())
+}
+
+/// Applies the given options and keeps the rest. With `has_motion`, retargeted clips come first.
+fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outcome {
+    editor.apply(Command::SetPlaying(false));
+    show_clip(editor, moment.clip.as_deref(), has_motion)?;
     if let (false, Some(model)) = (moment.layers.layers.is_empty(), editor.library().active()) {
         layer::check(&moment.layers.layers, model)?;
         editor.apply(Command::SetLayers(moment.layers.layers.clone()));

@@ -26,7 +26,6 @@ pub(super) fn is_standard_output(out: &Path) -> bool {
 }
 
 /// Refuses an output that [`write_output`] would refuse, before the work.
-#[cfg_attr(not(feature = "render"), expect(dead_code, reason = "only rendering takes long enough for an early check"))]
 pub(super) fn check_output(out: &Path, extensions: &[&str], disk: &Disk) -> Outcome {
     if is_standard_output(out) {
         return Ok(());

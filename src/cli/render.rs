@@ -8,6 +8,8 @@ use gaitway_scene::state::{
     Background, CameraChoice, Command, EnvironmentChoice, LoopFrames, NameKind, OrbitCamera, UnknownName, ViewerState,
     active_variant, from_object, source_on_stage,
 };
+use image::ExtendedColorType;
+use image::codecs::jpeg::JpegEncoder;
 use serde_json::json;
 
 use super::failure::{Failure, Outcome};
@@ -38,6 +40,27 @@ fn render_picture(arguments: &RenderArguments, editor: &Editor, disk: &Disk) -> 
     let pixels = Studio::new(editor, arguments.size)?.draw(editor.library(), editor.state())?;
     let png = encode_png(width, height, &pixels).ok_or_else(|| Failure::new(NOT_READ))?;
     write_output(&arguments.out, &png, EXTENSIONS, disk)
+}
+
+/// Renders the editor's view for previews of links, as a JPEG.
+pub(super) fn picture(editor: &Editor, size: [u32; 2]) -> Outcome<Vec<u8>> {
+    let pixels = Studio::new(editor, size)?.draw(editor.library(), editor.state())?;
+    jpeg(size, &pixels).ok_or_else(|| Failure::new(NOT_READ))
+}
+
+/// Encodes RGBA rows from the top, in front of the studio's grey, since a JPEG has no alpha.
+fn jpeg([width, height]: [u32; 2], pixels: &[u8]) -> Option<Vec<u8>> {
+    const STUDIO: [u8; 3] = [0xa3, 0xa6, 0xab];
+    const QUALITY: u8 = 80;
+    let over = |color: u8, behind: u8, alpha: u8| {
+        let (color, behind, alpha) = (u32::from(color), u32::from(behind), u32::from(alpha));
+        ((color * alpha + behind * (255 - alpha) + 127) / 255) as u8
+    };
+    let opaque = pixels.chunks_exact(4).flat_map(|pixel| [0, 1, 2].map(|at| over(pixel[at], STUDIO[at], pixel[3])));
+    let mut file = Vec::new();
+    let mut encoder = JpegEncoder::new_with_quality(&mut file, QUALITY);
+    encoder.encode(&opaque.collect::<Vec<_>>(), width, height, ExtendedColorType::Rgb8).ok()?;
+    Some(file)
 }
 
 /// Renders one loop of the clip, as the page records it.

@@ -12,6 +12,11 @@ use gaitway_scene::library::ImageData;
 
 use super::ImageLimits;
 
+/// Whether a model has images that have to be transcoded.
+pub fn has_ktx2(asset: &Asset) -> bool {
+    asset.images.iter().any(is_ktx2)
+}
+
 pub(super) fn is_ktx2(image: &Image) -> bool {
     image.bytes.starts_with(&gaitway_ktx2::MAGIC)
 }

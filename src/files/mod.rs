@@ -23,6 +23,8 @@ mod source;
 mod view;
 #[cfg(target_arch = "wasm32")]
 mod web;
+#[cfg(not(target_arch = "wasm32"))]
+mod web_page;
 
 pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
@@ -34,6 +36,7 @@ pub use error::OpenError;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
 pub use image_limits::ImageLimits;
+pub use images::has_ktx2;
 pub use png::encode_png;
 pub use read::{Item, extensions};
 #[cfg(not(target_arch = "wasm32"))]
@@ -43,3 +46,5 @@ pub use source::Progress;
 pub use view::Held;
 #[cfg(target_arch = "wasm32")]
 pub use web::{OnImage, open_items, open_view, within};
+#[cfg(not(target_arch = "wasm32"))]
+pub use web_page::{Backend, NoTemplate, PAGE_VARIABLE, WebPage, base64, escaped, read_template};

@@ -43,5 +43,5 @@ pub(super) async fn open_read<S: Source>(source: &S, read: FilesRead, role: Role
         let images = source.finish_decoding(started, &mut asset, is_only).await;
         models.push(origins.model(&set, name, asset, derived, images));
     }
-    Ok(origins.contents(sorted, models, samples, role))
+    Ok(origins.contents(&set, sorted, models, samples, role))
 }

@@ -2,7 +2,7 @@
 //! again.
 
 use gaitway_character::asset::Asset;
-use gaitway_formats::FileSet;
+use gaitway_formats::{FileSet, with_references};
 use gaitway_scene::editor::{Contents, ModelFiles, OpenedModel};
 use gaitway_scene::library::{Derived, Environment, ImageData, Model, Motion, container_of};
 use gaitway_scene::state::MEMBER_SEPARATOR;
@@ -43,18 +43,27 @@ impl Origins {
         OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
     }
 
-    fn motion(&self, name: &str, asset: Asset) -> Motion {
-        let (origin, source) = self.origin_and_source(name);
+    fn motion(&self, set: &FileSet, name: String, asset: Asset) -> Motion {
+        let (origin, source) = self.origin_and_source(&name);
         let mut motion = Motion::new(source, asset.into());
         motion.origin = origin;
+        // A folder may have hundreds of others.
+        motion.files = Some(ModelFiles { set: with_references(set, &name), name });
         motion
     }
 
     /// Gathers everything in the order it was asked for. `models` are the models of the set; `samples` join them unless the
     /// role is [`Role::Motion`].
-    pub fn contents(&self, sorted: Sorted, mut models: Vec<OpenedModel>, samples: Vec<Model>, role: Role) -> Contents {
+    pub fn contents(
+        &self,
+        set: &FileSet,
+        sorted: Sorted,
+        mut models: Vec<OpenedModel>,
+        samples: Vec<Model>,
+        role: Role,
+    ) -> Contents {
         let mut motions: Vec<Motion> =
-            sorted.motions.into_iter().map(|(name, asset)| self.motion(&name, asset)).collect();
+            sorted.motions.into_iter().map(|(name, asset)| self.motion(set, name, asset)).collect();
         if role == Role::Motion {
             motions.extend(samples.into_iter().map(|sample| Motion::new(sample.source, sample.asset)));
         } else {
@@ -69,6 +78,7 @@ impl Origins {
         let environment = sorted.environment.map(|(name, panorama)| Environment {
             origin: self.origin_and_source(&name).0,
             panorama: panorama.into(),
+            file: set.get(&name).cloned().unwrap_or_default(),
             is_own: false,
         });
         Contents { motions, models, map: sorted.map, environment, problems, ..Contents::default() }

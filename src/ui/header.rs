@@ -203,7 +203,8 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
     let recordings = pictures.recordings().into_iter().filter(|_| shown.is_animated());
     let recordings = recordings.map(|(label, _, action)| (label, action));
     let image = (text::SAVE_IMAGE, UiAction::Save(pictures.image()));
-    for (label, action) in [image].into_iter().chain(recordings).chain(files) {
+    let page = local.host.can_save_page.then_some((text::SAVE_PAGE, UiAction::SavePage));
+    for (label, action) in [image].into_iter().chain(recordings).chain(files).chain(page) {
         if entry(ui, label) {
             out.actions.push(action);
         }

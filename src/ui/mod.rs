@@ -125,6 +125,8 @@ pub struct HostState {
     pub has_gallery: bool,
     /// The platform can show Gaitway in full screen.
     pub has_fullscreen: bool,
+    /// The platform can save pages that show a scene by themselves.
+    pub can_save_page: bool,
     /// There is a step to undo.
     pub can_undo: bool,
     /// There is an undone step to redo.

@@ -40,6 +40,8 @@ pub enum UiAction {
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
+    /// Save a page that shows the scene by itself.
+    SavePage,
     /// Record one loop of the clip.
     Record(VideoSettings),
     /// Discard the recording.

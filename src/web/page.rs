@@ -8,12 +8,13 @@ use std::task::Poll;
 
 use egui::ThemePreference;
 use futures_util::future::{Either, select};
-use gaitway_scene::editor::{AboutLink, Contents, ExportedFile, short_name};
+use gaitway_character::asset::SharedBytes;
+use gaitway_scene::editor::{AboutLink, Contents, ExportedFile, Scene, short_name};
 use gaitway_scene::library::{Environment, Library, Model, ModelId};
 use gaitway_scene::samples;
 use gaitway_scene::state::{EnvironmentChoice, Link, ViewerState, from_link, to_link};
 use gaitway_session::ErrorCode;
-use js_sys::Array;
+use js_sys::{Array, Uint8Array};
 use serde_json::json;
 use wasm_bindgen::prelude::*;
 
@@ -335,7 +336,7 @@ impl Host for PageHost {
     }
 
     fn has_gallery(&self) -> bool {
-        true
+        self.shell.has_gallery()
     }
 
     fn show_gallery(&self) {
@@ -349,6 +350,16 @@ impl Host for PageHost {
     fn save_file(&self, file: ExportedFile, inbox: &Inbox) {
         self.shell.save(&file.name, &file.bytes);
         inbox.send(Message::Saved(Ok((file.name, file.remark))));
+    }
+
+    fn can_save_page(&self) -> bool {
+        true
+    }
+
+    fn save_page(&self, scene: Scene, has_ktx2: bool) {
+        let pair = |(name, bytes): &(String, SharedBytes)| Array::of2(&name.into(), &Uint8Array::from(&bytes[..]));
+        let [model, motion] = [&scene.model, &scene.motion].map(|files| files.iter().map(pair).collect());
+        self.shell.save_page(&scene.title, &scene.link, model, motion, has_ktx2);
     }
 
     fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {

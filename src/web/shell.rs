@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -29,6 +30,15 @@ extern "C" {
     /// Downloads a file.
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);
+
+    /// Whether there is a gallery of samples, and a page to open the view in.
+    #[wasm_bindgen(method, getter, js_name = hasGallery)]
+    pub fn has_gallery(this: &Shell) -> bool;
+
+    /// Saves a page that shows a scene by itself, once the user has chosen how. The files are pairs of name and content.
+    /// `has_ktx2`: images of the model have to be transcoded.
+    #[wasm_bindgen(method, js_name = savePage)]
+    pub fn save_page(this: &Shell, title: &str, link: &str, model: Array, motion: Array, has_ktx2: bool);
 
     /// Records a video, GIF or images from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its file name, or
     /// to nothing if it was cancelled.

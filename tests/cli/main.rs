@@ -28,3 +28,4 @@ mod render;
 mod variants;
 #[path = "../support/walk_bvh.rs"]
 mod walk_bvh;
+mod web_page;

@@ -86,7 +86,12 @@ fn view_sets_the_light() {
     let mut library = Library::default();
     library.add(samples::load(samples::WALKER).expect("is generated"));
     let panorama = Panorama::new(1, 1, vec![Vec3::ONE]).expect("one pixel");
-    library.add_environment(Environment { origin: "beach.hdr".to_owned(), panorama: panorama.into(), is_own: true });
+    library.add_environment(Environment {
+        origin: "beach.hdr".to_owned(),
+        panorama: panorama.into(),
+        file: Default::default(),
+        is_own: true,
+    });
     // Tall enough for the whole tab.
     let mut harness = bench_of([1280.0, 1600.0], library);
     press(&mut harness, Tab::Camera.label());

@@ -1,4 +1,5 @@
 // What this browser can do, and what to try if it cannot do enough.
+import { programs } from "./request.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 
@@ -16,8 +17,12 @@ export const TRY_GRAPHICS = [
 /** A module with one vector instruction. */
 const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
 
+/** The back ends that the page has a program for. */
+export const BACKENDS = /** @type {Backend[]} */ (["webgpu", "webgl2"]).filter((backend) => backend in programs);
+
 /** @param {Backend} backend */
 export function hasBackend(backend) {
+  if (!BACKENDS.includes(backend)) return false;
   if (backend === "webgpu") return navigator.gpu !== undefined;
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
@@ -31,11 +36,11 @@ export const otherBackend = (backend) => (backend === "webgpu" ? "webgl2" : "web
  */
 export function forcedBackend() {
   const wanted = new URLSearchParams(location.search).get("renderer");
-  return wanted === "webgpu" || wanted === "webgl2" ? wanted : null;
+  return BACKENDS.find((backend) => backend === wanted) ?? null;
 }
 
 /** The back end to try first, as far as can be told without asking for an adapter. */
-export const likelyBackend = () => forcedBackend() ?? (hasBackend("webgpu") ? "webgpu" : "webgl2");
+export const likelyBackend = () => forcedBackend() ?? BACKENDS.find(hasBackend) ?? BACKENDS[0];
 
 /**
  * Returns what this browser lacks and what to try, in sentences; null if it has everything.
@@ -43,7 +48,8 @@ export const likelyBackend = () => forcedBackend() ?? (hasBackend("webgpu") ? "w
  */
 export function missingCapabilities() {
   const wasm = missingWasm();
-  const graphics = hasBackend("webgpu") || hasBackend("webgl2") ? [] : ["Graphics: neither WebGPU nor WebGL2 is available."];
+  const without = BACKENDS.length === 1 ? `${BACKEND_NAMES[BACKENDS[0]]} isn't` : "neither WebGPU nor WebGL2 is";
+  const graphics = BACKENDS.some(hasBackend) ? [] : [`Graphics: ${without} available.`];
   const missing = [...wasm, ...graphics];
   if (missing.length === 0) return null;
   return wasm.length > 0 ? { code: "unsupported", missing, attempts: [TRY_BROWSER] } : { code: "no-graphics", missing, attempts: TRY_GRAPHICS };

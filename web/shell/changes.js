@@ -1,6 +1,7 @@
 // Propagates changes of the view to screen readers, the title, the gallery, the session and scripts, and tells the user what the
 // session says.
 import { byId, focusCanvas, frames, messageOf } from "./dom.js";
+import { isEnclosed } from "./enclosed.js";
 import { hideGallery, markCard } from "./gallery.js";
 import { say, sayNews, sayProblem } from "./panels.js";
 import { program } from "./running.js";
@@ -49,7 +50,8 @@ export function summarize() {
   if (notice !== null && notice !== announcedNotice) sayNews(notice);
   announcedNotice = notice;
   markCard(facts().link, facts().isLocal);
-  document.title = model === "" ? "Gaitway" : `${model} – Gaitway`;
+  // A saved page has a title of its own.
+  if (!isEnclosed()) document.title = model === "" ? "Gaitway" : `${model} – Gaitway`;
   return { model, notice };
 }
 

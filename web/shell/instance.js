@@ -4,6 +4,7 @@ import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./a
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus } from "./dom.js";
+import { isEnclosed } from "./enclosed.js";
 import { codeOf, coded } from "./errors.js";
 import { drawOffScreen } from "./first-frame.js";
 import { setInert, showGallery } from "./gallery.js";
@@ -18,6 +19,7 @@ import { programs } from "./request.js";
 import { endWaiting, program, unlessEnded } from "./running.js";
 import { continueWith, facts, performs, send } from "./session.js";
 import { validate } from "./validation.js";
+import { savePage } from "./web-page.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -213,9 +215,11 @@ function callsFor(bindings, renderer) {
   return {
     renderer,
     choose: showOpenDialog,
+    hasGallery: !isEnclosed(),
     gallery: showGallery,
     setModal: (isOpen) => isCurrent() && setInert(isOpen),
     save: download,
+    savePage: (title, link, model, motion, hasKtx2) => void savePage({ title, link, model, motion, hasKtx2 }, bindings),
     record: (name, width, height, framesPerSec, frameCount, isTransparent, format) => record(name, { width, height, framesPerSec, frameCount, isTransparent, format, frame: bindings.video_frame }),
     cancelRecording,
     validate: (model) => validate((uri) => bindings.gltf_file(model, uri)),

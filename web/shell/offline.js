@@ -2,14 +2,15 @@
 // that the system hands it.
 import { refuse } from "./changes.js";
 import { button, byId } from "./dom.js";
+import { isEnclosed } from "./enclosed.js";
 import { openByHand } from "./opening.js";
 import { program } from "./running.js";
 import { urlWithin } from "./urls.js";
 
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */
 
-/** In a frame of another site nobody visits this page, so nothing is stored; a sandboxed one may not even ask. */
-const isStored = parent === window && "serviceWorker" in navigator;
+/** In a frame of another site nobody visits this page, so nothing is stored; a sandboxed one may not even ask. A saved page has all of it. */
+const isStored = parent === window && "serviceWorker" in navigator && !isEnclosed();
 
 export function install() {
   window.launchQueue?.setConsumer(async ({ files }) => openByHand(await Promise.all(files.map((handle) => handle.getFile()))));

@@ -2,6 +2,7 @@
 // shows them. The page keeps the files; the session knows their numbers and names.
 import { summarize } from "./changes.js";
 import { closeDialogs, messageOf } from "./dom.js";
+import { enclosed } from "./enclosed.js";
 import { codeOf, coded } from "./errors.js";
 import { hideGallery } from "./gallery.js";
 import { sayNews, sayProblem } from "./panels.js";
@@ -132,6 +133,8 @@ function kept(item) {
   files.set(lastFile, item.content);
   return { id: lastFile, name: item.name };
 }
+
+for (const set of enclosed.sets) if (set.length > 0) send({ event: "hold", items: set.map(kept) });
 
 /**
  * Reads an item into the form that the app takes.

@@ -1,6 +1,7 @@
 // Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in
 // the sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the
-// conversion. Two are scripts: one encodes videos (recording.js), one validates glTF files (validation.js).
+// conversion. The others are scripts
+// that encode videos (recording.js), validate glTF files (validation.js) and save pages (web-page.js), and the pages to fill.
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));
@@ -89,6 +90,31 @@ export async function download(name) {
   const content = await fetched(name, AbortSignal.timeout(1000 * MAX_SECS));
   await accept(name, content);
   return content;
+}
+
+/**
+ * Number of failed attempts to load a script.
+ * @type {Record<string, number>}
+ */
+const failures = {};
+
+/**
+ * Downloads a part that is a script, and returns its module.
+ * @param {string} name
+ */
+export async function importScript(name) {
+  const file = files[name];
+  if (file === undefined) throw new Error("this page was built without it");
+  // Some browsers remember that a module couldn't be loaded, so another try needs another address.
+  const { href } = new URL(name in failures ? `${file}?${failures[name]}` : file, document.baseURI);
+  try {
+    const module = await import(href);
+    keepOffline([file]);
+    return module;
+  } catch (error) {
+    failures[name] = (failures[name] ?? 0) + 1;
+    throw error;
+  }
 }
 
 /**

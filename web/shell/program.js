@@ -1,6 +1,6 @@
 // Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is
 // downloaded only if the first can't be used.
-import { likelyBackend } from "./capabilities.js";
+import { BACKENDS, likelyBackend } from "./capabilities.js";
 import { LOADING_PROGRAM, showProgress } from "./panels.js";
 import { programs, request } from "./request.js";
 
@@ -22,7 +22,7 @@ let instanceCount = 0;
 /** The back ends to try, in this order. Asks for an adapter, because a browser may have WebGPU and none. */
 export async function backendsToTry() {
   const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
-  if (adapter) return /** @type {Backend[]} */ (["webgpu", "webgl2"]);
+  if (adapter || !BACKENDS.includes("webgl2")) return BACKENDS;
   downloads.webgpu?.abort();
   delete downloads.webgpu;
   return /** @type {Backend[]} */ (["webgl2"]);
@@ -44,8 +44,9 @@ export async function loadProgram(backend) {
     const script = new URL(programs[backend].script, document.baseURI).href;
     const { compiled } = download(backend);
     instanceCount += 1;
-    // A URL of its own makes an instance of its own.
-    const [{ default: instantiate, ...bindings }, module] = await Promise.all([import(instanceCount === 1 ? script : `${script}?instance=${instanceCount}`), compiled]);
+    // A URL of its own makes an instance of its own. Those of blobs have no query.
+    const other = `${script}${script.startsWith("blob:") ? "#" : "?"}instance=${instanceCount}`;
+    const [{ default: instantiate, ...bindings }, module] = await Promise.all([import(instanceCount === 1 ? script : other), compiled]);
     await instantiate({ module_or_path: module });
     return reportingTraps(bindings);
   } catch (error) {

@@ -1,7 +1,6 @@
 // Files for the user to keep: downloads, and recordings, which a downloaded part encodes.
 import { messageOf } from "./dom.js";
-import { keepOffline } from "./offline.js";
-import { parts } from "./parts.js";
+import { importScript } from "./parts.js";
 
 /** Time for the browser to start reading a download. */
 const DOWNLOAD_TIMEOUT_MS = 10_000;
@@ -29,23 +28,15 @@ export async function record(name, video) {
   return file;
 }
 
-/** Number of failed attempts to load the encoder. */
-let failures = 0;
-
 /** @param {import("../video.js").Video} video */
 async function encode(video) {
-  const file = parts.url("video") ?? "";
   /** @type {typeof import("../video.js")} */
   let part;
   try {
-    // Some browsers remember that a module couldn't be loaded, so another try needs another address.
-    const { href } = new URL(failures === 0 ? file : `${file}?${failures}`, document.baseURI);
-    part = await import(href);
+    part = await importScript("video");
   } catch (error) {
-    failures++;
     throw new Error(`the encoder can't be loaded. Check the connection and try again. (${messageOf(error)})`, { cause: error });
   }
-  keepOffline([file]);
   return part.encode(video);
 }
 

@@ -5,7 +5,7 @@
 
 const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-programs"]'));
 /**
- * The build records the length, because the header may give the compressed one.
+ * The build records the length, because the header may give the compressed one. A page that was saved with a scene has one of them.
  * @type {Record<Backend, { script: string, wasm: string, bytes: number }>}
  */
 export const programs = JSON.parse(meta.content);

@@ -1,7 +1,7 @@
 // The session: what is shown, where that came from and what was asked for since (crates/session). It is a text, which outlives
 // the instances of the program: the one that was loaded last makes the next text of each event. Events are passed on here, one
 // after the other; what follows from them is done by the modules that import this one.
-
+import { enclosed } from "./enclosed.js";
 import { isViewer } from "./viewer.js";
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -13,8 +13,8 @@ import { isViewer } from "./viewer.js";
 /** What an entry's state holds. Older versions of the page wrote it too, so its keys stay. */
 /** @typedef {{ gaitway?: number, own?: boolean } | null} EntryState */
 
-/** The first scene of the gallery; empty in a build without samples. */
-const FIRST_LINK = /** @type {HTMLAnchorElement | null} */ (document.querySelector("#gallery-scenes a"))?.hash.slice(1) ?? "";
+/** The scene that the page was saved with, or the first one of the gallery; empty in a build without samples. */
+const FIRST_LINK = enclosed.link ?? /** @type {HTMLAnchorElement | null} */ (document.querySelector("#gallery-scenes a"))?.hash.slice(1) ?? "";
 
 /**
  * Returns what the session knows of an entry of the history that the browser shows.
@@ -56,10 +56,13 @@ export function continueWith(bindings) {
   text ??= bindings.session_of(first.link, first.state.number ?? undefined, first.state.own);
 }
 
+/** The text of a frame's `srcdoc` has no address of its own. */
+const hasAddress = location.protocol !== "about:";
+
 /** @type {Partial<Performers>} */
 const performers = {
-  push: ({ state, link }) => isViewer || history.pushState(entryState(state), "", `#${link}`),
-  replace: ({ state, link }) => isViewer || history.replaceState(entryState(state), "", link === null ? undefined : `#${link}`),
+  push: ({ state, link }) => isViewer || history.pushState(entryState(state), "", hasAddress ? `#${link}` : undefined),
+  replace: ({ state, link }) => isViewer || history.replaceState(entryState(state), "", hasAddress && link !== null ? `#${link}` : undefined),
 };
 
 /** @type {(state: { number: number, own: boolean }) => EntryState} */

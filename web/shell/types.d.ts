@@ -52,6 +52,7 @@ export type SessionEvent =
   | { event: "started"; problems: string[] }
   | { event: "stopped"; reason: string }
   | { event: "cannotRun"; failure: Failure }
+  | { event: "hold"; items: Item[] }
   | { event: "open"; request: number | null; by: "hand" | "script" | "frame"; items: Item[]; role: "any" | "motion" }
   | { event: "moved"; link: string; state: { number: number | null; own: boolean } }
   | { event: "changed" | "share" | "visit"; link: string }
@@ -92,12 +93,27 @@ export interface Facts {
   seenPrivate: number;
 }
 
+/** A file of a saved page. */
+export type PageFile = [name: string, bytes: Uint8Array<ArrayBuffer>];
+
+/** A scene that a page is saved with; see crates/scene/src/editor/scene.rs. */
+export interface PageScene {
+  title: string;
+  link: string;
+  model: PageFile[];
+  motion: PageFile[];
+  /** Images of the model have to be transcoded. */
+  hasKtx2: boolean;
+}
+
 /** What the program calls; see src/web/shell.rs. */
 export interface ShellCalls {
   readonly renderer: Backend;
   choose(role: "any" | "motion"): void;
   gallery(): void;
   setModal(isOpen: boolean): void;
+  readonly hasGallery: boolean;
+  savePage(title: string, link: string, model: PageFile[], motion: PageFile[], hasKtx2: boolean): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
   record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean, format: "video" | "gif" | "images"): Promise<string | undefined>;
   cancelRecording(): void;

@@ -7,7 +7,9 @@ import fs from "node:fs";
 import path from "node:path";
 import { build, transform } from "esbuild";
 import sharp from "sharp";
+import { putCards } from "./cards.mjs";
 import { PREVIEW, linkOf, readSamples, readScenes, stillOf } from "./samples.mjs";
+import { deflated, viewerTemplate } from "./viewer.mjs";
 
 const [dist, programs, url] = process.argv.slice(2);
 /** What every browser with WebAssembly SIMD understands. */
@@ -76,12 +78,33 @@ function putParts() {
   return Object.fromEntries(names.map((name) => [name, put("parts", name, ".wasm", fs.readFileSync(path.join(folder, `${name}.wasm`)))]));
 }
 
+/**
+ * Returns the template of pages that show a scene by themselves, with one program.
+ * @param {string} backend
+ */
+async function viewer(backend) {
+  const wasm = path.join(programs, `${backend}.wasm`);
+  // Packing takes time, which a quick build doesn't.
+  const isPacked = fs.existsSync(`${wasm}.lzma`);
+  /** @type {import("./viewer.mjs").Block} */
+  const program = isPacked ? { name: backend, role: "program", coding: "lzma", packed: fs.readFileSync(`${wasm}.lzma`) } : deflated(backend, "program", fs.readFileSync(wasm));
+  const bindings = deflated(backend, "script", await minified(path.join(programs, `${backend}.js`), { target: TARGET }));
+  const decoder = path.join(programs, "parts/ktx2.wasm");
+  const ktx2 = fs.existsSync(decoder) ? deflated("ktx2", "part", fs.readFileSync(decoder)) : undefined;
+  return viewerTemplate(text("web/index.html"), { style, script: await bundled("web/viewer/main.js"), icon, program, bindings, ktx2 });
+}
+
 fs.rmSync(dist, { recursive: true, force: true });
 const [webgpu, webgl2] = await Promise.all(["webgpu", "webgl2"].map(putProgram));
 // With the licences of the validator and its dependencies, as they require.
 const licences = ["LICENSE", "NOTICES"].map((file) => text(`node_modules/gltf-validator/${file}`));
 const validator = await bundled("web/validator/worker.js", "iife", `/*!\n${licences.join("\n")}*/`);
-const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")), validator: put("parts", "validator", ".js", validator) };
+const icon = fs.readFileSync("web/icon.svg");
+const style = await bundled("web/shell.css");
+const viewers = Object.fromEntries(
+  await Promise.all(["webgpu", "webgl2"].map(async (backend) => [`viewer-${backend}`, put("parts", `viewer-${backend}`, ".html", await viewer(backend))])),
+);
+const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")), "web-page": put("parts", "web-page", ".js", await bundled("web/web-page.js")), validator: put("parts", "validator", ".js", validator), ...viewers };
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(
@@ -100,7 +123,6 @@ for (const scene of scenes) {
 }
 const previewFile = put("pictures", "preview", ".jpg", fs.readFileSync(PREVIEW.file));
 
-const icon = fs.readFileSync("web/icon.svg");
 const whole = icon.toString().replace(' rx="7"', "");
 // Systems crop a maskable icon to their own shape, but never its middle 80 %.
 const maskable = whole.replace("<g ", '<g transform="translate(16 16) scale(.8) translate(-16 -16)"><g ').replace("</svg>", "</g></svg>");
@@ -115,6 +137,7 @@ const touchIcon = put("icons", "touch-180", ".png", await png(whole, 180));
 const manifest = JSON.parse(fs.readFileSync("web/manifest.webmanifest", "utf8"));
 fs.writeFileSync(path.join(dist, "manifest.webmanifest"), JSON.stringify({ ...manifest, icons }));
 
+await putCards(dist, scenes, url);
 const cards = scenes.map(
   (scene, index) => `<li>
           <a class="card" href="#${escaped(linkOf(scene))}">
@@ -140,7 +163,7 @@ const head = [
 const index = path.join(dist, "index.html");
 let html = text("web/index.html");
 html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}"`);
-html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await bundled("web/shell.css"))}"`);
+html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", style)}"`);
 html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundled("web/shell.js"))}"`);
 html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
 const start = await bundled("web/start.js", "iife");
@@ -179,7 +202,7 @@ function unindented(markup) {
 const files = fs
   .readdirSync(dist, { recursive: true, encoding: "utf8" })
   .map((file) => file.split(path.sep).join("/"))
-  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.startsWith("parts/") && !file.startsWith("viewer/") && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
+  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !/^(parts|cards|viewer)\//.test(file) && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
   .sort();
 const version = hashOf(html, files.join("\n"), fs.readFileSync(path.join(dist, "manifest.webmanifest")), fs.readFileSync("web/sw.js"));
 fs.writeFileSync(index, replaced(html, "<title>", `<meta name="gaitway-version" content="${version}">\n    <title>`));

@@ -44,6 +44,16 @@ export const linkOf = ({ model, motion, view }) => `v=2&model=${model}${motion =
 export const stillOf = ({ name }) => `${GALLERY}/${name}.webp`;
 
 /**
+ * Returns the scenes that the documentation shows, with their pictures there.
+ * @returns {(Scene & { still: string })[]}
+ */
+export function readDocScenes() {
+  /** @type {(LinkParts & { file: string, title: string, text: string })[]} */
+  const scenes = JSON.parse(fs.readFileSync("docs/pictures.json", "utf8"));
+  return scenes.map((scene) => ({ ...scene, name: `docs-${path.basename(scene.file)}`, still: `docs/${scene.file}.webp` }));
+}
+
+/**
  * Returns the names of the samples that a scene uses.
  * @param {LinkParts} parts
  */

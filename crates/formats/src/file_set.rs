@@ -70,6 +70,11 @@ impl FileSet {
         }
     }
 
+    /// Adds a file of another set under its normalized name.
+    pub(super) fn insert_shared(&mut self, name: &str, bytes: SharedBytes) {
+        self.files.push((name.to_owned(), bytes));
+    }
+
     /// Replaces a file with what it was converted into. The original of a glTF is kept.
     pub(super) fn convert(&mut self, name: &str, bytes: Vec<u8>, mut conversion: Conversion) {
         conversion.original = self.get(name).filter(|_| conversion.format.is_none()).cloned();

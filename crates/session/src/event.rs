@@ -27,6 +27,11 @@ pub enum Event {
         /// Why.
         failure: Failure,
     },
+    /// The page itself has files, of which links find those that they name.
+    Hold {
+        /// Files that are opened together.
+        items: Vec<Item>,
+    },
     /// Something is opened.
     Open {
         /// Whoever waits for the answer; nobody does where the user opens something.

@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | `Launch`, `Loaded`, `Started`, `Stopped`, `CannotRun` | what becomes of the program, of which one instance may follow another |
 //! | `Open`, `Moved`, `TryAgain`, `Later`, `Share`, `Visit` | what the user, a script or the browser wants |
+//! | `Hold` | which files came with the page |
 //! | `Read`, `Opened`, `Followed`, `Lacking`, `Failed` | how a task has ended |
 //! | `Changed`, `Settled`, `Applied`, `ImagesFailed` | what else the program shows |
 //!
@@ -172,6 +173,7 @@ impl Session {
             Event::Started { problems } => self.started(&problems),
             Event::Stopped { reason } => self.end(stopped(&reason)),
             Event::CannotRun { failure } => self.end(failure),
+            Event::Hold { items } => self.hold(&items),
             Event::Open { request, by, items, role } => self.open(request, by, Set { items, role }),
             Event::Moved { link, state } => self.moved(link, state),
             Event::Changed { link } => self.changed(link),
@@ -214,6 +216,16 @@ impl Session {
             need: asking.map(Awaited::need),
             is_private: self.is_private(),
             seen_private: self.privacy.seen,
+        }
+    }
+
+    /// Holds files of the page's own, which are nobody's secret.
+    fn hold(&mut self, items: &[Item]) {
+        self.files.extend(items.iter().filter_map(Item::id).map(|id| (id, false)));
+        self.held.hold_last(items);
+        // The address asks for them if it was shared or reloaded.
+        if let Some(known) = self.held.with_names(&self.view) {
+            self.view = known;
         }
     }
 

@@ -18,6 +18,8 @@ pub const SAMPLES: &str = "Samples";
 pub const EXPORT: &str = "Export";
 /// Entry of the export menu that shows the settings of images and videos.
 pub const PICTURE_SETTINGS: &str = "Image and video settings…";
+/// Entry of the export menu that saves a page that shows the scene by itself.
+pub const SAVE_PAGE: &str = "Save web page (HTML)…";
 /// Button that shares a link to the view.
 pub const SHARE: &str = "Share…";
 /// Menu of everything else.

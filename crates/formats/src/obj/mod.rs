@@ -61,6 +61,11 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
     missing
 }
 
+/// Returns the .skel and .attach of an .obj.
+pub(super) fn companions<'a>(files: &'a FileSet, file: &str) -> Vec<&'a str> {
+    ["skel", "attach"].iter().filter_map(|kind| Some(companion(files, file, kind)?.0)).collect()
+}
+
 /// The same path or URL with another extension. A URL keeps its query.
 fn sibling(file: &str, kind: &str) -> Option<String> {
     let path = without_query(file);

@@ -1,10 +1,9 @@
 //! The result of opening files, before it enters the library.
 
-use gaitway_formats::FileSet;
 use gaitway_retarget::JointMapFile;
 use gaitway_session::ErrorCode;
 
-use crate::library::{Environment, Model, Motion, container_of};
+use crate::library::{Environment, Model, ModelFiles, Motion, container_of};
 use crate::state::LinkError;
 
 /// Opened files, ready for the library.
@@ -56,15 +55,6 @@ pub struct OpenedModel {
     pub model: Model,
     /// The model's own files, needed to write it with another clip. `None` for generated samples.
     pub files: Option<ModelFiles>,
-}
-
-/// The files a model was read from, and the name of its main file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModelFiles {
-    /// All files that were opened together, including the buffers and images that the main file refers to.
-    pub set: FileSet,
-    /// Path of the main file in `set`.
-    pub name: String,
 }
 
 impl From<Model> for OpenedModel {

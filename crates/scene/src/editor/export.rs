@@ -127,7 +127,7 @@ impl Editor {
     }
 
     /// Returns the active model if its file can be written.
-    fn complete_model(&self) -> Result<&Model, String> {
+    pub(super) fn complete_model(&self) -> Result<&Model, String> {
         match self.model()? {
             model if model.awaits_images() => Err(AWAITS_IMAGES.to_owned()),
             model => Ok(model),

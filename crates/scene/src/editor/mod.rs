@@ -13,17 +13,20 @@ mod motions;
 mod names;
 mod open;
 mod reduced_motion;
+mod scene;
 mod steps;
 mod suit;
 mod transact;
 mod validation;
 
+pub use crate::library::ModelFiles;
 pub use clip_file::{ClipFormat, write_clip};
-pub use contents::{AboutLink, Contents, ModelFiles, OpenedMap, OpenedModel};
+pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
 pub use event::Event;
 pub use export::{AWAITS_IMAGES, Export, ExportedFile, derived_clip};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
+pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
 
 use std::collections::BTreeMap;

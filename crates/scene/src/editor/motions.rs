@@ -89,6 +89,7 @@ impl Editor {
         let Some(model) = self.library.get(id) else { return Ok(()) };
         let mut motion = Motion::new(model.source.clone(), model.asset.clone());
         (motion.origin, motion.is_own) = (model.origin.clone(), model.is_own);
+        motion.files = self.files_of(model).cloned();
         let contents = Contents { motions: Some(vec![motion]), is_by_hand: true, ..Contents::default() };
         self.open(contents, None, admit)
     }

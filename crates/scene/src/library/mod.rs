@@ -16,8 +16,9 @@ pub use clips::{
     ClipCopy, ClipEdits, ClipId, Clips, CopyId, ModelClip, MotionId, REST_POSE, SavedNames, clip_file_name,
 };
 use gaitway_character::anim::Clip;
-use gaitway_character::asset::Panorama;
+use gaitway_character::asset::{Panorama, SharedBytes};
 use gaitway_character::mesh::Bounds;
+use gaitway_formats::FileSet;
 use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
 pub use image::{ImageData, Images};
 pub use inspect::{inspect, warning_documents};
@@ -40,6 +41,15 @@ pub struct Loaded {
     pub motions: Vec<Motion>,
 }
 
+/// The files a model or motion was read from, and the name of its main file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelFiles {
+    /// All files that were opened together, including the buffers and images that the main file refers to.
+    pub set: FileSet,
+    /// Path of the main file in `set`.
+    pub name: String,
+}
+
 /// A loaded environment.
 #[derive(Debug, Clone)]
 pub struct Environment {
@@ -47,6 +57,8 @@ pub struct Environment {
     pub origin: String,
     /// Its light.
     pub panorama: Arc<Panorama>,
+    /// The file that it was read from.
+    pub file: SharedBytes,
     /// Whether it is one of the user's local files.
     pub is_own: bool,
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use gaitway_character::asset::{Asset, Humanoid};
 use gaitway_retarget::{Body, Recognized, recognize};
 
-use super::{Model, ModelId, MotionId};
+use super::{Model, ModelFiles, ModelId, MotionId};
 
 /// A loaded file whose clips a model can borrow.
 #[derive(Debug, Clone)]
@@ -18,6 +18,8 @@ pub struct Motion {
     pub is_own: bool,
     /// The file's content.
     pub asset: Arc<Asset>,
+    /// What it was read from. `None` for generated samples.
+    pub files: Option<ModelFiles>,
     /// Humanoid slots recognized in `asset`; empty if it is not a human body.
     pub slots: Humanoid,
     recognized: Arc<Recognized>,
@@ -37,6 +39,7 @@ impl Motion {
             is_own: false,
             source,
             asset,
+            files: None,
             slots: recognized.humanoid(),
             recognized: Arc::new(recognized),
             id: MotionId::default(),

@@ -1,6 +1,6 @@
 //! Opening files and addresses: what is opened together, who is answered what, and what the user is told.
 
-use gaitway_session::{Effect, ErrorCode, RequestId};
+use gaitway_session::{Effect, EntryState, ErrorCode, Event, FileId, Item, NamedFile, RequestId, Session};
 
 use crate::cases::{FOX, MAN, start};
 use crate::orders::in_every_order;
@@ -118,4 +118,23 @@ fn light_and_map_are_no_models() {
     world.then(Act::Drop(&[("beach.hdr", Content::Light)])).then(Act::Drop(&[("map.json", Content::Map)]));
     assert_eq!(world.models(), ["walker"]);
     assert_eq!(world.address(), "model=walker&light=file:beach.hdr");
+}
+
+#[test]
+fn files_that_came_with_the_page_are_found_by_the_names_in_its_link() {
+    let named = |id, name: &str| Item::File(NamedFile { id: FileId(id), name: name.to_owned() });
+    let (fox, walk) = (named(1, "Fox.glb"), named(2, "walk.bvh"));
+    // As it was saved, and as the address has it after a change.
+    for link in ["model=Fox.glb&motion=walk.bvh&t=1", "model=file:Fox.glb&motion=file:walk.bvh&t=1"] {
+        let mut session = Session::new(link.into(), EntryState::default());
+        for items in [vec![fox.clone()], vec![walk.clone()]] {
+            assert_eq!(session.handle(Event::Hold { items }, None), []);
+        }
+        session.handle(Event::Launch, None);
+        let effects = session.handle(Event::Loaded, None);
+        let link = "model=Fox.glb&motion=walk.bvh&t=1".into();
+        let run = Effect::Run { link, model: vec![fox.clone()], motion: vec![walk.clone()], is_private: false };
+        assert!(effects.contains(&run), "{effects:?}");
+        assert!(!session.facts().is_private);
+    }
 }

@@ -12,7 +12,8 @@ use super::{any, contents, editor, notices, open};
 /// Grey from all directions.
 fn environment(origin: &str) -> Contents {
     let panorama = Panorama::new(2, 1, vec![Vec3::splat(0.5); 2]).expect("the right size");
-    let environment = Environment { origin: origin.to_owned(), panorama: panorama.into(), is_own: false };
+    let environment =
+        Environment { origin: origin.to_owned(), panorama: panorama.into(), file: Default::default(), is_own: false };
     Contents { environment: Some(environment), ..Contents::default() }
 }
 
@@ -76,4 +77,16 @@ fn a_few_environments_are_kept() {
     }
     let kept: Vec<&str> = editor.library().environments().iter().map(|kept| kept.origin.as_str()).collect();
     assert_eq!(kept, ["2.hdr", "3.hdr", "4.hdr", "5.hdr"]);
+}
+
+#[test]
+fn a_scene_takes_the_image_that_lights_it_along() {
+    let mut editor = editor("sample:walker");
+    editor.open(environment("https://example.org/beach.hdr"), None, &mut any).expect("fits");
+    let scene = editor.scene().expect("there is a model");
+    assert!(scene.model.is_empty(), "the walker is generated");
+    let names: Vec<&str> = scene.motion.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["light/environment.hdr"]);
+    assert!(scene.link.contains("&light=light/environment.hdr"), "{}", scene.link);
+    assert!(scene.link.contains("&embed=1"), "{}", scene.link);
 }

@@ -1,0 +1,90 @@
+//! `gaitway card`: a page with a title and a picture of its own, for previews, that leads to a link.
+
+use std::path::PathBuf;
+
+use gaitway_scene::editor::short_name;
+use gaitway_scene::state::{Sources, from_link};
+
+use super::failure::{Failure, Outcome};
+use super::motion::{Overrides, apply_link, open_editor};
+use super::output::{check_output, is_standard_output, save_output, warn};
+use super::web_page::{EXTENSIONS, PICTURE_SIZE, picture_of};
+use super::{CardArguments, open};
+use crate::files::{Disk, escaped};
+
+/// xtask/site/cards.mjs fills it for the page's own scenes.
+const TEMPLATE: &str = include_str!("card.html");
+const TEXT: &str = "Watch it move in the browser.";
+
+pub(super) fn run(arguments: &CardArguments, disk: &Disk) -> Outcome {
+    let CardArguments { link, out, .. } = arguments;
+    if !link.starts_with("https://") && !link.starts_with("http://") {
+        let failure = Failure::expected("a link such as https://example.org/gaitway/#model=sample:pilot", link);
+        return Err(failure.at("LINK"));
+    }
+    if is_standard_output(out) {
+        return Err(Failure::expected("a file ending in .html, since its picture goes beside it", "-").at("--out"));
+    }
+    check_output(out, EXTENSIONS, disk)?;
+    let (view, _) = from_link(link.split_once('#').map_or("", |(_, fragment)| fragment));
+    let sources = view.character.sources;
+    let picture = picture(arguments, &sources, disk)?;
+    let model = sources.model.first().map_or_else(|| "Gaitway".to_owned(), |source| short_name(source));
+    let picture_path = out.with_extension("jpg");
+    let picture_name = picture_path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let [width, height] = PICTURE_SIZE.map(|side| side.to_string());
+    let values = [
+        ("title", arguments.title.clone().unwrap_or(model)),
+        ("text", arguments.text.clone().unwrap_or_else(|| TEXT.to_owned())),
+        ("link", link.clone()),
+        ("picture-url", beside(arguments.url.as_deref(), &picture_name)),
+        ("picture", picture_name),
+        ("width", width),
+        ("height", height),
+    ];
+    let inputs = disk.files_read();
+    if let Some(picture) = &picture {
+        save_output(&picture_path, picture, &["jpg"], &inputs)?;
+        if arguments.url.is_none() {
+            warn("many sites show a picture only by its absolute URL; name the card's own with --url");
+        }
+    }
+    save_output(out, filled(&values, picture.is_some()).as_bytes(), EXTENSIONS, &inputs)
+}
+
+/// Renders the link's view of the given files, otherwise of its samples. Files on the web are not fetched.
+fn picture(arguments: &CardArguments, sources: &Sources, disk: &Disk) -> Outcome<Option<Vec<u8>>> {
+    let is_remote = |source: &String| source.contains("://");
+    let files: Vec<PathBuf> = match arguments.files.as_slice() {
+        [] if sources.model.is_empty() || sources.model.iter().any(is_remote) => {
+            warn("the card has no picture: name a copy of the link's model after the link");
+            return Ok(None);
+        }
+        [] => sources.model.iter().map(PathBuf::from).collect(),
+        given => given.to_vec(),
+    };
+    let mut editor = open_editor(open(&files, disk)?, &arguments.motion, disk)?;
+    apply_link(&mut editor, &arguments.link, &arguments.motion, Overrides::default(), disk)?;
+    Ok(picture_of(&editor))
+}
+
+/// Returns the URL of a file in the folder of another one.
+fn beside(url: Option<&str>, name: &str) -> String {
+    let folder = url.and_then(|url| Some(url.rsplit_once('/')?.0));
+    folder.map_or_else(|| name.to_owned(), |folder| format!("{folder}/{name}"))
+}
+
+fn filled(values: &[(&str, String)], has_picture: bool) -> String {
+    let mut page = String::new();
+    for line in TEMPLATE.lines().filter(|line| has_picture || !line.contains("{picture")) {
+        let mut rest = line;
+        while let Some((before, after)) = rest.split_once('{') {
+            let Some((key, after)) = after.split_once('}') else { break };
+            let value = values.iter().find(|(name, _)| *name == key).map_or("", |(_, value)| value.as_str());
+            page.extend([before, &*escaped(value)]);
+            rest = after;
+        }
+        page.extend([rest, "\n"]);
+    }
+    page
+}

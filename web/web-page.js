@@ -1,0 +1,139 @@
+// The dialog that saves a page with a scene inside, and the page itself: a template of the build (xtask/site/viewer.mjs) with the
+// program, to which title, picture, link and files are added. src/files/web_page.rs writes the same for the command line.
+
+/** @typedef {import("./shell/types.d.ts").Backend} Backend */
+/** @typedef {import("./shell/types.d.ts").PageFile} PageFile */
+/** @typedef {import("./shell/types.d.ts").PageScene} PageScene */
+
+/**
+ * What the page around the dialog does.
+ * @typedef {object} Host
+ * @property {(backend: Backend) => Promise<string>} template
+ * @property {() => Promise<Uint8Array<ArrayBuffer>>} screenshot A PNG.
+ * @property {(name: string, content: Blob) => void} save
+ * @property {(text: string) => void} notify
+ */
+
+const PICTURE_WIDTH = 800;
+/** JPEG has no transparency. */
+const STUDIO = "#a3a6ab";
+/** Base64 of as many bytes at once: a whole number of groups of three. */
+const CHUNK = 3 * 8192;
+
+/** @param {string} text */
+const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
+
+/** @param {Uint8Array} bytes */
+function base64(bytes) {
+  let text = "";
+  for (let start = 0; start < bytes.length; start += CHUNK) text += btoa(String.fromCharCode(...bytes.subarray(start, start + CHUNK)));
+  return text;
+}
+
+/** @param {Uint8Array<ArrayBuffer>} bytes */
+async function deflated(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/**
+ * Returns the elements that hold files.
+ * @param {PageScene} scene
+ */
+async function blocksOf({ model, motion }) {
+  const block = (/** @type {string} */ role) => async (/** @type {PageFile} */ [name, bytes]) =>
+    `<script type="application/octet-stream" data-name="${escaped(name)}" data-role="${role}" data-coding="deflate">${base64(await deflated(bytes))}</script>\n`;
+  return await Promise.all([...model.map(block("model")), ...motion.map(block("motion"))]);
+}
+
+/**
+ * Returns the picture of the scene as a data URL.
+ * @param {Uint8Array<ArrayBuffer>} png
+ */
+async function pictureOf(png) {
+  const image = await createImageBitmap(new Blob([png], { type: "image/png" }));
+  const scale = Math.min(1, PICTURE_WIDTH / image.width);
+  const canvas = Object.assign(document.createElement("canvas"), { width: Math.round(image.width * scale), height: Math.round(image.height * scale) });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = STUDIO;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/jpeg", 0.8);
+}
+
+/**
+ * Returns the page.
+ * @param {string} template
+ * @param {{ title: string, picture: string, link: string, blocks: string[], hasKtx2: boolean }} scene
+ */
+export function pageOf(template, { title, picture, link, blocks, hasKtx2 }) {
+  const whole = hasKtx2 ? template : template.replace(/<!-- ktx2 -->[^]*<!-- \/ktx2 -->/, "");
+  const [before, middle, after] = whole.split(/<!-- scene -->|<!-- files -->/);
+  const head = [`<title>${escaped(title)}</title>`, `<meta name="gaitway-link" content="${escaped(link)}">`, `<meta property="og:title" content="${escaped(title)}">`, `<meta property="og:image" content="${picture}">`];
+  return new Blob([before, head.join("\n    "), middle, ...blocks, after], { type: "text/html" });
+}
+
+const DIALOG = `
+  <h1 id="page-title">Save as a web page</h1>
+  <p>One file that shows this scene, with its model and motions inside. A double click opens it, without a network. Those who get it can take the files out.</p>
+  <div class="field">
+    <label for="page-name">Title</label>
+    <input id="page-name" type="text" autocomplete="off">
+  </div>
+  <div><label><input type="radio" name="page-backend" value="webgl2" checked> For every current browser</label></div>
+  <div><label><input type="radio" name="page-backend" value="webgpu"> For browsers with WebGPU: a smaller file</label></div>
+  <p id="page-size" role="status"></p>
+  <form method="dialog" class="buttons">
+    <button type="submit">Cancel</button>
+    <button id="page-save" type="button" class="chief">Save</button>
+  </form>`;
+
+/** @type {(parent: Element, selector: string) => any} */
+const find = (parent, selector) => parent.querySelector(selector);
+
+/**
+ * Shows the dialog. Resolves once it is there.
+ * @param {PageScene} scene
+ * @param {Host} host
+ */
+export async function showDialog(scene, host) {
+  const dialog = document.createElement("dialog");
+  dialog.id = "web-page";
+  dialog.setAttribute("aria-labelledby", "page-title");
+  dialog.innerHTML = DIALOG;
+  document.body.append(dialog);
+  dialog.addEventListener("close", () => dialog.remove());
+  dialog.showModal();
+  const [name, size, save] = ["#page-name", "#page-size", "#page-save"].map((selector) => find(dialog, selector));
+  name.value = scene.title;
+  const [blocks, picture] = [blocksOf(scene), host.screenshot().then(pictureOf)];
+  /** @type {Record<string, Promise<string>>} */
+  const templates = {};
+  /** @type {() => Promise<Blob>} */
+  const page = async () => {
+    const backend = find(dialog, ":checked").value;
+    const template = await (templates[backend] ??= host.template(backend));
+    return pageOf(template, { ...scene, title: name.value, blocks: await blocks, picture: await picture });
+  };
+  const measure = async () => {
+    save.disabled = true;
+    size.textContent = "Preparing…";
+    const measured = page();
+    try {
+      const { size: bytes } = await measured;
+      size.textContent = `Size: ${(bytes / 1e6).toFixed(1)} MB`;
+      save.disabled = false;
+    } catch (error) {
+      for (const backend of Object.keys(templates)) delete templates[backend];
+      size.textContent = `It can't be loaded. Check the connection and try again. (${error instanceof Error ? error.message : error})`;
+    }
+  };
+  for (const choice of dialog.querySelectorAll("input[type=radio]")) choice.addEventListener("change", measure);
+  save.addEventListener("click", async () => {
+    const file = `${scene.title.replace(/\.\w+$/, "")}.html`;
+    host.save(file, await page());
+    dialog.close();
+    host.notify(`Saved ${file}.`);
+  });
+  await measure();
+}
