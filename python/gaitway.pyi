@@ -69,6 +69,11 @@ class Retargeted:
     @property
     def report(self) -> dict[str, Any]: ...
 
+class Scene:
+    @property
+    def html(self) -> str: ...
+    def write(self, path: _Path) -> None: ...
+
 class RetargetOptions(TypedDict, total=False):
     clip: str | int | None
     horizontal: _RootPart | None
@@ -101,3 +106,16 @@ def propose_map(model: Model, motion: Motion) -> dict[str, Any]: ...
 def retarget(
     model: Model, motion: Motion, map: dict[str, Any] | _Path | None = None, **options: Unpack[RetargetOptions]
 ) -> Retargeted: ...
+def show(
+    model: Model,
+    motion: Motion | None = None,
+    *,
+    clip: str | int | None = None,
+    view: str | None = None,
+    map: dict[str, Any] | _Path | None = None,
+    title: str | None = None,
+    renderer: Literal["webgl2", "webgpu"] = "webgl2",
+    height: int = 480,
+    file: _Path | None = None,
+    page: _Path | None = None,
+) -> Scene: ...

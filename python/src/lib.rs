@@ -13,6 +13,7 @@ mod clip;
 mod error;
 mod file;
 mod retarget;
+mod show;
 
 /// Load characters and motions, propose joint maps, retarget clips, and sample poses as NumPy arrays.
 ///
@@ -27,4 +28,6 @@ mod gaitway {
     use crate::file::{File, Model, Motion, load_model, load_motion};
     #[pymodule_export]
     use crate::retarget::{Retargeted, propose_map, retarget};
+    #[pymodule_export]
+    use crate::show::{Scene, show};
 }

@@ -76,7 +76,7 @@ pub fn retarget(
     Ok(Retargeted { made: Arc::new(raised(made)?), model: Source::Model(model) })
 }
 
-fn read_map(map: &Bound<'_, PyAny>) -> PyResult<OpenedMap> {
+pub fn read_map(map: &Bound<'_, PyAny>) -> PyResult<OpenedMap> {
     if map.is_instance_of::<PyDict>() {
         let json: String = map.py().import("json")?.call_method1("dumps", (map,))?.extract()?;
         return raised(functions::parse_map("map", &json));

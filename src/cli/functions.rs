@@ -12,11 +12,13 @@ use serde_json::Value;
 use super::RetargetChoices;
 pub use super::failure::{Failure, Outcome};
 use super::map::Proposed;
-use super::motion::{open_map, read_motion};
+use super::motion::{MotionArguments, open_map, read_motion};
 use super::output::save_output;
 pub use super::retarget::Made;
 use super::retarget::{clip_format_of, make, model_extensions, model_file};
 use super::usage_message;
+use super::web_page::{self, View, editor_of};
+pub use crate::files::Backend;
 use crate::files::{Disk, Opened, read_map};
 
 /// A loaded file and the paths of all files that were read for it, none of which is overwritten.
@@ -106,4 +108,47 @@ pub fn save_model(out: &Path, opened: &Opened, clips: &[&Clip], inputs: &[PathBu
     let mut extensions = model_extensions(&opened.model.asset);
     extensions.retain(|extension| ["glb", "vrm"].contains(extension));
     save_output(out, &bytes, &extensions, inputs)
+}
+
+/// How [`page`] shows a scene. By default its first clip plays.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PageOptions<'a> {
+    /// A clip's name or index; clips of the motion come first.
+    pub clip: Option<&'a str>,
+    /// A link, or its part after `#`, with the view; the clip overrides it.
+    pub view: Option<&'a str>,
+    /// By default the model's name.
+    pub title: Option<&'a str>,
+    /// What it draws with.
+    pub backend: Backend,
+    /// The folder with the page's program; by default what a variable names, beside this program, or near `prefix`.
+    pub folder: Option<&'a Path>,
+    /// Where packages are installed.
+    pub prefix: Option<&'a Path>,
+}
+
+/// Returns a page that shows a model by itself, as `gaitway convert` writes it, without a picture for previews.
+///
+/// # Errors
+/// If the motion, the map, the clip or the view doesn't fit, or the page's program is missing.
+pub fn page(
+    model: &Opened,
+    motion: Option<&Motion>,
+    map: Option<OpenedMap>,
+    options: PageOptions<'_>,
+) -> Outcome<String> {
+    let template = web_page::template(options.backend, options.folder, options.prefix)?;
+    let Opened { model, model_files, motions, .. } = model;
+    let mut shown = Model::new(model.source.clone(), model.asset.clone(), vec![None; model.asset.images.len()]);
+    shown.origin.clone_from(&model.origin);
+    let opened = Opened {
+        model: shown,
+        model_files: model_files.clone(),
+        motions: motion.map_or_else(|| motions.clone(), |motion| vec![motion.clone()]),
+        map,
+        files: Vec::new(),
+    };
+    let view = View { link: options.view, clip: options.clip };
+    let editor = editor_of(opened, &MotionArguments::default(), view, &Disk::default())?;
+    web_page::written(&editor, &template, options.title, None)
 }

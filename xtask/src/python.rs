@@ -11,7 +11,11 @@ use crate::process::{output, repository, run, run_with, target_folder, text};
 /// The environment's packages: a list in `python`, copied into the environment once they are installed.
 const REQUIREMENTS: &str = "requirements.txt";
 /// Large packages for one test each.
-const LARGE: [(&str, &str); 2] = [("Ray", "requirements-ray.txt"), ("Blender", "requirements-blender.txt")];
+const LARGE: [(&str, &str); 3] = [
+    ("Ray", "requirements-ray.txt"),
+    ("Blender", "requirements-blender.txt"),
+    ("a notebook", "requirements-notebook.txt"),
+];
 
 const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
 
