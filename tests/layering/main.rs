@@ -3,6 +3,7 @@
 
 mod circles;
 mod documents;
+mod release;
 
 use std::ffi::OsStr;
 use std::fs;

@@ -4,6 +4,7 @@
 
 mod clang;
 mod data;
+mod packages;
 mod page;
 mod process;
 mod python;
@@ -23,6 +24,7 @@ cargo xtask build [--url URL]  builds the page into dist/, small and fast, for a
 cargo xtask build --bench      the same, with the hooks that benches/web measures through
 cargo xtask trunk              builds the page for `trunk serve` and `trunk build`, which call it
 cargo xtask test               runs every check and test, the cheap ones first
+cargo xtask packages           packs the Rust packages of a release and builds the program from them
 cargo xtask data               downloads the public test models into ../shared/data (or $GAITWAY_DATA)
 cargo xtask pictures           redraws the pictures in README.md, docs/ and the gallery
 cargo xtask setup              installs whatever the other tasks need";
@@ -49,6 +51,7 @@ fn run() -> anyhow::Result<()> {
         ["pictures"] => redraw_pictures(),
         ["trunk"] => trunk::run(),
         ["test"] => test::run(),
+        ["packages"] => packages::check(),
         ["data"] => data::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
         ["help" | "--help" | "-h"] => {

@@ -9,7 +9,7 @@ use std::thread;
 use anyhow::Context;
 
 use crate::process::{self, Step, cli, command, repository, run_with, succeeded, target_folder, text, time_table};
-use crate::{page, python, setup, sizes};
+use crate::{packages, page, python, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
     setup::page()?;
@@ -20,6 +20,7 @@ pub fn run() -> anyhow::Result<()> {
     let cli = cli();
     let cli = text(&cli)?;
     python::test(cli)?;
+    packages::check()?;
     page::build(page::Build::Optimized, &[], None, &page::dist())?;
     sizes::compress_and_print(true, &page::dist())?;
     node_tests(cli)
@@ -63,7 +64,7 @@ fn test_original_text() -> anyhow::Result<()> {
 /// How many of Node's test files run at once at most: each starts browsers.
 const MAX_FILES: usize = 4;
 
-/// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
+/// Runs the tests in tests/action, tests/three, tests/reference and tests/browser, and prints the time table before their summary.
 fn node_tests(cli: &str) -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
@@ -119,7 +120,7 @@ fn is_start_of_summary(line: &str) -> bool {
 
 fn node_test_files() -> anyhow::Result<Vec<String>> {
     let mut files = Vec::new();
-    for folder in ["tests/three", "tests/reference", "tests/browser"] {
+    for folder in ["tests/action", "tests/three", "tests/reference", "tests/browser"] {
         for entry in fs::read_dir(repository().join(folder)).context(folder)? {
             let name = entry?.file_name();
             if let Some(name) = name.to_str().filter(|name| name.ends_with(".test.mjs")) {
