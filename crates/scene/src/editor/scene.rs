@@ -7,7 +7,7 @@ use gaitway_formats::with_references;
 
 use super::{Editor, short_name};
 use crate::library::ModelFiles;
-use crate::state::{EnvironmentChoice, to_link};
+use crate::state::{Embed, EnvironmentChoice, to_link};
 
 /// Everything that shows a view again, without a network. Files are what was loaded: compressed geometry is decompressed, and what
 /// isn't glTF, BVH or OBJ is a .glb, under the name that it had.
@@ -51,7 +51,7 @@ impl Editor {
             return Err("there is no model".to_owned());
         }
         let mut state = self.shared_state();
-        state.page.embed = true;
+        state.page.embed = Embed::Page;
         let mut names = Names::default();
         let (main, model_files) = place(&mut names, &model.origin, self.files_of(model))?;
         state.character.sources.model = vec![main];
