@@ -90,6 +90,9 @@ function listed(text) {
 }
 
 /** A frame with the page in it. */
+/** How long after a frame has loaded its first word may take. */
+const PATIENCE_MS = 3000;
+
 class Frame {
   /** @type {Map<number, { resolve: (result: any) => void, reject: (error: Error) => void }>} */
   #calls = new Map();
@@ -111,12 +114,12 @@ class Frame {
     this.ready = new Promise((resolve, reject) => (this.#calls.set(0, { resolve, reject })));
     this.ready.catch(() => {});
     addEventListener("message", this.#hear);
-    // The page says something while it loads.
-    this.element.addEventListener("load", () => {
-      if (this.#isAlive) return;
+    // The page says something while it loads, which may be heard a little later.
+    this.element.addEventListener("load", () => setTimeout(() => {
+      if (this.#isAlive || !this.element.isConnected) return;
       tell("missing", {});
       this.#answer(0, { error: "there is no Gaitway", code: "not-found" });
-    });
+    }, PATIENCE_MS));
   }
 
   /** @param {MessageEvent} message */

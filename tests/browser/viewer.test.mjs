@@ -60,10 +60,11 @@ after(async () => {
  * @param {() => void} [early] Runs before the scripts, in frames as well.
  */
 async function opened(body, early = () => {}) {
-  fs.writeFileSync(path.join(folder, "page.html"), `<!doctype html><title>around</title><style>body { margin: 0 } gaitway-viewer { width: 400px }</style>
+  fs.writeFileSync(path.join(folder, "page.html"), `<!doctype html><title>around</title><link rel="icon" href="data:,"><style>body { margin: 0 } gaitway-viewer { width: 400px }</style>
 <script>
   window.seen = [];
-  for (const type of ["progress", "load", "change", "error"]) addEventListener(type, (event) => event.target.localName === "gaitway-viewer" && seen.push({ type, id: event.target.id, detail: event.detail }), true);
+  // The window hears no load events of the document.
+  for (const type of ["progress", "load", "change", "error"]) document.addEventListener(type, (event) => event.target.localName === "gaitway-viewer" && seen.push({ type, id: event.target.id, detail: event.detail }), true);
 </script>
 <script type="module" src="node_modules/gaitway/viewer/gaitway.js"></script>${body}`);
   const page = watched(await context.newPage(), true);
