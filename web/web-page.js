@@ -1,4 +1,4 @@
-// The dialog that saves a page with a scene inside, and the page itself: a template of the build (xtask/site/viewer.mjs) with the
+// The dialog that saves a page with a scene inside, and the page itself: a template of the build (xtask/site/standalone.mjs) with the
 // program, to which title, picture, link and files are added. src/files/web_page.rs writes the same for the command line.
 
 /** @typedef {import("./shell/types.d.ts").Backend} Backend */

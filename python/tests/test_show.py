@@ -18,7 +18,7 @@ def page(tmp_path: Path) -> Path:
     folder = tmp_path / "page"
     folder.mkdir()
     for backend in ("webgl2", "webgpu"):
-        (folder / f"viewer-{backend}-0123456789abcdef.html").write_text(TEMPLATE + backend)
+        (folder / f"standalone-{backend}-0123456789abcdef.html").write_text(TEMPLATE + backend)
     return folder
 
 
@@ -42,7 +42,7 @@ def test_a_scene_is_a_sandboxed_frame(model: gaitway.Model, motion: gaitway.Moti
 
 def test_a_large_scene_names_the_choices(model: gaitway.Model, page: Path) -> None:
     for backend in ("webgl2", "webgpu"):
-        large = page / f"viewer-{backend}-0123456789abcdef.html"
+        large = page / f"standalone-{backend}-0123456789abcdef.html"
         large.write_text(TEMPLATE + "x" * 2_900_000)
     with pytest.raises(gaitway.Error, match=r"at most 2\.9 MB.*renderer=\"webgpu\".*textures.*file=\"scene\.html\""):
         gaitway.show(model, page=page)
@@ -62,7 +62,7 @@ def test_a_file_beside_the_notebook(
 
 
 def test_what_is_wrong_is_said(model: gaitway.Model, tmp_path: Path) -> None:
-    with pytest.raises(gaitway.Error, match="there is no viewer-webgl2"):
+    with pytest.raises(gaitway.Error, match="there is no standalone-webgl2"):
         gaitway.show(model, page=tmp_path)
     with pytest.raises(gaitway.Error, match="expected webgl2 or webgpu, found gl"):
         gaitway.show(model, renderer="gl", page=tmp_path)

@@ -1,4 +1,4 @@
-//! Pages that show a scene by themselves: a template of the page's build (xtask/site/viewer.mjs), which has a program inside, with
+//! Pages that show a scene by themselves: a template of the page's build (xtask/site/standalone.mjs), which has a program inside, with
 //! title, picture, link and files added. web/web-page.js does the same on the page.
 
 use std::fs::{read_dir, read_to_string};
@@ -36,7 +36,7 @@ impl Backend {
 /// There is no template.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "the page's program is missing: there is no viewer-{}….html in {}; build it with `cargo xtask build` and name its folder, \
+    "the page's program is missing: there is no standalone-{}….html in {}; build it with `cargo xtask build` and name its folder, \
      dist, with --page or {}",
     .backend.key(), listed(.folders), PAGE_VARIABLE
 )]
@@ -62,7 +62,7 @@ pub fn read_template(backend: Backend, folder: Option<&Path>, near: &[PathBuf]) 
     let folders: Vec<PathBuf> = named.map_or_else(|| near.iter().flat_map(places).collect(), |named| vec![named]);
     let found = folders.iter().flat_map(|folder| [folder.clone(), folder.join("parts")]).find_map(|folder| {
         let names = read_dir(&folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-        let start = format!("viewer-{}", backend.key());
+        let start = format!("standalone-{}", backend.key());
         let name = names.filter(|name| name.starts_with(&start) && name.ends_with(".html")).max()?;
         read_to_string(folder.join(name)).ok()
     });

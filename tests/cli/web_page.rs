@@ -21,7 +21,7 @@ fn folder(name: &str) -> PathBuf {
 fn template(folder: &Path) -> String {
     let template = "<head><!-- scene --></head><body><!-- ktx2 -->decoder<!-- /ktx2 --><!-- files --></body>";
     fs::create_dir_all(folder.join("parts")).expect("a folder");
-    fs::write(folder.join("parts/viewer-webgl2-0123456789abcdef.html"), template).expect("a template");
+    fs::write(folder.join("parts/standalone-webgl2-0123456789abcdef.html"), template).expect("a template");
     text(folder)
 }
 
@@ -135,9 +135,9 @@ fn a_page_needs_its_program_and_an_html() {
     let fails = |more: &[&str], says: &str| {
         check_fails(&convert(more).split('\n').collect::<Vec<_>>(), 1, says);
     };
-    fails(&["--page", &text(&folder)], "there is no viewer-webgl2");
+    fails(&["--page", &text(&folder)], "there is no standalone-webgl2");
     let page = template(&folder);
-    fails(&["--page", &page, "--renderer", "webgpu"], "there is no viewer-webgpu");
+    fails(&["--page", &page, "--renderer", "webgpu"], "there is no standalone-webgpu");
     fails(&["--page", &page, "--unit", "cm"], "--view");
     fails(&["--page", &page, "--clip", "Fly"], "“Fly”");
     check_fails(&["convert", "sample:pilot", "--title", "Pilot", "--out", "pilot.glb"], 1, "expected an .html");

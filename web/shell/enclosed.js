@@ -1,4 +1,4 @@
-// What came with the page itself: in a page that was saved with a scene (web/viewer), the link that shows it and its files.
+// What came with the page itself: in a page that was saved with a scene (web/standalone), the link that shows it and its files.
 // Elsewhere nothing.
 
 /** @typedef {import("./types.d.ts").NamedFile} NamedFile */

@@ -12,7 +12,7 @@ export async function savePage(scene, bindings) {
   try {
     /** @type {typeof import("../web-page.js")} */
     const part = await importScript("web-page");
-    const template = async (/** @type {string} */ backend) => new TextDecoder().decode(await download(`viewer-${backend}`));
+    const template = async (/** @type {string} */ backend) => new TextDecoder().decode(await download(`standalone-${backend}`));
     await part.showDialog(scene, { template, screenshot: () => bindings.screenshot(), save, notify: (text) => bindings.notify(text) });
   } catch (error) {
     refuse(new Error(`Couldn't save a web page: ${messageOf(error)}`, { cause: error }));

@@ -9,7 +9,7 @@ import { build, transform } from "esbuild";
 import sharp from "sharp";
 import { putCards } from "./cards.mjs";
 import { PREVIEW, linkOf, readSamples, readScenes, stillOf } from "./samples.mjs";
-import { deflated, viewerTemplate } from "./viewer.mjs";
+import { deflated, standaloneTemplate } from "./standalone.mjs";
 
 const [dist, programs, url] = process.argv.slice(2);
 /** What every browser with WebAssembly SIMD understands. */
@@ -82,16 +82,16 @@ function putParts() {
  * Returns the template of pages that show a scene by themselves, with one program.
  * @param {string} backend
  */
-async function viewer(backend) {
+async function standalone(backend) {
   const wasm = path.join(programs, `${backend}.wasm`);
   // Packing takes time, which a quick build doesn't.
   const isPacked = fs.existsSync(`${wasm}.lzma`);
-  /** @type {import("./viewer.mjs").Block} */
+  /** @type {import("./standalone.mjs").Block} */
   const program = isPacked ? { name: backend, role: "program", coding: "lzma", packed: fs.readFileSync(`${wasm}.lzma`) } : deflated(backend, "program", fs.readFileSync(wasm));
   const bindings = deflated(backend, "script", await minified(path.join(programs, `${backend}.js`), { target: TARGET }));
   const decoder = path.join(programs, "parts/ktx2.wasm");
   const ktx2 = fs.existsSync(decoder) ? deflated("ktx2", "part", fs.readFileSync(decoder)) : undefined;
-  return viewerTemplate(text("web/index.html"), { style, script: await bundled("web/viewer/main.js"), icon, program, bindings, ktx2 });
+  return standaloneTemplate(text("web/index.html"), { style, script: await bundled("web/standalone/main.js"), icon, program, bindings, ktx2 });
 }
 
 fs.rmSync(dist, { recursive: true, force: true });
@@ -101,10 +101,10 @@ const licences = ["LICENSE", "NOTICES"].map((file) => text(`node_modules/gltf-va
 const validator = await bundled("web/validator/worker.js", "iife", `/*!\n${licences.join("\n")}*/`);
 const icon = fs.readFileSync("web/icon.svg");
 const style = await bundled("web/shell.css");
-const viewers = Object.fromEntries(
-  await Promise.all(["webgpu", "webgl2"].map(async (backend) => [`viewer-${backend}`, put("parts", `viewer-${backend}`, ".html", await viewer(backend))])),
+const templates = Object.fromEntries(
+  await Promise.all(["webgpu", "webgl2"].map(async (backend) => [`standalone-${backend}`, put("parts", `standalone-${backend}`, ".html", await standalone(backend))])),
 );
-const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")), "web-page": put("parts", "web-page", ".js", await bundled("web/web-page.js")), validator: put("parts", "validator", ".js", validator), ...viewers };
+const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")), "web-page": put("parts", "web-page", ".js", await bundled("web/web-page.js")), validator: put("parts", "validator", ".js", validator), ...templates };
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(

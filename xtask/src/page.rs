@@ -175,7 +175,7 @@ fn optimize(back_end: &str, made: &Made) -> anyhow::Result<()> {
     made.remember()
 }
 
-/// Packs a program for the pages that have it in their text (xtask/site/viewer.mjs): a quarter smaller than with Deflate.
+/// Packs a program for the pages that have it in their text (xtask/site/standalone.mjs): a quarter smaller than with Deflate.
 fn pack(wasm: &Path) -> anyhow::Result<()> {
     let content = fs::read(wasm)?;
     let step = Step::start("lzma", &[text(wasm)?], &[]);

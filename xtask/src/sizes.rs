@@ -19,8 +19,8 @@ const MAX_BYTES: [(&str, u32); 14] = [
     ("parts/qr", 18_000),
     ("parts/validator", 86_000),
     ("parts/video", 56_000),
-    ("parts/viewer-webgl2", 1_950_000),
-    ("parts/viewer-webgpu", 1_520_000),
+    ("parts/standalone-webgl2", 1_950_000),
+    ("parts/standalone-webgpu", 1_520_000),
     ("parts/web-page", 3_000),
     ("parts/x", 57_000),
 ];

@@ -18,7 +18,7 @@ const element = ({ name, role, coding, packed }) => `<script type="application/o
  * @param {string} page web/index.html.
  * @param {{ style: string, script: string, icon: Buffer, program: Block, bindings: Block, ktx2: Block | undefined }} parts
  */
-export function viewerTemplate(page, { style, script, icon, program, bindings, ktx2 }) {
+export function standaloneTemplate(page, { style, script, icon, program, bindings, ktx2 }) {
   const policy = [
     "default-src 'none'",
     // What a page makes of its own text has a blob: URL.

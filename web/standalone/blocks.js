@@ -1,4 +1,4 @@
-// Files in the text of a page: packed, in base64, in elements that browsers don't run. xtask/site/viewer.mjs, web/web-page.js and
+// Files in the text of a page: packed, in base64, in elements that browsers don't run. xtask/site/standalone.mjs, web/web-page.js and
 // src/files/web_page.rs write them.
 import { unpackLzma } from "./lzma.js";
 
