@@ -89,10 +89,10 @@ function listed(text) {
   return [text];
 }
 
-/** A frame with the page in it. */
-/** How long after a frame has loaded its first word may take. */
+/** How long after a frame has loaded its first message may take. */
 const PATIENCE_MS = 3000;
 
+/** A frame with the page in it. */
 class Frame {
   /** @type {Map<number, { resolve: (result: any) => void, reject: (error: Error) => void }>} */
   #calls = new Map();
@@ -328,7 +328,7 @@ class Viewer extends Base {
   #link() {
     const pairs = Object.entries(this.#values()).flatMap(([key, value]) => (value === null ? [] : [value].flat().map((text) => `${key}=${encodeURIComponent(typeof text === "boolean" ? Number(text) : text)}`)));
     // The version fixes what is left out.
-    return ["v=1", ...pairs].join("&");
+    return ["v=2", ...pairs].join("&");
   }
 
   /** Makes the frame if it is needed by now. */
