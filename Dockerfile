@@ -9,6 +9,7 @@ RUN case "$TARGETARCH" in amd64) cpu=x86_64 ;; arm64) cpu=aarch64 ;; *) exit 1 ;
 
 FROM debian:trixie-slim AS cli
 COPY --from=unpacked /gaitway/gaitway /usr/local/bin/
+COPY --from=unpacked /gaitway/share /usr/local/share
 COPY --from=unpacked /gaitway/LICEN* /usr/share/doc/gaitway/
 WORKDIR /work
 # Nobody in particular. Files that are written belong to the user that `docker run --user` names.
