@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use anyhow::{Context, ensure};
 
 use crate::process::{output, run, target_folder, text};
-use crate::python;
+use crate::{python, setup};
 
 /// It contains clang 22, as `zig clang`. `zig cc` doesn't know the target.
 const PACKAGE: &str = "ziglang==0.17.1";
@@ -42,6 +42,9 @@ fn ziglang() -> anyhow::Result<Variables> {
     if !is_ready()? {
         // What an interrupted installation left.
         let _ = fs::remove_dir_all(&packages);
+        if python::with_pip().is_none() {
+            setup::system_packages(&["python3-venv"])?;
+        }
         let python = python::with_pip().context("there is no Python with pip")?;
         let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary", ":all:"];
         run(&python, &[&pip[..], &["--no-deps", "--target", text(&packages)?, PACKAGE]].concat())?;

@@ -29,7 +29,7 @@ pub fn tests() -> anyhow::Result<()> {
 }
 
 /// Installs system packages where that takes no password; otherwise the error has the command.
-fn system_packages(missing: &[&str]) -> anyhow::Result<()> {
+pub fn system_packages(missing: &[&str]) -> anyhow::Result<()> {
     let names = missing.join(" ");
     if !cfg!(target_os = "linux") || output("apt-get", &["--version"]).is_none() {
         bail!("missing: {names}. Install the equivalents for this system, and set CHROMIUM to the browser's path");
