@@ -27,7 +27,8 @@ new ResizeObserver(([{ contentBoxSize, devicePixelContentBoxSize }]) => {
 }).observe(byId("stage"));
 
 pauseOutOfSight();
-launch(forcedBackend()).then(addBenches, () => {});
+// Before anything can fail.
 answerParent();
+launch(forcedBackend()).then(addBenches, () => {});
 shareScrolling();
 install();

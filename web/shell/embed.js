@@ -86,7 +86,9 @@ export function answerParent() {
   addEventListener("gaitway:change", () => tell("change"));
   addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || tellProgress(detail));
   addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || tell("error", { error: message, code }));
-  drawingFor(whenComplete()).then(
+  // The first instance is about to be launched.
+  const complete = Promise.resolve().then(whenComplete);
+  drawingFor(complete).then(
     () => tell("ready", { isEmpty: isStageEmpty() }),
     () => tell("failed"),
   );

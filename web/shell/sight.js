@@ -2,22 +2,27 @@
 // from the page's own origin. Both are alike here: animation frames wait until the frame is back in sight, unless somebody waits for an
 // answer, such as a screenshot.
 
+import { canvas } from "./dom.js";
+
 /** About as long as an animation frame, for those that can't be had from the browser. */
 const FRAME_MS = 16;
+/** So late, an animation frame will not come: the browser has stopped them before the observer could say so. */
+const LATE_MS = 250;
 
-let isInSight = true;
+/** A frame of another origin that starts out of sight isn't even observed. */
+let isInSight = false;
 /** How many answers are awaited. */
 let awaited = 0;
 
 /**
- * What was requested out of sight, by the identifiers that were returned: negative ones, unlike the browser's.
+ * What was requested, by the identifiers that were returned.
  * @type {Map<number, FrameRequestCallback>}
  */
 const held = new Map();
 let last = 0;
 
-function callHeld() {
-  const now = performance.now();
+/** @param {number} now */
+function callHeld(now) {
   // What they request belongs to the next frame.
   for (const id of [...held.keys()]) {
     const callback = held.get(id);
@@ -26,16 +31,23 @@ function callHeld() {
   }
 }
 
+function drawNow() {
+  // egui requests its first frame once the browser has measured the canvas, which it doesn't out of sight, or hears of a change of
+  // visibility.
+  if (held.size === 0) canvas()?.dispatchEvent(new Event("visibilitychange"));
+  callHeld(performance.now());
+}
+
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
 
 function callSoonIfAwaited() {
-  if (isInSight || awaited === 0 || timer !== undefined) return;
+  if (awaited === 0 || timer !== undefined) return;
   timer = setTimeout(() => {
     timer = undefined;
-    if (awaited > 0) callHeld();
+    if (awaited > 0) drawNow();
     callSoonIfAwaited();
-  }, FRAME_MS);
+  }, isInSight ? LATE_MS : FRAME_MS);
 }
 
 /**
@@ -56,18 +68,26 @@ export async function drawingFor(answer) {
 /** Stops drawing while this page is a frame that is out of sight. */
 export function pauseOutOfSight() {
   if (parent === window) return;
-  const [request, cancel] = [window.requestAnimationFrame.bind(window), window.cancelAnimationFrame.bind(window)];
+  const request = window.requestAnimationFrame.bind(window);
+  let isRequested = false;
+  const requestHeld = () => {
+    if (!isInSight || isRequested) return;
+    isRequested = true;
+    request((now) => {
+      isRequested = false;
+      callHeld(now);
+    });
+  };
   window.requestAnimationFrame = (callback) => {
-    if (isInSight) return request(callback);
-    last -= 1;
+    last += 1;
     held.set(last, callback);
+    requestHeld();
     return last;
   };
-  window.cancelAnimationFrame = (id) => void (held.delete(id) || cancel(id));
+  window.cancelAnimationFrame = (id) => void held.delete(id);
   const observer = new IntersectionObserver((entries) => {
     isInSight = entries.at(-1)?.isIntersecting ?? true;
-    if (isInSight) request(callHeld);
-    else callSoonIfAwaited();
+    requestHeld();
   });
   observer.observe(document.documentElement);
 }

@@ -185,6 +185,7 @@ fs.writeFileSync(path.join(dist, "viewer/index.html"), await examples());
 async function examples() {
   let html = text("web/examples/index.html");
   const page = (/** @type {string} */ file) => path.posix.join("..", file);
+  html = replaced(html, 'href="icon.svg"', `href="${page(put("", "icon", ".svg", icon))}"`);
   html = replaced(html, 'href="examples.css"', `href="${page(put("viewer", "examples", ".css", await bundled("web/examples/examples.css")))}"`);
   html = replaced(html, 'src="examples.js"', `src="${page(put("viewer", "examples", ".js", await minified("web/examples/examples.js", { target: TARGET })))}"`);
   html = html.replace(/"picture:(\w+)"/g, (_, name) => `"${page(stills[scenes.findIndex((scene) => scene.name === name)].large)}"`);
