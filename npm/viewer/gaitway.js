@@ -103,12 +103,12 @@ class Frame {
 
   /**
    * @param {string} url
-   * @param {(event: string, data: any) => void} tell Gets the frame's events. Besides those of the page: `missing`, if there is none.
+   * @param {(event: string, data: any) => void} announce Gets the frame's events. Besides those of the page: `missing`, if there is none.
    */
-  constructor(url, tell) {
+  constructor(url, announce) {
     const { origin } = new URL(url);
     this.#origin = origin === "null" ? "*" : origin;
-    this.tell = tell;
+    this.announce = announce;
     this.element = make("iframe", { part: "frame", src: url, allow: "fullscreen; clipboard-write" });
     /** @type {Promise<void>} Resolves once it answers; rejects if that will never be. */
     this.ready = new Promise((resolve, reject) => (this.#calls.set(0, { resolve, reject })));
@@ -117,7 +117,7 @@ class Frame {
     // The page says something while it loads, which may be heard a little later.
     this.element.addEventListener("load", () => setTimeout(() => {
       if (this.#isAlive || !this.element.isConnected) return;
-      tell("missing", {});
+      announce("missing", {});
       this.#answer(0, { error: "there is no Gaitway", code: "not-found" });
     }, PATIENCE_MS));
   }
@@ -131,7 +131,7 @@ class Frame {
       this.#answer(0, {});
     } else if (data.event === "failed") this.#answer(0, { error: "Gaitway couldn't start", code: "unsupported" });
     if (data.event === undefined) this.#answer(data.id, data);
-    else this.tell(data.event, data);
+    else this.announce(data.event, data);
   };
 
   /**
@@ -178,7 +178,7 @@ class Viewer extends Base {
 
   /** @type {Frame | null} */
   #frame = null;
-  /** Attributes that have changed since the frame was told. @type {Set<string>} */
+  /** Attributes that have changed that the frame has not received yet. @type {Set<string>} */
   #changed = new Set();
   #isUpdating = false;
   /** How many methods wait for an answer: they need a frame even if it wouldn't be seen. */

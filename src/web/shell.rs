@@ -94,7 +94,7 @@ extern "C" {
     #[wasm_bindgen(method, js_name = setTheme)]
     pub fn set_theme(this: &Shell, theme: &str);
 
-    /// Shows a warning, or one per line; it replaces the one before. The code tells scripts what kind of failure it is about.
+    /// Shows a warning, or one per line; it replaces the one before. The code says to scripts what kind of failure it is.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str, code: Option<String>);
 

@@ -31,7 +31,7 @@ export const gaitway = {
   stats: () => ask("stats"),
   async toLink() {
     await running();
-    // Whoever opens it sees the whole page.
+    // Those who open it see the whole page.
     const pairs = facts().link.split("&").filter((pair) => !pair.startsWith("embed="));
     return addressOf(pairs.join("&"));
   },

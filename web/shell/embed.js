@@ -54,7 +54,7 @@ async function answer(call, given) {
  * @param {"ready" | "failed" | "change" | "progress" | "error"} event
  * @param {object} [more]
  */
-function tell(event, more) {
+function announce(event, more) {
   parent.postMessage({ gaitway: 1, event, ...more }, "*");
 }
 
@@ -64,9 +64,9 @@ const PROGRAM_SHARE = 0.5;
 let progress = 0;
 
 /** @param {{ what: string, share: number }} download */
-function tellProgress({ what, share }) {
+function announceProgress({ what, share }) {
   progress = Math.max(progress, what === LOADING_PROGRAM ? PROGRAM_SHARE * share : PROGRAM_SHARE + (1 - PROGRAM_SHARE) * share);
-  tell("progress", { progress });
+  announce("progress", { progress });
 }
 
 /** Answers the page around this one, if there is one. */
@@ -83,13 +83,13 @@ export function answerParent() {
       reply({ error: messageOf(error), code: codeOf(error) });
     }
   });
-  addEventListener("gaitway:change", () => tell("change"));
-  addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || tellProgress(detail));
-  addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || tell("error", { error: message, code }));
+  addEventListener("gaitway:change", () => announce("change"));
+  addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || announceProgress(detail));
+  addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || announce("error", { error: message, code }));
   // The first instance is about to be launched.
   const complete = Promise.resolve().then(whenComplete);
   drawingFor(complete).then(
-    () => tell("ready", { isEmpty: isStageEmpty() }),
-    () => tell("failed"),
+    () => announce("ready", { isEmpty: isStageEmpty() }),
+    () => announce("failed"),
   );
 }
