@@ -41,12 +41,20 @@ impl<'a> Archive<'a> {
     /// Reads the first array that has one of the names. `None` if none has.
     pub fn find(&self, names: &[&str]) -> Result<Option<Array>, String> {
         for name in names {
-            let is_it = |member: &&Member| member.raw_name.strip_suffix(b".npy") == Some(name.as_bytes());
-            if let Some(member) = self.members.iter().find(is_it) {
+            if let Some(member) = self.member(name) {
                 return Array::read(name, &self.unpack(name, member)?).map(Some);
             }
         }
         Ok(None)
+    }
+
+    /// Returns whether there is an array of that name.
+    pub fn has(&self, name: &str) -> bool {
+        self.member(name).is_some()
+    }
+
+    fn member(&self, name: &str) -> Option<&Member<'a>> {
+        self.members.iter().find(|member| member.raw_name.strip_suffix(b".npy") == Some(name.as_bytes()))
     }
 
     fn unpack(&self, name: &str, member: &Member) -> Result<Cow<'a, [u8]>, String> {

@@ -99,7 +99,7 @@ impl Number {
         let &[order, kind, size] = text.as_bytes() else { return None };
         let size = usize::from(size.checked_sub(b'0')?);
         let is_known = match kind {
-            b'f' => matches!(size, 4 | 8),
+            b'f' => matches!(size, 2 | 4 | 8),
             b'i' | b'u' => matches!(size, 1 | 2 | 4 | 8),
             _ => false,
         };
@@ -113,6 +113,7 @@ impl Number {
         }
         let word = u64::from_le_bytes(word);
         match self.kind {
+            b'f' if self.size == 2 => from_half(word as u16),
             b'f' if self.size == 4 => f64::from(f32::from_bits(word as u32)),
             b'f' => f64::from_bits(word),
             b'u' => word as f64,
@@ -122,6 +123,18 @@ impl Number {
                 ((word << unused) as i64 >> unused) as f64
             }
         }
+    }
+}
+
+/// Returns the value of a 16-bit float.
+fn from_half(bits: u16) -> f64 {
+    let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1F), f64::from(bits & 0x3FF) / 1024.0);
+    match exponent {
+        0 => sign * fraction * 2_f64.powi(-14),
+        31 if fraction == 0.0 => sign * f64::INFINITY,
+        31 => f64::NAN,
+        _ => sign * (1.0 + fraction) * 2_f64.powi(exponent - 15),
     }
 }
 

@@ -13,15 +13,17 @@
 //!
 //! | what | names | shape |
 //! | --- | --- | --- |
-//! | rotations of all joints | `poses`, `pose` | frames × 3·joints, or frames × joints × 3 |
+//! | rotations of all joints | `poses`, `pose`, `fullpose`, `smpl_poses` | frames × 3·joints, or frames × joints × 3 |
 //! | or of each group: | | |
 //! | the pelvis | `root_orient`, `global_orient` | frames × 3 |
 //! | the body | `pose_body`, `body_pose` | frames × 63, or 69 with the hands |
 //! | the fingers (optional) | `pose_hand`, or `left_hand_pose` and `right_hand_pose` | frames × 90, or 45 each |
-//! | path (optional) | `trans`, `transl` | frames × 3 |
+//! | path (optional) | `trans`, `transl`, `smpl_trans` | frames × 3 |
+//! | the path's units per metre (optional) | `smpl_scaling` | 1 |
 //! | frames per second | `mocap_framerate`, `mocap_frame_rate`, `fps` | 1 |
 //!
-//! Rotations are axis times angle in radians, relative to the parent joint. Shape (`betas`), soft tissue (`dmpls`) and faces
+//! Rotations are axis times angle in radians, or matrices (× 3 × 3 or × 9 numbers, row by row), relative to the parent joint. A batch
+//! axis of length 1 may be anywhere. Names that begin with `smpl_` are those of AIST++, which scales the body to its path. Shape (`betas`), soft tissue (`dmpls`) and faces
 //! are ignored.
 //!
 //! # The skeleton

@@ -1,7 +1,7 @@
 //! The motion: rotations of the joints and the path of the pelvis.
 
 use gaitway_glb::{Animation, Glb, Warnings};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use crate::archive::Archive;
 use crate::array::Array;
@@ -9,27 +9,85 @@ use crate::body::{JOINT_COUNTS, PELVIS};
 
 /// Assumed where a file states no rate: that of most video, and of tools that fit SMPL bodies to it.
 const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
+/// That of AIST++, whose files state none.
+const AIST_FRAMES_PER_SEC: f64 = 60.0;
+/// AIST++'s units of the path per metre of the body.
+const SCALING: &str = "smpl_scaling";
 
-/// Rotations of some of the joints: frames × joints, each axis times angle.
+/// Maximum difference between a rotation matrix and one whose axes are exactly orthogonal and of length 1, by 16-bit floats and
+/// models that don't make them so.
+const MATRIX_TOLERANCE: f64 = 0.1;
+
+/// How one rotation is written.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// Axis times angle.
+    AxisAngle = 3,
+    /// Rows of a matrix.
+    Matrix = 9,
+}
+
+/// Rotations of some of the joints: frames × joints.
 struct Group {
     name: String,
     frames: usize,
     joints: usize,
+    kind: Kind,
     values: Vec<f64>,
 }
 
 impl Group {
-    fn of(array: Array) -> Result<Group, String> {
-        let (frames, joints) = match array.shape[..] {
-            [frames, numbers] if numbers % 3 == 0 => (frames, numbers / 3),
-            [frames, joints, 3] => (frames, joints),
-            _ => {
-                let expected = "frames × joints × 3 numbers (axis times angle)";
-                return Err(unexpected(&array.name, expected, &format!("{:?}", array.shape)));
-            }
+    /// Finds the layout with one of the numbers of joints that an array of this name may have.
+    fn of(array: Array, counts: &[usize]) -> Result<Group, String> {
+        let found = layouts(&array.shape);
+        let is_expected = |layout: &&(usize, usize, Kind)| counts.contains(&layout.1);
+        let Some(&(frames, joints, kind)) = found.iter().find(is_expected).or_else(|| found.first()) else {
+            let expected = "frames × joints × 3 numbers (axis times angle), or × 3 × 3 (matrices)";
+            return Err(unexpected(&array.name, expected, &format!("{:?}", array.shape)));
         };
-        Ok(Group { name: array.name, frames, joints, values: array.values })
+        let group = Group { name: array.name, frames, joints, kind, values: array.values };
+        group.check()?;
+        Ok(group)
     }
+
+    fn check(&self) -> Result<(), String> {
+        let numbers = self.kind as usize;
+        check_finite(&self.name, &self.values, numbers * self.joints)?;
+        if self.kind == Kind::AxisAngle {
+            return Ok(());
+        }
+        let bad = self.values.chunks_exact(numbers).position(|rows| {
+            let matrix = DMat3::from_cols_slice(rows);
+            let product = (matrix * matrix.transpose() - DMat3::IDENTITY).to_cols_array();
+            matrix.determinant() <= 0.0 || product.iter().any(|difference| difference.abs() > MATRIX_TOLERANCE)
+        });
+        match bad {
+            Some(at) => {
+                let found = format!("another in frame {}", at / self.joints);
+                Err(unexpected(&self.name, "matrices that are rotations", &found))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns what the sides of an array may be: frames, joints, and what a rotation is. One side of 1 may be a batch's.
+fn layouts(shape: &[usize]) -> Vec<(usize, usize, Kind)> {
+    use Kind::{AxisAngle, Matrix};
+    let of_sides = |sides: &[usize]| match *sides {
+        [frames, joints, 3, 3] => vec![(frames, joints, Matrix)],
+        [frames, 3, 3] => vec![(frames, 3, AxisAngle), (frames, 1, Matrix)],
+        [frames, joints, 3] => vec![(frames, joints, AxisAngle)],
+        [frames, joints, 9] => vec![(frames, joints, Matrix)],
+        [frames, numbers] if numbers % 9 == 0 => vec![(frames, numbers / 3, AxisAngle), (frames, numbers / 9, Matrix)],
+        [frames, numbers] if numbers % 3 == 0 => vec![(frames, numbers / 3, AxisAngle)],
+        _ => Vec::new(),
+    };
+    let without_batch =
+        (0..shape.len()).filter(|&at| shape[at] == 1).map(|at| [&shape[..at], &shape[at + 1..]].concat());
+    let mut found = of_sides(shape);
+    found.extend(without_batch.flat_map(|sides| of_sides(&sides)));
+    found
 }
 
 pub struct Motion {
@@ -52,7 +110,6 @@ impl Motion {
             if group.frames != frames {
                 return Err(unexpected(&group.name, &format!("{frames} frames"), &group.frames.to_string()));
             }
-            check_finite(&group.name, &group.values, 3 * group.joints)?;
         }
         let joints: usize = groups.iter().map(|group| group.joints).sum();
         if !JOINT_COUNTS.contains(&joints) {
@@ -71,10 +128,11 @@ impl Motion {
                 }
             },
             None => {
+                let rate = if archive.has(SCALING) { AIST_FRAMES_PER_SEC } else { DEFAULT_FRAMES_PER_SEC };
                 warnings.add(format!(
-                    "The file has no frame rate (\"mocap_framerate\"): {DEFAULT_FRAMES_PER_SEC} frames per second are assumed."
+                    "The file has no frame rate (\"mocap_framerate\"): {rate} frames per second are assumed."
                 ));
-                DEFAULT_FRAMES_PER_SEC
+                rate
             }
         };
         Ok(Motion { groups, frames, trans, frames_per_sec })
@@ -119,8 +177,8 @@ impl Motion {
 
 /// Finds the rotations, which some tools divide into several arrays.
 fn groups(archive: &Archive) -> Result<Vec<Group>, String> {
-    if let Some(all) = archive.find(&["poses", "pose"])? {
-        return Ok(vec![Group::of(all)?]);
+    if let Some(all) = archive.find(&["poses", "pose", "smpl_poses", "fullpose"])? {
+        return Ok(vec![Group::of(all, &JOINT_COUNTS)?]);
     }
     let root = archive.find(&["root_orient", "global_orient"])?;
     let body = archive.find(&["pose_body", "body_pose"])?;
@@ -131,31 +189,47 @@ fn groups(archive: &Archive) -> Result<Vec<Group>, String> {
              \"pose_body\", found {found}. Save the joints' rotations under one of these names."
         ));
     };
-    let root = Group::of(root)?;
+    let root = Group::of(root, &[1])?;
     if root.joints != 1 {
         return Err(unexpected(&root.name, "one joint", &root.joints.to_string()));
     }
-    let mut groups = vec![root, Group::of(body)?];
-    for names in [&["pose_hand"][..], &["left_hand_pose"], &["right_hand_pose"]] {
+    let bodies = JOINT_COUNTS.map(|joints| joints - 1);
+    let mut groups = vec![root, Group::of(body, &bodies)?];
+    for (names, joints) in [(&["pose_hand"][..], 30), (&["left_hand_pose"], 15), (&["right_hand_pose"], 15)] {
         if let Some(hand) = archive.find(names)? {
-            groups.push(Group::of(hand)?);
+            groups.push(Group::of(hand, &[joints])?);
         }
     }
     Ok(groups)
 }
 
 fn path(archive: &Archive, frames: usize) -> Result<Option<Vec<DVec3>>, String> {
-    let Some(trans) = archive.find(&["trans", "transl"])? else { return Ok(None) };
-    if trans.shape != [frames, 3] {
+    let Some(trans) = archive.find(&["trans", "transl", "smpl_trans"])? else { return Ok(None) };
+    let sides: Vec<usize> = trans.shape.iter().copied().filter(|&side| side != 1).collect();
+    let expected: Vec<usize> = [frames, 3].into_iter().filter(|&side| side != 1).collect();
+    if sides != expected {
         return Err(unexpected(&trans.name, &format!("[{frames}, 3] numbers"), &format!("{:?}", trans.shape)));
     }
     check_finite(&trans.name, &trans.values, 3)?;
-    Ok(Some(trans.values.chunks_exact(3).map(DVec3::from_slice).collect()))
+    let scaling = match archive.find(&[SCALING])? {
+        Some(scaling) => match scaling.values[..] {
+            [factor] if factor.is_finite() && factor > 0.0 => factor,
+            _ => return Err(unexpected(&scaling.name, "a number above 0", &format!("{:?}", scaling.shape))),
+        },
+        None => 1.0,
+    };
+    Ok(Some(trans.values.chunks_exact(3).map(|at| DVec3::from_slice(at) / scaling).collect()))
 }
 
 fn rotation(group: &Group, frame: usize, joint: usize) -> DQuat {
-    let at = 3 * (frame * group.joints + joint);
-    DQuat::from_scaled_axis(DVec3::from_slice(&group.values[at..at + 3]))
+    let numbers = group.kind as usize;
+    let at = numbers * (frame * group.joints + joint);
+    let values = &group.values[at..at + numbers];
+    match group.kind {
+        Kind::AxisAngle => DQuat::from_scaled_axis(DVec3::from_slice(values)),
+        // Rows become columns.
+        Kind::Matrix => DQuat::from_mat3(&DMat3::from_cols_slice(values).transpose()).normalize(),
+    }
 }
 
 fn check_finite(name: &str, values: &[f64], per_frame: usize) -> Result<(), String> {

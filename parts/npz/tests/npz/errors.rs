@@ -42,7 +42,7 @@ fn arrays() {
         &["pickled", "numpy.savez"],
     );
     check_array("poses", array("<c8", "(1,)", &[0; 8]), &["<c8", "numpy.float32"]);
-    check_array("poses", array("<f2", "(1,)", &[0; 2]), &["<f2"]);
+    check_array("poses", array("<f1", "(1,)", &[0; 1]), &["<f1"]);
     check_array("poses", npy("{'descr': [('x', '<f4')], 'shape': (1,), }", &[0; 4]), &["expected numbers"]);
     check_array("poses", npy("{'descr': '<f8'}", &[]), &["a shape"]);
     check_array("poses", array("<f8", "(2, -66)", &[]), &["a shape"]);
@@ -59,7 +59,15 @@ fn arrays() {
 fn motions() {
     check_array("poses", floats("(2, 67)", &[0.0; 134]), &["axis times angle", "[2, 67]"]);
     check_array("poses", floats("(2, 63)", &[0.0; 126]), &["22, 24, 52 or 55 joints", "found 21"]);
-    check_array("poses", floats("(1, 22, 3, 3)", &[0.0; 198]), &["axis times angle", "[1, 22, 3, 3]"]);
+    check_array("poses", floats("(1, 22, 3, 4)", &[0.0; 264]), &["axis times angle", "[1, 22, 3, 4]"]);
+    check_array("poses", floats("(2, 2, 22, 3)", &[0.0; 264]), &["axis times angle", "[2, 2, 22, 3]"]);
+    check_array("poses", floats("(1, 22, 3, 3)", &[0.0; 198]), &["rotations", "another in frame 0"]);
+    check_array(
+        "poses",
+        floats("(1, 22, 3, 3)", &[[0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]; 22].concat()),
+        &["rotations"],
+    );
+    check_array("smpl_scaling", floats("(1,)", &[0.0]), &["above 0"]);
     check_array("poses", floats("(0, 66)", &[]), &["at least one frame"]);
     let mut poses = [0.0; 132];
     poses[100] = f64::NAN;

@@ -144,6 +144,75 @@ fn arrays_of_any_layout_are_equal() {
 }
 
 #[test]
+fn half_floats_are_read() {
+    // Python: numpy.float16([0.5, -2, 16, 6e-8, 0.333, -0.0]).
+    let bits = [0x3800_u16, 0xC000, 0x4C00, 0x0001, 0x3554, 0x8000];
+    let data: Vec<u8> = bits.iter().flat_map(|bits| bits.to_le_bytes()).collect();
+    let glb = clean(&npz(&with(person(22), "trans", array("<f2", "(2, 3)", &data))));
+    near(position(&glb, "pelvis", Some(0.0)), [0.5, -2.22, 16.03]);
+    near(position(&glb, "pelvis", Some(0.1)), [5.96e-8, 0.33301 - 0.22, 0.03]);
+    let infinite: Vec<u8> = [0x7C00_u16; 6].iter().flat_map(|bits| bits.to_be_bytes()).collect();
+    let file = npz(&with(person(22), "trans", array(">f2", "(2, 3)", &infinite)));
+    assert!(gaitway_npz::convert(&file).unwrap_err().contains("inf in frame 0"));
+}
+
+/// The arrays of a person under other names and with other sides.
+fn laid_out(name: &'static str, shape: &str, trans: (&'static str, &str)) -> Vec<u8> {
+    let mut poses = [0.0; 2 * 66];
+    poses[66 + 3 * 4] = 1.0;
+    let kept = person(22).into_iter().filter(|(other, _)| !["poses", "trans"].contains(other));
+    let path = [0.0, 1.17, -0.03, 0.5, 1.27, 0.97];
+    npz(&kept.chain([(name, floats(shape, &poses)), (trans.0, floats(trans.1, &path))]).collect::<Vec<_>>())
+}
+
+#[test]
+fn other_names_and_a_batch_of_one_are_equal() {
+    let expected = gaitway_npz::convert(&npz(&person(22)));
+    for name in ["poses", "pose", "fullpose", "smpl_poses"] {
+        for shape in ["(2, 66)", "(2, 22, 3)", "(1, 2, 66)", "(2, 1, 66)", "(1, 2, 22, 3)", "(2, 1, 22, 3)"] {
+            for trans in [("trans", "(2, 3)"), ("transl", "(1, 2, 3)"), ("smpl_trans", "(2, 1, 3)")] {
+                assert_eq!(gaitway_npz::convert(&laid_out(name, shape, trans)), expected, "{name} {shape} {trans:?}");
+            }
+        }
+    }
+}
+
+/// In units of the body that it scales: what is in metres is what remains.
+#[test]
+fn the_path_is_scaled() {
+    let scaled = [0.0, 1.17, -0.03, 0.5, 1.27, 0.97].map(|value| 90.0 * value);
+    let arrays = with(with(person(22), "trans", floats("(2, 3)", &scaled)), "smpl_scaling", floats("(1,)", &[90.0]));
+    let glb = clean(&npz(&arrays));
+    near(position(&glb, "pelvis", Some(0.1)), [0.5, 1.05, 1.0]);
+}
+
+#[test]
+fn rotation_matrices_are_read_row_by_row() {
+    let (sin, cos) = 1_f64.sin_cos();
+    let (still, knee) = ([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0, cos, -sin, 0.0, sin, cos]);
+    let mut matrices = [still; 2 * 22];
+    matrices[22 + 4] = knee;
+    let rows = |from: usize, to: usize| [&matrices[from..to], &matrices[22 + from..22 + to]].concat().concat();
+    let expected = clean(&npz(&person(22)));
+    let check = |arrays: &[(&'static str, Vec<u8>)]| {
+        let glb = clean(&npz(arrays));
+        for name in ["left_ankle", "left_foot", "head"] {
+            near(position(&glb, name, Some(0.1)), position(&expected, name, Some(0.1)));
+        }
+    };
+    for shape in ["(2, 22, 3, 3)", "(1, 2, 22, 3, 3)", "(2, 22, 9)", "(2, 198)"] {
+        check(&with(person(22), "poses", floats(shape, &rows(0, 22))));
+    }
+    let others: Vec<_> = person(22).into_iter().filter(|(name, _)| *name != "poses").collect();
+    for (root, body) in
+        [("(2, 3, 3)", "(2, 21, 3, 3)"), ("(2, 1, 3, 3)", "(2, 189)"), ("(1, 2, 1, 3, 3)", "(1, 2, 21, 3, 3)")]
+    {
+        let arrays = with(others.clone(), "global_orient", floats(root, &rows(0, 1)));
+        check(&with(arrays, "body_pose", floats(body, &rows(1, 22))));
+    }
+}
+
+#[test]
 fn negative_integers_are_read() {
     let data = [-1_i8, 2, -128, 127, 0, 1].map(|value| value as u8);
     let glb = clean(&npz(&with(person(22), "trans", array("|i1", "(2, 3)", &data))));
@@ -159,4 +228,10 @@ fn what_is_missing_is_said() {
     let (glb, warnings) = convert(&without("mocap_framerate"));
     assert!(warnings[0].contains("30 frames per second") && warnings.len() == 1, "{warnings:?}");
     assert_eq!(glb.duration(0), f64::from((1.0_f64 / 30.0) as f32));
+    // AIST++ has no rates, but a scaling that nothing else has.
+    let arrays = with(person(22), "smpl_scaling", floats("(1,)", &[1.0]));
+    let arrays: Vec<_> = arrays.into_iter().filter(|(name, _)| *name != "mocap_framerate").collect();
+    let (glb, warnings) = convert(&npz(&arrays));
+    assert!(warnings[0].contains("60 frames per second") && warnings.len() == 1, "{warnings:?}");
+    assert_eq!(glb.duration(0), f64::from((1.0_f64 / 60.0) as f32));
 }
