@@ -1,11 +1,11 @@
 //! Animation sets as clips.
 
 use gaitway_glb::{Animation, Glb, Warnings};
-use glam::DQuat;
+use glam::{DAffine3, DQuat, DVec3};
 
 use crate::document::{Document, short, text};
 use crate::frame::Nodes;
-use crate::transform::{matrix, mirrored, parts, rotation};
+use crate::transform::{Parts, matrix, mirrored, parts, rotation};
 
 /// DirectX's unit of time, where the file states none.
 const DEFAULT_TICKS_PER_SEC: u32 = 4800;
@@ -38,6 +38,9 @@ struct Keys {
 /// Writes all animation sets, and marks the nodes that they move.
 pub fn write(document: &Document, nodes: &mut Nodes, glb: &mut Glb, warnings: &mut Warnings) -> Result<(), String> {
     let ticks_per_sec = ticks_per_sec(document, warnings)?;
+    if nodes.are_targets {
+        warnings.add("The file has animation alone: its joints have the names of frames, but no hierarchy.".to_owned());
+    }
     let mut clips = Clips { written: vec![[0; 3]; nodes.entries.len()], ticks_per_sec, nodes, glb, warnings };
     for (set, object) in document.all("AnimationSet") {
         let mut clip = Animation::default();
@@ -83,17 +86,35 @@ impl Clips<'_, '_> {
             if path == SCALE && keys.are_matrices && is_rest(&track) {
                 continue;
             }
-            if std::mem::replace(&mut self.written[node][path], set) == set {
+            let before = std::mem::replace(&mut self.written[node][path], set);
+            if before == set {
                 let label = document.label(key);
                 self.warnings.add(format!("{label} left out: its frame is animated already."));
                 continue;
             }
-            self.nodes.entries[node].is_animated = true;
+            let entry = &mut self.nodes.entries[node];
+            entry.is_animated = true;
+            // Nothing but its keys says where a frame rests that the file doesn't have.
+            if self.nodes.are_targets && before == 0 {
+                set_part(&mut entry.matrix, path, &track.values);
+            }
             let (times, values) = track.in_seconds(self.ticks_per_sec);
             clip.add(self.glb, (node, PATHS[path]), "LINEAR", &times, &values)?;
         }
         Ok(())
     }
+}
+
+/// Sets one of the [`PATHS`] of a transform to the first of some values.
+fn set_part(matrix: &mut DAffine3, path: usize, values: &[f32]) {
+    let Parts { mut translation, mut rotation, mut scale, .. } = parts(matrix);
+    match *values {
+        [x, y, z, w, ..] if path == ROTATION => rotation = DQuat::from_array([x, y, z, w].map(f64::from)),
+        [x, y, z, ..] if path == SCALE => scale = DVec3::from_array([x, y, z].map(f64::from)),
+        [x, y, z, ..] => translation = DVec3::from_array([x, y, z].map(f64::from)),
+        _ => {}
+    }
+    *matrix = DAffine3::from_scale_rotation_translation(scale, rotation, translation);
 }
 
 /// Returns the node that an animation moves.

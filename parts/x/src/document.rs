@@ -332,6 +332,22 @@ impl<'a> Names<'a> {
         Names(names)
     }
 
+    /// Indexes the references to what animations move.
+    pub fn of_targets(document: &Document<'a>) -> Names<'a> {
+        let animations = document.all("Animation").flat_map(|(_, animation)| &animation.children);
+        let targets =
+            animations.map(|&child| (&document.objects[child], child)).filter(|(child, _)| child.is_reference());
+        let mut names: Vec<_> = targets.map(|(child, index)| (child.name, index)).collect();
+        names.sort_unstable();
+        names.dedup_by_key(|(name, _)| *name);
+        Names(names)
+    }
+
+    /// Iterates over the objects.
+    pub fn objects(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().map(|&(_, index)| index)
+    }
+
     pub fn find(&self, name: &[u8]) -> Option<usize> {
         let at = self.0.partition_point(|(other, _)| *other < name);
         self.0.get(at).filter(|(other, _)| *other == name).map(|&(_, index)| index)

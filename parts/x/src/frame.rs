@@ -30,13 +30,16 @@ pub struct Nodes<'a> {
     names: Names<'a>,
     /// Whether all nodes need a common one above them.
     needs_root: bool,
+    /// Whether the nodes are what animations move, in a file without frames and meshes.
+    pub are_targets: bool,
 }
 
 impl<'a> Nodes<'a> {
     pub fn new(document: &Document<'a>) -> Result<Nodes<'a>, String> {
         let of_object = vec![None; document.objects.len()];
         let names = Names::of(document, "Frame");
-        let mut nodes = Nodes { entries: Vec::new(), roots: Vec::new(), of_object, names, needs_root: false };
+        let mut nodes =
+            Nodes { entries: Vec::new(), roots: Vec::new(), of_object, names, needs_root: false, are_targets: false };
         for (index, object) in document.all("Frame") {
             if nodes.entries.len() == MAX_NODES {
                 return Err(too_large(MAX_NODES, "frames", document.all("Frame").count()));
@@ -48,7 +51,25 @@ impl<'a> Nodes<'a> {
             let parent = nodes.of_object[object.parent];
             nodes.of_object[index] = Some(nodes.add(parent, text(object.name), local));
         }
+        if nodes.entries.is_empty() && document.all("Mesh").next().is_none() {
+            nodes.add_targets(document)?;
+        }
         Ok(nodes)
+    }
+
+    /// Adds what the animations of a file without frames move, in the file's order.
+    fn add_targets(&mut self, document: &Document<'a>) -> Result<(), String> {
+        self.are_targets = true;
+        self.names = Names::of_targets(document);
+        let mut objects: Vec<usize> = self.names.objects().collect();
+        if objects.len() > MAX_NODES {
+            return Err(too_large(MAX_NODES, "animated frames", objects.len()));
+        }
+        objects.sort_unstable();
+        for object in objects {
+            self.of_object[object] = Some(self.add(None, text(document.objects[object].name), DAffine3::IDENTITY));
+        }
+        Ok(())
     }
 
     /// Returns the node of an object that is a frame.

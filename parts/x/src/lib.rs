@@ -36,7 +36,7 @@
 //! - `Material`: colour with alpha, exponent, specular and emissive colour, `TextureFilename`.
 //! - `AnimationSet` → `Animation` → a reference to a frame, and `AnimationKey`: what (0 rotation, 1 scale, 2 position, 3 or 4
 //!   matrix), the number of keys, and for each the time, the number of values and the values. `AnimTicksPerSecond` gives the
-//!   unit of time, else it is 1/4800 s.
+//!   unit of time, else it is 1/4800 s. A file may have nothing else: it moves the frames of a model in another file.
 //!
 //! # Conventions
 //!
@@ -78,7 +78,7 @@ pub fn convert(bytes: &[u8]) -> Answer {
     mesh::write(&document, &mut nodes, &mut glb, &mut warnings)?;
     if nodes.entries.is_empty() {
         return Err(
-            "the .x file has nothing to show: expected frames or meshes, found none. Export it again with the \
+            "the .x file has nothing to show: expected frames, meshes or animations, found none. Export it again with the \
             objects selected."
                 .to_owned(),
         );

@@ -20,7 +20,7 @@ fn headers() {
     check(b"xof 0402txt 0032", &["version 03.02 or 03.03", "\"0402\""]);
     check(b"xof 0303com 0032", &["\"bzip\"", "\"com \""]);
     check(b"xof 0303txt 0016", &["\"0064\"", "\"0016\""]);
-    check(b"xof 0303txt 0032", &["nothing to show", "frames or meshes"]);
+    check(b"xof 0303txt 0032", &["nothing to show", "frames, meshes or animations"]);
 }
 
 #[test]

@@ -270,6 +270,26 @@ fn keys_are_turned_mirrored_and_timed() {
     near(&chest[3][..3], &[0.5, 2.0, -3.0 - 5.0]);
 }
 
+/// A model in one file, and its motion in another.
+#[test]
+fn animation_alone_is_a_motion_of_the_frames_that_it_names() {
+    let (_, animation) = CHARACTER.split_once("AnimTicksPerSecond").unwrap();
+    let (glb, warnings) = convert(&format!("AnimTicksPerSecond{animation}"));
+    assert!(warnings.len() == 1 && warnings[0].contains("animation alone"), "{warnings:?}");
+    let whole = clean(CHARACTER);
+    assert_eq!((glb.node("hips"), glb.node("chest"), glb.list("nodes").len()), (0, 1, 2));
+    let [found, expected] = [&glb, &whole].map(|glb| glb.list("animations")[0].clone());
+    assert_eq!(found["channels"], expected["channels"]);
+    for (found, expected) in found["samplers"].as_array().unwrap().iter().zip(expected["samplers"].as_array().unwrap())
+    {
+        for accessor in ["input", "output"] {
+            assert_eq!(glb.accessor(&found[accessor]), whole.accessor(&expected[accessor]));
+        }
+    }
+    // The joints rest where the motion begins.
+    assert_eq!(glb.pose(None).worlds, glb.pose(Some((0, 0.0))).worlds);
+}
+
 /// Positions at 0, `step` and `end`.
 fn moving(ticks: &str, step: u32, end: u32) -> (Glb, Vec<String>) {
     convert(&format!(
