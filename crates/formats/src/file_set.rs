@@ -7,6 +7,7 @@ use gaitway_character::asset::SharedBytes;
 use gaitway_unzip::{Data, Directory, Member};
 
 use super::LoadError;
+use super::encoding;
 use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
 
 /// How a zip archive begins.
@@ -154,9 +155,11 @@ impl FileSet {
         }
         // The archive is in memory together with what is unpacked from it.
         let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
+        let mut decoded = decoded_names(&directory).into_iter();
         for member in directory.members() {
             let member = member.map_err(error)?;
-            let name = &*member.name();
+            let decoded = if member.has_unknown_encoding() { decoded.next() } else { None };
+            let name = &*decoded.map_or_else(|| member.name(), Cow::Owned);
             if member.is_folder() || name.starts_with("__MACOSX/") || bare_name(name).starts_with("._") {
                 continue;
             }
@@ -170,6 +173,13 @@ impl FileSet {
         }
         Ok(())
     }
+}
+
+/// Returns the names of members whose encoding is unknown, if all of them make sense in another encoding than MS-DOS's. Archives of
+/// Windows in East Asia have such names.
+fn decoded_names(directory: &Directory) -> Vec<String> {
+    let names = directory.members().flatten().filter(Member::has_unknown_encoding);
+    encoding::double_byte_names(&names.map(|member| member.raw_name).collect::<Vec<_>>()).unwrap_or_default()
 }
 
 /// Returns a member's contents.

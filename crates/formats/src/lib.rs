@@ -27,6 +27,7 @@
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod bvh;
+mod encoding;
 mod error;
 mod file_set;
 mod gltf;

@@ -1,4 +1,5 @@
-//! Splits text files into words and lines, with line numbers. The text need not be UTF-8: names come from many code pages.
+//! Splits text files into words and lines, with line numbers. What isn't UTF-8 was converted by [`encoding`](super::encoding), if
+//! its encoding could be found.
 
 use std::borrow::Cow;
 
@@ -70,6 +71,14 @@ impl<'a> Lines<'a> {
                 return None;
             }
         }
+    }
+
+    /// Drops what begins with a byte that text doesn't have: padding, or the mark for a text's end (`^Z`). Returns whether there was
+    /// any.
+    pub fn end_at_padding(&mut self) -> bool {
+        let end = self.rest.iter().position(|byte| matches!(byte, 0 | 0x1A));
+        self.rest = &self.rest[..end.unwrap_or(self.rest.len())];
+        end.is_some()
     }
 
     /// The current line, for messages.

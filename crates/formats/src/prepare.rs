@@ -4,10 +4,14 @@
 //! As long as [`next_preparation`] finds something, callers run the part that it names, and [`Preparation::finish`] puts the
 //! result in its place. So loading itself stays synchronous and independent of parts.
 
+use std::borrow::Cow;
+
 use gaitway_character::asset::SharedBytes;
 use gaitway_part::Answer;
 
+use super::encoding;
 use super::file_set::Conversion;
+use super::gltf::decode_names;
 use super::gltf::decoded::{self, Decoding};
 use super::part::Part;
 use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
@@ -44,12 +48,13 @@ impl Preparation {
     /// If the part returned an error.
     pub fn finish(self, files: &mut FileSet, answer: Answer) -> Result<(), LoadError> {
         let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
-        let output = answer.map_err(failed)?;
+        let mut output = answer.map_err(failed)?;
         match self.step {
             Step::File(format) => {
+                let bytes = decode_names(output.bytes, &mut output.warnings);
                 let conversion =
                     Conversion { format: Some(format), warnings: output.warnings, ..Conversion::default() };
-                files.convert(&self.file, output.bytes, conversion);
+                files.convert(&self.file, bytes, conversion);
                 Ok(())
             }
             Step::Data(decoding) => decoding.finish(files, &self.file, &output.bytes),
@@ -65,7 +70,7 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if let Some(part) = whole_file_part(name, bytes) {
-            return preparation(part, bytes.clone(), Step::File(part.name()));
+            return preparation(part, input_of(part, bytes), Step::File(part.name()));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;
@@ -75,6 +80,15 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
         }
     }
     Ok(None)
+}
+
+/// Returns what a part reads of a file. Parts have no tables of encodings.
+fn input_of(part: Part, bytes: &SharedBytes) -> SharedBytes {
+    let is_text = part == Part::X && bytes.get(8..12) == Some(b"txt ");
+    match is_text.then(|| encoding::utf8(bytes)) {
+        Some(Cow::Owned(text)) => text.into(),
+        _ => bytes.clone(),
+    }
 }
 
 /// Converts whatever has to be converted before [`load`](super::load), with the decoders linked into this program.

@@ -155,9 +155,14 @@ impl<'a> Directory<'a> {
 }
 
 impl<'a> Member<'a> {
-    /// Returns the path inside the archive.
+    /// Returns the path inside the archive. If it is in an unknown encoding, that is taken for the one of MS-DOS.
     pub fn name(&self) -> Cow<'a, str> {
         unicode_path(self.raw_name, self.extra).unwrap_or_else(|| decoded(self.raw_name))
+    }
+
+    /// Returns whether nothing says in which encoding the path is.
+    pub fn has_unknown_encoding(&self) -> bool {
+        unicode_path(self.raw_name, self.extra).is_none() && str::from_utf8(self.raw_name).is_err()
     }
 
     /// Returns whether it is a folder. Old programs for Windows write backslashes.

@@ -131,9 +131,13 @@ pub fn short(name: &[u8]) -> String {
     text(&name[..name.len().min(MAX_SHOWN)])
 }
 
-/// Text of any code page: UTF-8, or else Latin-1.
+/// Text of any code page: UTF-8, or else x-user-defined, whose characters stand for bytes: a caller with tables can decode them.
 pub fn text(bytes: &[u8]) -> String {
-    std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().copied().map(char::from).collect(), str::to_owned)
+    let character = |&byte: &u8| {
+        let code = if byte.is_ascii() { u32::from(byte) } else { 0xF700 + u32::from(byte) };
+        char::from_u32(code).unwrap_or_default()
+    };
+    std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().map(character).collect(), str::to_owned)
 }
 
 struct Reader<'a> {

@@ -133,6 +133,11 @@ impl Hierarchy {
             }
             Some(Open::Joint(_)) => return unexpected("OFFSET, CHANNELS, JOINT, End Site or }"),
             Some(Open::End(end)) if is(word, "OFFSET") => self.ends[end].1 = offset(lines)?,
+            Some(Open::End(_)) if is(word, "CHANNELS") && lines.peek() == Some(b"0") => {
+                lines.word();
+                let problem = "an End Site has no CHANNELS; “CHANNELS 0” is skipped".to_owned();
+                warnings.push(Warning::Other { code: "bvh-end-site", place, problem });
+            }
             Some(Open::End(_)) => return unexpected("OFFSET or } of an End Site"),
         }
         Ok(())

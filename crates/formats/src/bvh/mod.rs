@@ -24,6 +24,7 @@ use gaitway_character::anim::{Clip, Joint, Skeleton, Transform};
 use gaitway_character::asset::{Asset, AssetParts, Warnings};
 
 use super::{LoadError, LoadOptions};
+use crate::encoding;
 use crate::error::Problem;
 use crate::file_set::file_stem;
 use crate::limits::Budget;
@@ -33,7 +34,9 @@ use hierarchy::Hierarchy;
 pub use write::write;
 
 pub(super) fn is_bvh(bytes: &[u8]) -> bool {
-    let text = bytes.strip_prefix(lines::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
+    // Some programs write UTF-16: every other byte of its ASCII is zero.
+    let start = bytes.iter().take(64).filter(|&&byte| !matches!(byte, 0 | 0xFE | 0xFF)).copied().collect::<Vec<u8>>();
+    let text = start.strip_prefix(lines::BYTE_ORDER_MARK).unwrap_or(&start).trim_ascii_start();
     text.get(..9).is_some_and(|word| word.eq_ignore_ascii_case(b"HIERARCHY"))
 }
 
@@ -45,7 +48,8 @@ pub(super) fn load(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<As
 fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, Problem> {
     let mut warnings = Warnings::default();
     let budget = Budget::default();
-    let mut lines = Lines::new(bytes);
+    let text = encoding::utf8(bytes);
+    let mut lines = Lines::new(&text);
     let hierarchy = Hierarchy::read(&mut lines, &budget, &mut warnings)?;
     let motion = motion::read(&mut lines, &hierarchy, &budget, &mut warnings)?;
     let frame = FrameOfReference::find(&hierarchy, motion.as_ref(), options, &mut warnings);

@@ -26,14 +26,18 @@ pub fn read(
     let other =
         |line: usize, problem: String| Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem };
     let missing = |line: usize, problem: String| Warning::FramesMissing { line: format!("line {line}"), problem };
+    if lines.end_at_padding() {
+        let (place, problem) =
+            ("the end".to_owned(), "a byte that text doesn't have, and what follows it, is skipped".to_owned());
+        warnings.push(Warning::Other { code: "bvh-motion", place, problem });
+    }
     if lines.word().is_none() {
         warnings.push(other(lines.line, "there is no MOTION: the skeleton stands still".to_owned()));
         return Ok(None);
     }
     let Header { frame_secs, line, announced } =
         header(lines, &mut |line, problem| warnings.push(other(line, problem)))?;
-    let numbers =
-        frames(lines, hierarchy.channel_count, budget, &mut |line, problem| warnings.push(missing(line, problem)))?;
+    let numbers = frames(lines, hierarchy.channel_count, announced, budget, warnings)?;
     let frame_count = numbers.len().checked_div(hierarchy.channel_count).unwrap_or(0);
     match announced {
         Some(announced) if announced != frame_count as u64 && hierarchy.channel_count > 0 => {
@@ -89,47 +93,97 @@ fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
     (same && words.next().is_none()).then(|| line[colon + 1..].trim_ascii())
 }
 
-/// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing or surplus
-/// number is reported where it occurs. An incomplete last frame is dropped.
+/// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing number is reported
+/// where it occurs. An incomplete last frame is dropped, as are a few surplus numbers at the end of a frame's only line, and what
+/// isn't a frame after the announced ones.
 fn frames(
     lines: &mut Lines,
     channels: usize,
+    announced: Option<u64>,
     budget: &Budget,
-    warn: &mut impl FnMut(usize, String),
+    warnings: &mut Warnings,
 ) -> Result<Vec<f64>, Problem> {
-    let mut numbers = Vec::new();
-    let mut in_frame = 0;
-    let mut began = lines.line;
-    while let Some((line, words)) = lines.next_full_line() {
+    let mut frames = Numbers { all: Vec::new(), channels, in_frame: 0, began: lines.line };
+    let mut surplus = None;
+    while let Some((line, text)) = lines.next_full_line() {
         if channels == 0 {
             break;
         }
-        if in_frame == 0 {
-            began = line;
+        if frames.in_frame == 0 {
+            frames.began = line;
             budget.allocate(channels, size_of::<f64>(), &format_args!("line {line}"))?;
         }
-        for word in words.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
-            if in_frame == channels {
-                let expected =
-                    format!("{channels} numbers (one for each channel) in the frame that begins on line {began}");
-                return Err(Problem::new(format!("line {line}"), expected, "more"));
+        let whole = frames.all.len() - frames.in_frame;
+        match frames.add(line, text) {
+            Ok(0) => {}
+            Ok(count) => surplus = surplus.or(Some((line, count))),
+            Err(_) if announced.is_some_and(|announced| (whole / channels) as u64 >= announced) => {
+                frames.all.truncate(whole);
+                frames.in_frame = 0;
+                let problem =
+                    format!("{} after the last frame, and the rest of the file, is skipped", quoted(Some(text)));
+                warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
+                break;
+            }
+            Err(problem) => return Err(problem),
+        }
+    }
+    let Numbers { mut all, in_frame, began, .. } = frames;
+    if in_frame > 0 {
+        let problem = format!("the last frame has {in_frame} of {channels} numbers (cut short?) and is left out");
+        warnings.push(Warning::FramesMissing { line: format!("line {began}"), problem });
+        all.truncate(all.len() - in_frame);
+    }
+    if let Some((line, count)) = surplus {
+        // Lines that don't begin with a frame are fewer than the frames.
+        if announced.is_some_and(|announced| ((all.len() / channels) as u64) < announced) {
+            return Err(more(line, line, channels));
+        }
+        let problem = format!("{count} more than the {channels} numbers of a frame; what follows these is skipped");
+        warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
+    }
+    Ok(all)
+}
+
+/// The numbers of all frames so far.
+struct Numbers {
+    all: Vec<f64>,
+    channels: usize,
+    /// Numbers of the last frame; 0 once it is complete.
+    in_frame: usize,
+    /// The line on which the last frame begins.
+    began: usize,
+}
+
+impl Numbers {
+    /// Adds those of a line. Returns how many more than a frame's it has, if it has at most one frame.
+    fn add(&mut self, line: usize, text: &[u8]) -> Result<usize, Problem> {
+        let mut surplus = 0;
+        for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+            if self.in_frame == self.channels {
+                surplus += 1;
+                if self.began != line || surplus == self.channels {
+                    return Err(more(line, self.began, self.channels));
+                }
+                continue;
             }
             let value = number(word).ok_or_else(|| {
-                let place = format!("line {line}, number {}", in_frame + 1);
+                let place = format!("line {line}, number {}", self.in_frame + 1);
                 Problem::new(place, "a finite number", quoted(Some(word)))
             })?;
-            numbers.push(value);
-            in_frame += 1;
+            self.all.push(value);
+            self.in_frame += 1;
         }
-        if in_frame == channels {
-            in_frame = 0;
+        if self.in_frame == self.channels {
+            self.in_frame = 0;
         }
+        Ok(surplus)
     }
-    if in_frame > 0 {
-        warn(began, format!("the last frame has {in_frame} of {channels} numbers (cut short?) and is left out"));
-        numbers.truncate(numbers.len() - in_frame);
-    }
-    Ok(numbers)
+}
+
+fn more(line: usize, began: usize, channels: usize) -> Problem {
+    let expected = format!("{channels} numbers (one for each channel) in the frame that begins on line {began}");
+    Problem::new(format!("line {line}"), expected, "more")
 }
 
 impl Frames {

@@ -14,9 +14,10 @@ pub fn is_data_uri(uri: &str) -> bool {
     uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
 }
 
-/// Percent-decodes a URI, unless the result is not UTF-8.
+/// Percent-decodes a URI, unless the result is not UTF-8. As in browsers, `\` is `/`.
 pub fn decode_uri(uri: &str) -> Cow<'_, str> {
-    percent_decode_str(uri).decode_utf8().unwrap_or(Cow::Borrowed(uri))
+    let decoded = percent_decode_str(uri).decode_utf8().unwrap_or(Cow::Borrowed(uri));
+    if decoded.contains('\\') { decoded.replace('\\', "/").into() } else { decoded }
 }
 
 pub fn data_uri(place: &str, uri: &str) -> Result<Vec<u8>, Problem> {
@@ -32,7 +33,8 @@ pub fn data_uri(place: &str, uri: &str) -> Result<Vec<u8>, Problem> {
             .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent)
             .with_decode_allow_trailing_bits(true),
     );
-    engine.decode(decode_uri(body).trim().as_bytes()).map_err(|problem| Problem::new(place, "base64", problem))
+    let body: Cow<'_, [u8]> = percent_decode_str(body).into();
+    engine.decode(body.trim_ascii()).map_err(|problem| Problem::new(place, "base64", problem))
 }
 
 /// Tries the decoded URI, then the text itself: some exporters leave a bare `%` in names.

@@ -4,6 +4,7 @@
 
 mod accessor;
 mod animations;
+mod byte_names;
 mod container;
 mod data;
 pub(super) mod decoded;
@@ -41,6 +42,7 @@ use container::Container;
 use document::{Document, size};
 use gltf::json::Root;
 
+pub(super) use byte_names::decode_names;
 pub(super) use data::find as find_file;
 pub use early::{Early, early};
 pub(super) use images::image_header;

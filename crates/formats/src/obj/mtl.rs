@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::mesh::linear;
 use super::text::cut_name;
+use crate::encoding;
 use crate::lines::{Lines, number, quoted, text};
 
 /// The material of faces without one: light grey, matt. Double-sided, since an .obj does not define front faces.
@@ -33,7 +34,8 @@ pub struct MtlMaterial {
 /// Adds a library's materials by name; the first of a name wins. A bad statement is skipped, the rest of the library is kept.
 pub fn read(file: &str, bytes: &[u8], found: &mut BTreeMap<String, MtlMaterial>, warnings: &mut Warnings) {
     let mut open: Option<Statements> = None;
-    let mut lines = Lines::new(bytes);
+    let bytes = encoding::utf8(bytes);
+    let mut lines = Lines::new(&bytes);
     while let Some((line, content)) = lines.next_full_line() {
         let keyword_end = content.iter().position(u8::is_ascii_whitespace).unwrap_or(content.len());
         let (keyword, rest) = (&content[..keyword_end], content[keyword_end..].trim_ascii());

@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 use gaitway_character::asset::{Warning, Warnings};
 use glam::{DVec3, Vec2, Vec3};
 
+use crate::encoding;
 use crate::error::Problem;
 use crate::limits::Budget;
 use crate::lines::{Lines, number, quoted, text};
@@ -32,6 +33,9 @@ const MAX_LIBRARIES: usize = 64;
 
 /// Stands for a missing texture coordinate or normal.
 pub const NONE: u32 = u32::MAX;
+
+/// Stands for one that can't exist.
+const ABSENT: u32 = NONE - 1;
 
 /// Indices of vertex, texture coordinate and normal, from 0. The latter two may be [`NONE`].
 pub type Corner = [u32; 3];
@@ -77,6 +81,7 @@ struct Reader<'a> {
 }
 
 pub fn read(bytes: &[u8], budget: &Budget, warnings: &mut Warnings) -> Result<ObjText, Problem> {
+    let bytes = &*encoding::utf8(bytes);
     let mut reader = Reader {
         obj: ObjText::default(),
         group: Group::default(),
@@ -94,14 +99,22 @@ pub fn read(bytes: &[u8], budget: &Budget, warnings: &mut Warnings) -> Result<Ob
     if obj.colors.len() != obj.positions.len() {
         obj.colors = Vec::new();
     }
-    check_corners(&obj)?;
+    let absent = check_corners(&mut obj)?;
+    if let Some((line, count)) = absent {
+        let problem = format!(
+            "{count} corners of faces, the first on this line, refer to texture coordinates or normals that don't exist; they are \
+             read without"
+        );
+        warnings.push(Warning::Other { code: "obj-corners", place: place(line), problem });
+    }
     Ok(obj)
 }
 
 /// Returns the material libraries that a file names, without reading the rest.
 pub fn libraries(bytes: &[u8]) -> Vec<String> {
     let mut found = Vec::new();
-    let mut lines = Lines::new(bytes);
+    let bytes = encoding::utf8(bytes);
+    let mut lines = Lines::new(&bytes);
     while let Some((_, line)) = lines.next_full_line() {
         if let Some(names) = line.strip_prefix(b"mtllib")
             && !add_libraries(&continued(names, &mut lines), &mut found)
@@ -234,7 +247,7 @@ impl Reader<'_> {
             obj.colors.push(color);
         }
         obj.positions.push(Vec3::new(read[0], read[1], read[2]));
-        if obj.positions.len() >= NONE as usize {
+        if obj.positions.len() >= ABSENT as usize {
             return Err(Problem::new(place(line), "fewer vertices than 32 bits can count", "more"));
         }
         Ok(())
@@ -245,9 +258,10 @@ impl Reader<'_> {
         let mut indices = word.split(|&byte| byte == b'/');
         let mut corner = [NONE; 3];
         let so_far = [self.obj.positions.len(), self.obj.uvs.len(), self.obj.normals.len()];
-        for (slot, so_far) in corner.iter_mut().zip(so_far) {
+        for (at, (slot, so_far)) in corner.iter_mut().zip(so_far).enumerate() {
             if let Some(digits) = indices.next().filter(|digits| !digits.is_empty()) {
-                *slot = index(digits, so_far).ok_or(", counted from 1 or backwards from -1")?;
+                let found = index(digits, so_far).ok_or("")?;
+                *slot = found.or((at > 0).then_some(ABSENT)).ok_or(", counted from 1 or backwards from -1")?;
             }
         }
         if corner[0] == NONE || indices.next().is_some() { Err("") } else { Ok(corner) }
@@ -320,11 +334,12 @@ fn numbers<'a, const N: usize>(
     Ok((found, read))
 }
 
-/// Parses a number that counts from 1, or backwards from the count so far if it is negative. Returns it from 0.
-fn index(word: &[u8], so_far: usize) -> Option<u32> {
+/// Parses a number that counts from 1, or backwards from the count so far if it is negative. Returns it from 0; `Some(None)` if
+/// it counts to nothing.
+fn index(word: &[u8], so_far: usize) -> Option<Option<u32>> {
     let number: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
-    let index = if number < 0 { (so_far as i64).checked_add(number)? } else { number - 1 };
-    u32::try_from(index).ok().filter(|&index| index != NONE)
+    let index = if number < 0 { (so_far as i64).checked_add(number) } else { number.checked_sub(1) };
+    Some(index.and_then(|index| u32::try_from(index).ok()).filter(|&index| index < ABSENT))
 }
 
 /// Splits a list of names, which may contain spaces.
@@ -335,7 +350,8 @@ fn library_names(names: &str) -> Vec<String> {
         if !name.is_empty() {
             name.push(' ');
         }
-        name.push_str(word);
+        // Paths may come from Windows.
+        name.push_str(&word.replace('\\', "/"));
         if word.to_lowercase().ends_with(".mtl") {
             found.push(std::mem::take(&mut name));
         }
@@ -346,22 +362,31 @@ fn library_names(names: &str) -> Vec<String> {
     found
 }
 
-fn check_corners(obj: &ObjText) -> Result<(), Problem> {
-    let counts =
-        [("vertices", obj.positions.len()), ("texture coordinates", obj.uvs.len()), ("normals", obj.normals.len())];
+/// Removes texture coordinates and normals that don't exist from corners. Returns the line of the first one, and their number.
+fn check_corners(obj: &mut ObjText) -> Result<Option<(usize, usize)>, Problem> {
+    let (vertices, others) = (obj.positions.len(), [obj.uvs.len(), obj.normals.len()]);
     let mut start = 0;
+    let mut absent: Option<(usize, usize)> = None;
     for face in &obj.faces {
-        for corner in &obj.corners[start..face.end as usize] {
-            for (at, (&index, (name, count))) in corner.iter().zip(counts).enumerate() {
-                if index as usize >= count && (index != NONE || at == 0) {
-                    let found = u64::from(index) + 1;
-                    return Err(Problem::new(place(face.line as usize), format!("one of the {count} {name}"), found));
+        for [vertex, own @ ..] in &mut obj.corners[start..face.end as usize] {
+            if *vertex as usize >= vertices {
+                let found = u64::from(*vertex) + 1;
+                return Err(Problem::new(place(face.line as usize), format!("one of the {vertices} vertices"), found));
+            }
+            let mut is_whole = true;
+            for (index, count) in own.iter_mut().zip(others) {
+                if *index as usize >= count && *index != NONE {
+                    *index = NONE;
+                    is_whole = false;
                 }
+            }
+            if !is_whole {
+                absent = Some(absent.map_or((face.line as usize, 1), |(line, count)| (line, count + 1)));
             }
         }
         start = face.end as usize;
     }
-    Ok(())
+    Ok(absent)
 }
 
 impl ObjText {

@@ -125,7 +125,7 @@ fn rotations_multiply_in_channel_order() {
 #[test]
 fn harmless_deviations_load_with_a_warning() {
     // Text, replacement, and the resulting warnings.
-    let cases: [(&str, &str, &[&str]); 12] = [
+    let cases: [(&str, &str, &[&str]); 23] = [
         ("\n", "\r\n", &[]),
         ("\n", "\r", &[]),
         ("\n", "\n \t\n", &[]),
@@ -138,6 +138,17 @@ fn harmless_deviations_load_with_a_warning() {
         ("Frames: 2", "Frames: 1", &["bvh-motion"]),
         ("Frames: 2\n", "", &[]),
         ("30 40 50\n", "30 40 50\n9 9 9", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50 7 8", &["bvh-motion"]),
+        ("0 1 0 0 0 0 0 0 0\n", "0 1 0 0 0 0 0 0 0 ;\n", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\n\u{1A}", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\u{1A}\nold text", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\0\0\0\0", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\n;\n", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\n// made by hand\n1 2 3\n", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\n1 2 3 four\n", &["bvh-motion"]),
+        ("30 40 50\n", "30 40 50\n1 1 1 1 1 1 1 1 1 2 2 2 2 2 2 2 2 2\n", &["bvh-motion"]),
+        ("OFFSET 0 -0.5 0.5", "OFFSET 0 -0.5 0.5\nCHANNELS 0", &["bvh-end-site"]),
+        ("OFFSET 0 -0.5 0.5", "CHANNELS 0 OFFSET 0 -0.5 0.5", &["bvh-end-site"]),
     ];
     let plain = read_bvh(TWO_JOINTS).expect("readable");
     for (usual, unusual, warnings) in cases {
@@ -147,6 +158,33 @@ fn harmless_deviations_load_with_a_warning() {
         assert_eq!(asset.clips[0].timelines(), plain.clips[0].timelines(), "{unusual:?}");
         assert_eq!(codes(&asset), warnings, "{unusual:?}");
     }
+}
+
+#[test]
+fn text_may_be_utf16() {
+    let plain = read_bvh(&TWO_JOINTS.replace("hip", "Hüfte")).expect("readable");
+    assert!(plain.skeleton.find("Hüfte").is_some());
+    let words: Vec<u16> = TWO_JOINTS.replace("hip", "Hüfte").encode_utf16().collect();
+    for (bytes, mark) in
+        [(u16::to_le_bytes as fn(u16) -> [u8; 2], true), (u16::to_be_bytes, true), (u16::to_le_bytes, false)]
+    {
+        let mark = mark.then_some(0xFEFF_u16);
+        let text: Vec<u8> = mark.into_iter().chain(words.iter().copied()).flat_map(bytes).collect();
+        // The content decides: the name has no extension.
+        let asset = load_named(&one("walk", text), "walk", &METRES).expect("readable");
+        assert!(asset.skeleton.find("Hüfte").is_some());
+        assert_eq!(asset.clips[0].channels(), plain.clips[0].channels());
+        assert_eq!(codes(&asset), [""; 0]);
+    }
+}
+
+/// A line that holds more than its frame isn't the layout of a file whose lines are filled regardless of frames.
+#[test]
+fn lines_regardless_of_frames_are_not_guessed() {
+    let filled =
+        TWO_JOINTS.replace("Frames: 2", "Frames: 3").replace("0 1 0 0 0 0 0 0 0\n1 2 3 ", "0 1 0 0 0 0 0 0 0 1 2 3\n");
+    let problem = read_bvh(&filled).expect_err("refused").to_string();
+    assert!(problem.contains("line 19") && problem.contains("9 numbers"), "{problem}");
 }
 
 #[test]

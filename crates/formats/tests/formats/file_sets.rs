@@ -106,6 +106,19 @@ fn a_bare_name_matches_with_a_warning() {
     }
 }
 
+/// As browsers resolve them.
+#[test]
+fn a_backslash_in_a_uri_is_a_slash() {
+    for uri in ["sub\\my mesh.bin", "sub%5Cmy%20mesh.bin", ".\\sub/my mesh.bin"] {
+        let mut files = set(&[("m.gltf", Build::triangle().gltf(uri))]);
+        let missing = missing_files(&files);
+        assert_eq!(missing.len(), 1, "{uri}");
+        assert_eq!(missing[0].trim_start_matches("./"), "sub/my mesh.bin", "{uri}");
+        files.insert("sub/my mesh.bin", buffer());
+        assert_eq!(check(&files), [""; 0], "{uri}");
+    }
+}
+
 #[test]
 fn data_uris() {
     let padded = base64::engine::general_purpose::STANDARD.encode(buffer());

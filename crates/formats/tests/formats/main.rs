@@ -4,6 +4,7 @@ mod behaviour;
 mod bvh;
 mod draco;
 mod early;
+mod encodings;
 mod exercise;
 mod file_sets;
 mod hdr;

@@ -56,8 +56,7 @@ fn an_invalid_obj_is_rejected_with_place_and_reason() {
         ("v 0 0 0\nv 1 0 0\n\nf 1 2 3\n", ["m.obj", "line 4", "one of the 2 vertices", "3"]),
         ("v 0 0 0\nf 1 1 0\n", ["m.obj", "line 2", "counted from 1", "“0”"]),
         ("v 0 0 0\nf 1 1 -2\n", ["m.obj", "line 2", "backwards from -1", "“-2”"]),
-        ("v 0 0 0\nf 1/1 1/1 1/1\n", ["m.obj", "line 2", "one of the 0 texture coordinates", "1"]),
-        ("v 0 0 0\nf 1//2 1//2 1//2\n", ["m.obj", "line 2", "one of the 0 normals", "2"]),
+        ("v 0 0 0\nf 1/x 1/1 1/1\n", ["m.obj", "line 2", "1/1/1", "“1/x”"]),
         ("v 0 0 0\nf 1/1/1/1 1 1\n", ["m.obj", "line 2", "1/1/1", "“1/1/1/1”"]),
         ("v 0 0 0\nf one two three\n", ["m.obj", "line 2", "1/1/1", "“one”"]),
         ("v 0 0 0\n", ["m.obj", "", "a face", "none"]),
@@ -66,6 +65,42 @@ fn an_invalid_obj_is_rejected_with_place_and_reason() {
     for (obj, wanted) in cases {
         check_error(load(&set(&[("m.obj", obj)])), wanted);
     }
+}
+
+#[test]
+fn faces_are_read_without_coordinates_and_normals_that_do_not_exist() {
+    let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n";
+    let read = |faces: &str| {
+        let asset =
+            load(&set(&[("m.obj", &format!("{points}{faces}\n"))])).unwrap_or_else(|problem| panic!("{problem}"));
+        let warnings: Vec<String> = asset.warnings.iter().map(ToString::to_string).collect();
+        let geometry = &asset.meshes[0].primitives[0];
+        ((geometry.uvs.clone(), geometry.normals.clone(), geometry.indices.clone()), warnings)
+    };
+    for (bad, plain, corners) in [
+        ("f 1/4 2/5 3/99", "f 1 2 3", 3),
+        ("f 1/0/1 2/0/1 3/0/1", "f 1//1 2//1 3//1", 3),
+        ("f 1/-4 2/-9 3/-4", "f 1 2 3", 3),
+        ("f 1/1/2 2/2/2 3/3/2", "f 1/1 2/2 3/3", 3),
+        ("f 1/1/1 2/2/1 3/3/4294967295", "f 1/1/1 2/2/1 3/3", 1),
+        ("f 1/1 2/2 3/4294967296", "f 1/1 2/2 3", 1),
+    ] {
+        let (found, warnings) = read(bad);
+        assert_eq!(found, read(plain).0, "{bad}");
+        assert!(warnings.len() == 1 && warnings[0].starts_with(&format!("line 8: {corners} corners")), "{warnings:?}");
+    }
+    // Coordinates may come after the face.
+    assert_eq!(read("f 1/4 2/4 3/4\nvt 0.5 0.5").1, [""; 0]);
+}
+
+#[test]
+fn material_libraries_may_have_paths_of_windows() {
+    let obj = format!("mtllib mat\\my win.mtl\nusemtl red\n{SQUARE}");
+    let files = set(&[("m.obj", &obj)]);
+    assert!(missing_files(&files).contains(&"mat/my win.mtl".to_owned()), "{:?}", missing_files(&files));
+    let asset = load(&set(&[("m.obj", &obj), ("mat/my win.mtl", "newmtl red\nKd 1 0 0\n")])).expect("readable");
+    assert_eq!(asset.materials[0].base_color, glam::Vec4::new(1.0, 0.0, 0.0, 1.0));
+    assert_eq!(asset.warnings.len(), 0);
 }
 
 #[test]

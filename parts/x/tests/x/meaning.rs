@@ -381,7 +381,8 @@ fn names_may_be_odd() {
     let output = gaitway_x::convert(&objects).unwrap();
     let names =
         |bytes: &[u8]| Glb::new(bytes).list("nodes").iter().map(|node| node["name"].clone()).collect::<Vec<_>>();
-    assert_eq!(names(&output.bytes), [json!("12"), json!("Bip01_L-Hand.1"), json!("ärm"), Value::Null]);
+    // A byte in an unknown encoding.
+    assert_eq!(names(&output.bytes), [json!("12"), json!("Bip01_L-Hand.1"), json!("\u{F7E4}rm"), Value::Null]);
     objects.retain(|&byte| byte != b'\r');
     assert_eq!(gaitway_x::convert(&objects).unwrap(), output);
 }
