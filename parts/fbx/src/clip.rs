@@ -10,6 +10,7 @@ use crate::curves::{
     Curves, Drivers, Limits, PIVOT_PROPERTIES, ROTATION_PROPERTIES, SCALE_PROPERTIES, TRANSLATION_PROPERTIES,
 };
 use crate::fit::{self, Keys, Space, Track, fit};
+use crate::inherit;
 use crate::mesh::Morph;
 use crate::node::{Nodes, finite};
 use crate::tolerance::{Tolerance, Tolerances};
@@ -38,6 +39,7 @@ pub fn write(
             warnings.add(format!("Clip \"{name}\" left out: it is longer than a day."));
             continue;
         };
+        curves.warn_of_length(stack, range, warnings);
         let mut clip =
             Clip { scene, anim: &stack.anim, curves, range, limits: &mut limits, glb, animation: Animation::default() };
         clip.add_nodes(nodes, &tolerances)?;
@@ -128,8 +130,7 @@ impl<'a> Clip<'a, '_> {
         let Some(&(path, flags, width)) = PARTS.get(part) else { return Ok(()) };
         let (anim, start, rest) = (self.anim, self.range[0], finite(node.local_transform));
         let mut sample = |time: f64, out: &mut [f64]| {
-            let flags = EXPLICIT_INCLUDES | flags;
-            let transform = finite(ufbx::evaluate_transform_flags(anim, node, start + time, flags));
+            let transform = finite(inherit::transform(anim, node, start + time, EXPLICIT_INCLUDES | flags));
             copy_part(&transform, part, out);
         };
         let mut track = Track {

@@ -1,5 +1,6 @@
 //! Which curves animate what, and when they have keys.
 
+use gaitway_glb::Warnings;
 use ufbx::{AnimCurve, AnimLayer, AnimStack, AnimValue, ExtrapolationMode, Interpolation};
 
 use crate::fit::Corner;
@@ -16,6 +17,8 @@ const MAX_KEYS: usize = 1 << 22;
 const MAX_REPEATED_KEYS: usize = 1 << 16;
 /// Maximum length of a clip, in seconds: a day.
 const MAX_SECS: f64 = 86_400.0;
+/// Minimum difference between the ends of a clip and of its keys that is worth mentioning: the last frame of most programs.
+const MIN_DIFFERENCE_SECS: f64 = 0.1;
 /// The properties that a node's transform is made of.
 pub const TRANSLATION_PROPERTIES: [&str; 5] =
     ["Lcl Translation", "RotationOffset", "RotationPivot", "ScalingOffset", "ScalingPivot"];
@@ -80,18 +83,49 @@ impl<'a> Curves<'a> {
         self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(|curve| !curve.keyframes.is_empty())
     }
 
-    /// Returns the time range of the stack, or that of its keys; none if that is implausible.
-    pub fn range(&self, stack: &AnimStack) -> Option<[f64; 2]> {
+    /// Returns the times of the first and the last key.
+    fn keys(&self) -> [f64; 2] {
         let curves = self.properties.iter().flat_map(|(_, _, value)| curves(value));
         let times = curves.filter(|curve| !curve.keyframes.is_empty()).map(|curve| (curve.min_time, curve.max_time));
-        let (first, last) =
-            times.fold((f64::INFINITY, f64::NEG_INFINITY), |range, (from, to)| (range.0.min(from), range.1.max(to)));
-        let [from, to] =
-            if stack.time_begin < stack.time_end { [stack.time_begin, stack.time_end] } else { [first, last] };
-        let valid =
-            first.is_finite() && last.is_finite() && from.is_finite() && (0.0..=MAX_SECS).contains(&(to - from));
-        valid.then_some([from, to])
+        times.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], (from, to)| [first.min(from), last.max(to)])
     }
+
+    /// Returns the time range of the stack and of the keys after it, or that of the keys; none if that is implausible.
+    pub fn range(&self, stack: &AnimStack) -> Option<[f64; 2]> {
+        let [first, last] = self.keys();
+        let is_valid = |[from, to]: [f64; 2]| {
+            first.is_finite() && last.is_finite() && from.is_finite() && (0.0..=MAX_SECS).contains(&(to - from))
+        };
+        let stated = [stack.time_begin, stack.time_end];
+        let [from, to] = if stated[0] < stated[1] { stated } else { [first, last] };
+        let extended = [from, if last > to + MIN_DIFFERENCE_SECS { last } else { to }];
+        [extended, [from, to]].into_iter().find(|range| is_valid(*range))
+    }
+
+    /// Warns if a clip ends at another time than its keys.
+    pub fn warn_of_length(&self, stack: &AnimStack, [from, to]: [f64; 2], warnings: &mut Warnings) {
+        let name = &*stack.element.name;
+        let [_, last] = self.keys();
+        let repeats = |curve: &AnimCurve| curve.post_extrapolation.mode != ExtrapolationMode::Constant;
+        if stack.time_begin < stack.time_end && to > stack.time_end {
+            let [stop, end] = [stack.time_end, to].map(|time| seconds(time - from));
+            warnings
+                .add(format!("Clip \"{name}\" has keys after its end (LocalStop) at {stop} s: kept, up to {end} s."));
+        } else if to > last + MIN_DIFFERENCE_SECS
+            && !self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(repeats)
+        {
+            let [last, end] = [last, to].map(|time| seconds(time - from));
+            warnings.add(format!(
+                "Clip \"{name}\" is longer than its keys, which end at {last} s: it stands still until {end} s."
+            ));
+        }
+    }
+}
+
+/// Returns a time with three decimals. Formatting floats would take several kilobytes.
+fn seconds(time: f64) -> String {
+    let milliseconds = (1000.0 * time.max(0.0) + 0.5) as u64;
+    format!("{}.{:03}", milliseconds / 1000, milliseconds % 1000)
 }
 
 fn curves(value: &AnimValue) -> impl Iterator<Item = &AnimCurve> {

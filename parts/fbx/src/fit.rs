@@ -7,6 +7,9 @@
 /// Positions between two keys at which the fit is compared with the function: unevenly spaced, so that a motion that
 /// repeats inside a piece is noticed, and close to the ends, where steep tangents act.
 const CHECKS: [f64; 7] = [0.04, 0.15, 0.31, 0.5, 0.69, 0.85, 0.96];
+/// Minimum cosine between the quaternions at a piece's ends: half of the angle between them, 160° at most. At 180°, rounding decides
+/// in which direction a rotation goes.
+const MIN_COSINE: f64 = 0.17;
 /// Maximum number of times a piece is halved.
 const MAX_HALVINGS: u32 = 10;
 /// Maximum number of pieces that are merged into one, which bounds the time for merging.
@@ -80,7 +83,9 @@ pub fn fit(track: &mut Track, corners: &[Corner]) -> Keys {
         let before = if corner.jump { before(corner.time, start) } else { corner.time };
         let end = track.at(before, Some(&value));
         let run = runs.len() - 1;
-        track.split([start, before], [value, end.clone()], 0, &mut runs[run]);
+        track.split([start, before], [value, end], 0, &mut runs[run]);
+        // Its sign may have been flipped.
+        let end = runs[run].last().map_or_else(Vec::new, |piece| piece.ends[3].clone());
         jumped = corner.jump;
         value = if jumped { track.after(corner.time, &end) } else { end };
         start = corner.time;
@@ -134,8 +139,9 @@ impl Track<'_> {
         }
         let [start, _, _, end] = piece.ends;
         let half = self.at(middle, Some(&start));
-        self.split([times[0], middle], [start, half.clone()], halvings + 1, pieces);
+        self.split([times[0], middle], [start, half], halvings + 1, pieces);
         // A quaternion whose sign has been flipped since then flips the end as well.
+        let half = pieces.last().map_or_else(Vec::new, |piece| piece.ends[3].clone());
         let end = if dot(&half, &end) < 0.0 && self.space == Space::Rotation {
             end.iter().map(|component| -component).collect()
         } else {
@@ -164,6 +170,9 @@ impl Track<'_> {
             times: [f64::from(first.times[0]), f64::from(last.times[1])],
             ends: [&first.ends[0], &first.ends[1], &last.ends[2], &last.ends[3]],
         };
+        if self.space == Space::Rotation && dot(span.ends[0], span.ends[3]) < MIN_COSINE {
+            return false;
+        }
         let mut value = vec![0.0; self.width];
         let mut close = |time: f64, expected: &[f64]| {
             span.value(time, interpolation, self.space, &mut value);
@@ -434,6 +443,50 @@ mod tests {
         let keys = fitted(Space::Rotation, 4, &corners(&[0.0, 1.0]), turn);
         assert!(keys.times.len() > 6, "{:?}", keys.times);
         assert_eq!(keys.interpolation, Interpolation::Linear, "a turn of even speed");
+    }
+
+    /// However the last bits of the keys fall.
+    #[test]
+    fn no_rotation_turns_back() {
+        let ease = |t: f64| t * t * (3.0 - 2.0 * t);
+        for degrees in [-1440, -1080, -720, -540, -360, -180, 180, 360, 540, 720, 1080, 1440] {
+            for (duration, eased) in [(1.0, false), (2.0, false), (0.7, false), (1.0, true), (2.0, true)] {
+                for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.36, 0.48, 0.8], [-0.6, 0.0, 0.8]] {
+                    let angle = |time: f64| {
+                        let t = time / duration;
+                        f64::from(degrees).to_radians() * if eased { ease(t) } else { t }
+                    };
+                    let turn = |time: f64, out: &mut [f64]| {
+                        let (sin, cos) = (0.5 * angle(time)).sin_cos();
+                        out.copy_from_slice(&[axis[0] * sin, axis[1] * sin, axis[2] * sin, cos]);
+                    };
+                    let keys = fitted(Space::Rotation, 4, &corners(&[0.0, duration as f32]), turn);
+                    // A piece by itself, as a reader of the file sees it.
+                    let is_cubic = keys.interpolation == Interpolation::CubicSpline;
+                    let parts = if is_cubic { 3 } else { 1 };
+                    let key = |at: usize, part: usize| -> Vec<f64> {
+                        let start = 4 * (parts * at + if is_cubic { part } else { 0 });
+                        keys.values[start..start + 4].iter().map(|&component| component.into()).collect()
+                    };
+                    for at in 0..keys.times.len() - 1 {
+                        let ends = [key(at, 1), key(at, 2), key(at + 1, 0), key(at + 1, 1)];
+                        let times = [at, at + 1].map(|at| f64::from(keys.times[at]));
+                        let span = Span { times, ends: [&ends[0], &ends[1], &ends[2], &ends[3]] };
+                        for step in 0..=8 {
+                            let time = times[0] + f64::from(step) / 8.0 * (times[1] - times[0]);
+                            let (mut found, mut expected) = ([0.0; 4], [0.0; 4]);
+                            span.value(time, keys.interpolation, Space::Rotation, &mut found);
+                            turn(time, &mut expected);
+                            let error = dot(&found, &expected).abs();
+                            assert!(
+                                error > 1.0 - 1e-6,
+                                "{degrees}° in {duration} s about {axis:?}, at {time}: {error}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
     }
 
     #[test]

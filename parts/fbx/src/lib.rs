@@ -12,6 +12,7 @@ mod clip;
 mod curves;
 mod cut;
 mod fit;
+mod inherit;
 mod libc;
 mod material;
 mod mesh;

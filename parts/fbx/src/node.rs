@@ -3,6 +3,9 @@
 use gaitway_glb::{Glb, Object, Warnings, number, numbers, push};
 use ufbx::{Matrix, Node, Quat, Scene, Transform, Vec3};
 
+/// Properties of cameras and lights that other nodes are connected to: what they look at, and what says where up is.
+const TARGETS: [&str; 2] = ["LookAtProperty", "UpVectorProperty"];
+
 /// A glTF node under construction.
 pub struct Entry {
     name: Option<String>,
@@ -12,6 +15,7 @@ pub struct Entry {
     root: usize,
     visible: bool,
     hides_children: bool,
+    is_bone: bool,
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
     camera: Option<usize>,
@@ -27,6 +31,7 @@ impl Entry {
             root,
             visible: true,
             hides_children: false,
+            is_bone: false,
             mesh: None,
             skin: None,
             camera: None,
@@ -64,12 +69,14 @@ impl Nodes {
                 name: name(node),
                 children: node.children.into_iter().filter_map(|child| nodes.index(child)).collect(),
                 visible: node.visible,
+                is_bone: node.attrib_type == ufbx::ElementType::Bone,
                 ..Entry::new(finite(node.local_transform), root.unwrap_or(nodes.entries.len()))
             };
             nodes.entries.push(entry);
         }
         nodes.roots = scene.root_node.children.into_iter().filter_map(|child| nodes.index(child)).collect();
         nodes.hide_lower_levels_of_detail(scene);
+        nodes.hide_targets(scene);
         nodes
     }
 
@@ -108,16 +115,30 @@ impl Nodes {
         }
     }
 
-    /// A hidden node hides only its own mesh, whereas in glTF it hides everything below: nodes that would hide other
-    /// meshes stay visible.
+    /// Hides what cameras and lights only look at.
+    fn hide_targets(&mut self, scene: &Scene) {
+        for node in scene.nodes.into_iter().filter(|node| node.camera.is_some() || node.light.is_some()) {
+            let connections = node.element.connections_dst.into_iter();
+            let aims = connections.filter(|connection| TARGETS.contains(&&*connection.dst_prop));
+            for target in aims.filter(|connection| connection.src.type_ == ufbx::ElementType::Node) {
+                if let Some(&Some(index)) = self.of_typed_id.get(target.src.typed_id as usize) {
+                    self.set(index, |entry| entry.visible = false);
+                }
+            }
+        }
+    }
+
+    /// A hidden node hides only itself, whereas in glTF it hides everything below: nodes that would hide others stay visible, and
+    /// so do bones, which programs hide to show the mesh alone. The others aren't part of the scene, such as MotionBuilder's own
+    /// cameras.
     fn show_what_hides_others(&mut self) {
-        let mut has_mesh = vec![false; self.entries.len()];
+        let mut is_needed = vec![false; self.entries.len()];
         // Children, and leaves even more, come after their parents.
         for index in (0..self.entries.len()).rev() {
-            let below = self.entries[index].children.iter().any(|&child| has_mesh[child]);
+            let below = self.entries[index].children.iter().any(|&child| is_needed[child]);
             let entry = &mut self.entries[index];
-            has_mesh[index] = below || entry.mesh.is_some();
-            entry.visible |= !entry.hides_children && (below || entry.mesh.is_none());
+            entry.visible |= !entry.hides_children && (below || entry.is_bone);
+            is_needed[index] = entry.visible || below || entry.mesh.is_some();
         }
     }
 
@@ -223,7 +244,7 @@ pub fn add_cameras_and_lights(scene: &Scene, nodes: &mut Nodes, glb: &mut Glb, w
         {
             let index = *written.get_or_insert_with(|| write_camera(camera, glb));
             let leaf = nodes.add_leaf(parent, camera_turn);
-            nodes.set(leaf, |entry| entry.camera = Some(index));
+            nodes.set(leaf, |entry| (entry.camera, entry.visible) = (Some(index), node.visible));
         }
         if let Some(light) = &node.light
             && let Some(written) = lights.get_mut(light.element.typed_id as usize)

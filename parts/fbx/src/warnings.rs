@@ -6,7 +6,11 @@ use ufbx::Scene;
 /// Warns about what ufbx had to correct and what glTF cannot represent.
 pub fn add_scene(warnings: &mut Warnings, scene: &Scene) {
     let corrections = scene.metadata.warnings.as_ref();
+    let is_name_damaged = is_name_damaged(scene);
     for (index, warning) in corrections.iter().enumerate() {
+        if warning.type_ == ufbx::WarningType::BadUnicode && !is_name_damaged {
+            continue;
+        }
         let same = |other: &&ufbx::Warning| *other.description == *warning.description;
         if corrections[..index].iter().any(|other| same(&other)) {
             continue;
@@ -35,4 +39,15 @@ pub fn add_scene(warnings: &mut Warnings, scene: &Scene) {
         "constraints",
         "bake the animation before exporting if it moves wrongly",
     );
+}
+
+/// Returns whether text that is converted isn't UTF-8. Sound files, for one, often have paths in another encoding.
+fn is_name_damaged(scene: &Scene) -> bool {
+    use ufbx::ElementType::{AnimStack, BlendChannel, BlendShape, Camera, Light, Material, Mesh, Node};
+    let is_damaged = |text: &str| text.contains(char::REPLACEMENT_CHARACTER);
+    let is_named = |element: &ufbx::Element| {
+        matches!(element.type_, AnimStack | BlendChannel | BlendShape | Camera | Light | Material | Mesh | Node)
+    };
+    (&scene.elements).into_iter().any(|element| is_named(element) && is_damaged(&element.name))
+        || (&scene.textures).into_iter().any(|texture| is_damaged(&texture.relative_filename))
 }

@@ -476,6 +476,109 @@ fn cameras_and_lights_look_along_their_fbx_axes() {
     assert_near(forward(|node| &node["extensions"]["KHR_lights_punctual"]), [0.0, -1.0, 0.0]);
 }
 
+/// MotionBuilder's own cameras are hidden, and 3ds Max's targets are nodes like any other.
+#[test]
+fn hidden_cameras_and_targets_are_hidden() {
+    let mut fbx = Fbx::new(1.0);
+    let hidden = "Properties70: {\nP: \"Visibility\", \"Visibility\", \"\", \"A\",0\n}";
+    let hips = fbx.object("Model", "hips", "LimbNode", hidden);
+    fbx.connect(hips, 0);
+    let bone = fbx.object("NodeAttribute", "", "LimbNode", "TypeFlags: \"Skeleton\"");
+    fbx.connect(bone, hips);
+    let group = fbx.object("Model", "group", "Null", hidden);
+    fbx.connect(group, 0);
+    fbx.node("shown", "Null", group, &[]);
+    for (name, contents) in [("producer", hidden), ("shot", "")] {
+        let node = fbx.object("Model", name, "Camera", contents);
+        fbx.connect(node, 0);
+        let attribute = fbx.object("NodeAttribute", name, "Camera", "");
+        fbx.connect(attribute, node);
+        let target = fbx.node(&format!("{name}.Target"), "Null", 0, &[]);
+        fbx.connect_property(target, node, "LookAtProperty");
+    }
+    let (glb, _) = fbx.glb();
+    let hides = |name| !glb.list("nodes")[glb.node(name)]["extensions"]["KHR_node_visibility"].is_null();
+    let names = ["hips", "group", "shown", "producer", "shot", "producer.Target", "shot.Target"];
+    assert_eq!(names.map(hides), [false, false, false, true, false, true, true]);
+}
+
+/// What a file leaves out is 1: the same file says so.
+#[test]
+fn an_inherited_scale_may_be_left_out() {
+    let scene = |scale: &[(&str, [f64; 3])], flag: &str, left_handed: bool| {
+        let axes = [(1, 1), (2, if left_handed { -1 } else { 1 }), (0, 1)];
+        let mut fbx = Fbx::with_axes(1.0, axes);
+        let upper =
+            fbx.node("upper", "Null", 0, &[("Lcl Scaling", [2.0, 1.0, 1.0]), ("Lcl Rotation", [0.0, 0.0, 30.0])]);
+        let mut parent = upper;
+        let mut nodes = Vec::new();
+        for name in ["middle", "lower", "end"] {
+            let own = [&[("Lcl Translation", [10.0, 50.0, 0.0]), ("RotationPivot", [1.0, 2.0, 3.0])], scale].concat();
+            parent = fbx.node(name, "Null", parent, &own);
+            nodes.push(parent);
+        }
+        fbx.quad(parent);
+        let layer = fbx.take("Take 001", 1.0);
+        fbx.curve(layer, (upper, "Lcl Scaling", "d|X"), 4, &[(0.0, 2.0), (1.0, 3.0)]);
+        fbx.curve(layer, (nodes[1], "Lcl Translation", "d|X"), 4, &[(0.0, 10.0), (1.0, 30.0)]);
+        fbx.curve(layer, (nodes[0], "Lcl Rotation", "d|Z"), 4, &[(0.0, 0.0), (1.0, 60.0)]);
+        let text = fbx.text().replace(
+            "Properties70: {\nP: \"Lcl",
+            &format!("Properties70: {{\nP: \"InheritType\", \"enum\", \"\", \"\",{flag}\nP: \"Lcl"),
+        );
+        Glb::new(&gaitway_fbx::convert(text.as_bytes()).unwrap().bytes)
+    };
+    for (flag, left_handed) in [("0", false), ("0", true), ("1", false), ("2", false)] {
+        let (short, full) =
+            (scene(&[], flag, left_handed), scene(&[("Lcl Scaling", [1.0, 1.0, 1.0])], flag, left_handed));
+        for clip in [None, Some((0, 0.0)), Some((0, 0.4)), Some((0, 1.0))] {
+            let [short, full] = [&short, &full].map(|glb| glb.vertices(&glb.pose(clip)));
+            for (found, expected) in short.iter().zip(&full) {
+                assert!(
+                    (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-5),
+                    "{flag} {clip:?}: {found:?}, not {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Paths of sound files are often in another encoding, and are no part of a scene.
+#[test]
+fn text_that_is_not_used_may_be_damaged() {
+    let mut fbx = two_joints();
+    fbx.object("Audio", "song", "Clip", "RelativeFilename: \"caf#.wav\"");
+    let convert = |text: &str| {
+        let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'#' { 0xE9 } else { byte }).collect();
+        gaitway_fbx::convert(&bytes).unwrap().warnings
+    };
+    assert_eq!(convert(&fbx.text()), [""; 0]);
+    let warnings = convert(&fbx.text().replace("mixamorig:Spine", "mixamorig:Spin#"));
+    assert!(warnings.len() == 1 && warnings[0].contains("UTF-8"), "{warnings:?}");
+}
+
+#[test]
+fn clips_keep_what_is_longer() {
+    let clip = |stop: f64, keys: &[(f64, f64)]| {
+        let mut fbx = Fbx::new(100.0);
+        let node = fbx.node("a", "Null", 0, &[]);
+        let layer = fbx.take("walk", stop);
+        fbx.curve(layer, (node, "Lcl Translation", "d|X"), 4, keys);
+        let (glb, warnings) = fbx.glb();
+        (glb.duration(0), warnings)
+    };
+    assert_eq!(clip(1.0, &[(0.0, 0.0), (1.0, 1.0)]), (1.0, Vec::new()));
+    // A frame more or less.
+    assert_eq!(clip(1.0, &[(0.0, 0.0), (0.96, 1.0)]), (1.0, Vec::new()));
+    assert_eq!(clip(1.0, &[(0.0, 0.0), (1.04, 1.0)]), (1.0, Vec::new()));
+    let (duration, warnings) = clip(3.0, &[(0.0, 0.0), (1.25, 1.0)]);
+    assert!(duration == 3.0 && warnings.len() == 1, "{duration} {warnings:?}");
+    assert!(["walk", "1.250 s", "3.000 s"].iter().all(|part| warnings[0].contains(part)), "{warnings:?}");
+    let (duration, warnings) = clip(1.0, &[(0.0, 0.0), (2.5, 1.0)]);
+    assert!(duration == 2.5 && warnings.len() == 1, "{duration} {warnings:?}");
+    assert!(["walk", "LocalStop", "1.000 s", "2.500 s"].iter().all(|part| warnings[0].contains(part)), "{warnings:?}");
+}
+
 #[test]
 fn repeating_curves_repeat_but_not_for_ever() {
     let repeat = |secs: f64, period: f64| {
