@@ -4,13 +4,15 @@ use gaitway_character::anim::{Clip, JointIndex, Keys};
 use gaitway_character::asset::Asset;
 
 /// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh,
-/// all. Computed once per model.
+/// all but cameras, lights and what is hidden. Computed once per model.
 #[derive(Debug, Default)]
 pub struct Rig {
     real: Vec<bool>,
     bones: Vec<RigBone>,
     roots: Vec<Option<JointIndex>>,
     skin_joints: usize,
+    /// Joints to report if there is neither a skin nor a mesh.
+    bare_joints: usize,
 }
 
 /// A bone from a joint to one of its children; at the end of a chain, it has no tail.
@@ -30,6 +32,7 @@ impl Rig {
         let in_skin = skin_flags(asset);
         let skin_joints = in_skin.iter().filter(|&&inside| inside).count();
         let mut real = in_skin.clone();
+        let helpers = helpers(asset);
         if skin_joints == 0 {
             for channel in asset.clips.iter().flat_map(|clip| clip.channels()) {
                 if !matches!(channel.keys, Keys::MorphWeights { .. }) {
@@ -40,6 +43,7 @@ impl Rig {
                 let animated = std::mem::replace(&mut real, vec![true; skeleton.len()]);
                 drop_containers(asset, &animated, &mut real);
             }
+            real.iter_mut().zip(&helpers).for_each(|(real, helper)| *real &= !helper);
         }
         fill_gaps(asset, &mut real);
         let deforming = deforming(asset, &real);
@@ -56,7 +60,8 @@ impl Rig {
             bones.push(RigBone { head: joint, tail: None, deforms: deforming[joint.get()] });
         }
         let roots = asset.clips.iter().map(|clip| root_of_clip(asset, clip, &in_skin)).collect();
-        Self { real, bones, roots, skin_joints }
+        let bare_joints = helpers.iter().filter(|helper| !**helper).count();
+        Self { real, bones, roots, skin_joints, bare_joints }
     }
 
     /// Returns whether the joint is real; false if the index is out of range.
@@ -79,15 +84,37 @@ impl Rig {
         self.skin_joints
     }
 
-    /// Number of joints to report: those of the skins, or all joints of a skeleton without a mesh.
+    /// Number of joints to report: those of the skins, or all of a skeleton without a mesh.
     pub fn joint_count(&self, asset: &Asset) -> usize {
-        if self.skin_joints == 0 && asset.instances.is_empty() { asset.skeleton.len() } else { self.skin_joints }
+        if self.skin_joints == 0 && asset.instances.is_empty() { self.bare_joints } else { self.skin_joints }
     }
 
     /// The root-motion joints of the asset's own clips.
     pub(super) fn roots(&self) -> &[Option<JointIndex>] {
         &self.roots
     }
+}
+
+/// Finds the nodes that are no joints: hidden ones, and those of cameras and lights. Nothing is one if nothing else is there.
+fn helpers(asset: &Asset) -> Vec<bool> {
+    let skeleton = &asset.skeleton;
+    let mut helpers = vec![false; skeleton.len()];
+    let mut hidden = vec![false; skeleton.len()];
+    asset.hidden.iter().for_each(|joint| hidden[joint.get()] = true);
+    let mut child_count = vec![0; skeleton.len()];
+    skeleton.joints().filter_map(|joint| skeleton.parent(joint)).for_each(|parent| child_count[parent.get()] += 1);
+    let carriers = asset.cameras.iter().map(|camera| camera.joint).chain(asset.lights.iter().map(|light| light.joint));
+    for joint in carriers {
+        helpers[joint.get()] = true;
+        // Converted files hold cameras and lights in nameless nodes that turn them.
+        let own = skeleton.parent(joint).filter(|_| skeleton.name(joint).is_empty());
+        own.filter(|own| child_count[own.get()] == 1).into_iter().for_each(|own| helpers[own.get()] = true);
+    }
+    for joint in skeleton.joints() {
+        hidden[joint.get()] |= skeleton.parent(joint).is_some_and(|parent| hidden[parent.get()]);
+        helpers[joint.get()] |= hidden[joint.get()];
+    }
+    if helpers.iter().all(|helper| *helper) { vec![false; skeleton.len()] } else { helpers }
 }
 
 /// Unmarks nodes that only contain the animated joints of a skeleton without a mesh (`RootNode`, `Armature`). They stay

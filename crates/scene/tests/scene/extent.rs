@@ -1,13 +1,14 @@
 //! Bounds of clips contain every vertex, without much slack.
 
-use gaitway_character::asset::SceneJoints;
+use gaitway_character::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
+use gaitway_character::asset::{Asset, AssetParts, Camera, CameraProjection, Light, LightKind, SceneJoints};
 use gaitway_character::mesh::{Bounds, SkinningMode};
 use gaitway_scene::frame::{Frame, evaluate, pose_document};
-use gaitway_scene::library::{ClipId, Library, Take};
+use gaitway_scene::library::{ClipId, Library, Model, Take};
 use gaitway_scene::state::{CharacterView, ClipChoice, Display, Playhead, ViewerState};
 use glam::Vec3;
 
-use crate::data::{open, walker};
+use crate::data::{library_of, open, walker};
 
 /// The exact bounds of what the reference implementation draws.
 pub fn exact(library: &Library, state: &ViewerState) -> Bounds {
@@ -49,6 +50,60 @@ fn check(library: &Library, clip: usize) {
     let slack = 0.02 * union.diagonal();
     assert!((whole.min - slack).cmple(union.min).all() && (whole.max + slack).cmpge(union.max).all());
     assert!(whole.diagonal() < 1.35 * union.diagonal(), "{whole:?} around {union:?}");
+}
+
+/// Cameras of MotionBuilder are 150 m away.
+#[test]
+fn cameras_lights_and_hidden_nodes_are_no_bones() {
+    let joint = |name: &str, parent: Option<usize>, at: Vec3| Joint {
+        name: name.to_owned(),
+        parent,
+        rest: Transform::from_translation(at),
+        ..Joint::default()
+    };
+    let library = |joints: Vec<Joint>, extras: fn(&Skeleton, &mut AssetParts)| {
+        let skeleton = Skeleton::new(joints).expect("a tree");
+        let mut clip = ClipBuilder::new("Move", &skeleton);
+        let animated =
+            (0..skeleton.len()).filter(|index| index % 2 == 0).filter_map(|index| skeleton.joint_of_source(index));
+        for joint in animated {
+            let keys = Keys::Translation(vec![skeleton.rest().local(joint).translation]);
+            clip.channel(joint, Interpolation::Linear, &[0.0], keys).expect("fine keys");
+        }
+        let clips = vec![clip.build()];
+        let mut parts = AssetParts { format: "test", clips, ..AssetParts::default() };
+        extras(&skeleton, &mut parts);
+        let asset = Asset::new(AssetParts { skeleton, ..parts }).expect("indices in range");
+        library_of(Model::new("bones".to_owned(), asset, Vec::new()))
+    };
+    let body = || vec![joint("hips", None, Vec3::Y), joint("spine", Some(0), Vec3::Y), joint("head", Some(1), Vec3::Y)];
+    let far = Vec3::X * 150.0;
+    let helpers = [
+        joint("producer", None, far),
+        joint("", Some(3), Vec3::ZERO),
+        joint("lamp", None, -far),
+        joint("hidden", None, far),
+        joint("below", Some(6), far),
+        joint("eye", Some(2), far),
+        joint("", Some(8), Vec3::ZERO),
+    ];
+    let alone = library(body(), |_, _| ());
+    let with_helpers = library([body(), helpers.to_vec()].concat(), |skeleton, parts| {
+        let of = |index: usize| skeleton.joint_of_source(index).expect("in range");
+        let projection = CameraProjection::Orthographic { y_mag: 1.0, near: 0.1, far: 1.0 };
+        parts.cameras =
+            [4, 9].map(|index| Camera { name: String::new(), joint: of(index), number: 0, projection }).into();
+        let (color, kind) = (Vec3::ONE, LightKind::Point);
+        parts.lights = vec![Light { joint: of(5), number: 0, color, intensity: 1.0, range: None, kind }];
+        parts.hidden = vec![of(6)];
+    });
+    let [expected, found] = [&alone, &with_helpers].map(|library| {
+        let mut frame = Frame::default();
+        evaluate(library, &ViewerState::default(), 1.0, &mut frame);
+        let model = library.active().expect("a model");
+        (frame.bones.len(), frame.bounds, model.rig().joint_count(&model.asset), model.rest_bounds())
+    });
+    assert_eq!(found, expected);
 }
 
 #[test]
