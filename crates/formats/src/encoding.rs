@@ -83,24 +83,18 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     if bytes.len() > MAX_BYTES || str::from_utf8(bytes).is_ok() {
         return bytes.into();
     }
-    let (mut sample, mut as_utf8, mut others) = (Vec::new(), 0, 0);
+    let mut sample = Vec::new();
     let mut lines = Lines::new(bytes);
     while let Some((_, line)) = lines.next_full_line()
         && sample.len() < MAX_SAMPLE
     {
-        if line.is_ascii() {
-            continue;
+        if !line.is_ascii() {
+            sample.extend_from_slice(&line[..line.len().min(MAX_SAMPLE)]);
+            sample.push(b'\n');
         }
-        // Two bytes of another encoding may be a character of UTF-8; three hardly ever are.
-        match str::from_utf8(line) {
-            Ok(line) => as_utf8 += line.chars().map(|character| character.len_utf8() - 1).sum::<usize>(),
-            Err(_) => others += line.iter().filter(|byte| !byte.is_ascii()).count(),
-        }
-        sample.extend_from_slice(&line[..line.len().min(MAX_SAMPLE)]);
-        sample.push(b'\n');
     }
     // A damaged character in a text that is UTF-8 otherwise.
-    if as_utf8 >= others {
+    if is_mostly_utf8(&sample) {
         return bytes.into();
     }
     decode(guess(&sample, &WESTERN_LETTERS).unwrap_or(WESTERN), bytes)
@@ -109,8 +103,22 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
 
 /// Decodes the names in a zip archive. `None` if they are in no encoding with characters of two bytes.
 pub fn double_byte_names(names: &[&[u8]]) -> Option<Vec<String>> {
-    let label = guess(&names.join(&b'\n'), &ZIP_LETTERS)?;
+    let sample = names.join(&b'\n');
+    let label = if is_mostly_utf8(&sample) { None } else { guess(&sample, &ZIP_LETTERS) }?;
     names.iter().map(|name| decode(label, name)).collect()
+}
+
+/// Returns whether lines are UTF-8 rather than something else.
+fn is_mostly_utf8(text: &[u8]) -> bool {
+    let (mut as_utf8, mut others) = (0, 0);
+    for line in text.split(|&byte| byte == b'\n') {
+        // Two bytes of another encoding may be a character of UTF-8; three hardly ever are.
+        match str::from_utf8(line) {
+            Ok(line) => as_utf8 += line.chars().map(|character| character.len_utf8() - 1).sum::<usize>(),
+            Err(_) => others += line.iter().filter(|byte| !byte.is_ascii()).count(),
+        }
+    }
+    as_utf8 >= others
 }
 
 /// Returns whether a character stands for a byte, as in the encoding x-user-defined. Parts, which have no tables, write text in

@@ -30,6 +30,7 @@ const IN_ZIP64: u32 = u32::MAX;
 const UNICODE_PATH: u16 = 0x7075;
 
 const ENCRYPTED: u16 = 1;
+const UTF8: u16 = 1 << 11;
 const STORED: u16 = 0;
 const DEFLATED: u16 = 8;
 
@@ -64,6 +65,7 @@ pub struct Member<'a> {
     packed_bytes: u64,
     crc: u32,
     is_encrypted: bool,
+    is_utf8: bool,
     method: u16,
     offset: u64,
 }
@@ -147,6 +149,7 @@ impl<'a> Directory<'a> {
             packed_bytes,
             crc: u32_at(listed, 16)?,
             is_encrypted: u16_at(listed, 8)? & ENCRYPTED != 0,
+            is_utf8: u16_at(listed, 8)? & UTF8 != 0,
             method: u16_at(listed, 10)?,
             offset: if has(self.file, moved, MEMBER) { moved } else { offset },
         };
@@ -160,9 +163,9 @@ impl<'a> Member<'a> {
         unicode_path(self.raw_name, self.extra).unwrap_or_else(|| decoded(self.raw_name))
     }
 
-    /// Returns whether nothing says in which encoding the path is.
+    /// Returns whether nothing says in which encoding the path is, so that it isn't certain to be [`Self::name`].
     pub fn has_unknown_encoding(&self) -> bool {
-        unicode_path(self.raw_name, self.extra).is_none() && str::from_utf8(self.raw_name).is_err()
+        !self.raw_name.is_ascii() && !self.is_utf8 && unicode_path(self.raw_name, self.extra).is_none()
     }
 
     /// Returns whether it is a folder. Old programs for Windows write backslashes.
