@@ -457,7 +457,11 @@ for (const renderer of BACK_ENDS)
         await withheld();
         // Files sent by the parent page aren't private.
         assert.equal((await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX))).error, undefined);
+        // What was set beside private files is: their clips and joint maps.
         await call("apply", { motion: [] });
+        await withheld();
+        await call("open", site.data(XBOT));
+        await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX));
         assert.equal((await call("pose")).result.meshes[0].positions.length, 3 * FOX_VERTICES);
       } finally {
         await context.close();

@@ -206,8 +206,17 @@ impl Editor {
         }
     }
 
-    /// Whether anything loaded is one of the user's local files.
+    /// Whether anything shown is, or anything set may have come from, one of the user's local files.
     pub fn is_private(&self) -> bool {
+        self.state.is_private || self.shows_private()
+    }
+
+    /// Notes that the state may have values from the user's local files from now on.
+    fn note_private(&mut self) {
+        self.state.is_private |= self.shows_private();
+    }
+
+    fn shows_private(&self) -> bool {
         self.has_private_map
             || self.library.active().is_some_and(|model| model.is_own)
             || self.library.motions().iter().any(|motion| motion.is_own)

@@ -111,6 +111,7 @@ impl Editor {
             self.open_environment(environment, is_view, has_step);
         }
         (self.needs_redraw, self.is_changed) = (true, true);
+        self.note_private();
         self.report(problems);
         opened
     }
@@ -255,8 +256,10 @@ impl Editor {
             let sources = Sources { scene: old.character.sources.scene, ..sources };
             return ViewerState { character: CharacterView { sources, retarget, ..old.character }, ..old };
         }
+        let is_private = old.is_private && retarget != RetargetEdits::default();
         old.for_model(ViewerState {
             character: CharacterView { sources, retarget, ..CharacterView::default() },
+            is_private,
             ..ViewerState::default()
         })
     }

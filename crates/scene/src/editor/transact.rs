@@ -35,10 +35,12 @@ impl Editor {
         };
         change(self);
         (self.needs_redraw, self.is_changed) = (true, true);
-        match before {
+        let problems = match before {
             Some(before) => self.react(before),
             None => self.retarget(),
-        }
+        };
+        self.note_private();
+        problems
     }
 
     fn react(&mut self, Before { state: before, view, place }: Before) -> Vec<String> {

@@ -8,7 +8,7 @@ use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{Contacts, Feet, Pin, RootOptions, Unmapped};
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, Channel, Hidden, Lighting, MotionMap, ToneMap};
+use super::{CameraChoice, Channel, EnvironmentChoice, Hidden, Lighting, MotionMap, ToneMap};
 use crate::library::{ClipEdits, ClipId, LayeredClip, LookTarget};
 
 /// Everything the user can set. The group a field is in says what happens to it:
@@ -43,6 +43,10 @@ pub struct ViewerState {
     pub camera_options: CameraOptions,
     /// What the page does with the view.
     pub page: PageOptions,
+    /// Some of its values were set while the user's own files were shown, and may say something about them: names of joints and
+    /// clips, a pose, a joint map. Copies of the state are private as well, whatever is shown by then. Links don't have it.
+    #[serde(skip)]
+    pub is_private: bool,
 }
 
 impl ViewerState {
@@ -51,7 +55,10 @@ impl ViewerState {
         let Self { playback, display, lighting, camera_options, page, .. } = self;
         let playhead = Playhead { fade: None, ..model.character.playhead };
         let character = CharacterView { playhead, ..model.character };
-        Self { character, playback, display, lighting, camera_options, page, ..model }
+        // A light may be called like a file of the user's.
+        let names_file = matches!(&lighting.environment, EnvironmentChoice::File(origin) if !origin.contains("://"));
+        let is_private = model.is_private || self.is_private && names_file;
+        Self { character, playback, display, lighting, camera_options, page, is_private, ..model }
     }
 
     /// Returns the default view of a model from this source.
@@ -105,6 +112,7 @@ impl ViewerState {
     /// Copies the groups that undo covers from another state.
     pub(super) fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();
+        self.is_private |= from.is_private;
         self.character.retarget.clone_from(retarget);
         self.character.edits.clone_from(edits);
         self.lighting.clone_from(lighting);

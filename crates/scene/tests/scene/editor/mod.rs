@@ -7,6 +7,7 @@ mod identity;
 mod maps;
 mod motions;
 mod open;
+mod privacy;
 mod reduced_motion;
 mod saved_names;
 mod undo;
