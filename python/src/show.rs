@@ -94,6 +94,8 @@ pub fn show(
     let prefix: PathBuf = py.import("sys")?.getattr("prefix")?.extract()?;
     let (model, motion) = (model.0.clone(), motion.map(|motion| motion.0.clone()));
     let title = title.unwrap_or_else(|| model.content.model.source.clone());
+    let files_read = [Some(&model.files_read), motion.as_ref().map(|motion| &motion.files_read)];
+    let files_read: Vec<PathBuf> = files_read.into_iter().flatten().flatten().cloned().collect();
     let html = py.detach(|| {
         let options = PageOptions {
             clip: clip.as_deref(),
@@ -102,11 +104,10 @@ pub fn show(
             backend,
             folder: page.as_deref(),
             prefix: Some(&prefix),
+            files_read: &files_read,
         };
         functions::page(&model.content, motion.as_deref().map(|motion| &motion.content), map, options)
     });
-    let files_read = [Some(&model.files_read), motion.as_ref().map(|motion| &motion.files_read)];
-    let files_read = files_read.into_iter().flatten().flatten().cloned().collect();
     let shown = file.as_ref().map(|file| file.display().to_string());
     let scene = Scene { html: raised(html)?, title, height, file: shown, files_read };
     match file {

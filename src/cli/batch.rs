@@ -3,6 +3,7 @@
 //! than what it is made from is skipped.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{IsTerminal, Write, stderr};
 use std::num::NonZeroUsize;
@@ -161,7 +162,9 @@ fn jobs(arguments: &RetargetArguments, folder: &Path, format: ClipFormat) -> Out
     let mut jobs = Vec::new();
     let mut origins: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
     for inputs::Input { file, relative } in inputs::motions(&arguments.motion, folder)? {
-        let relative = relative.with_extension(format.extension());
+        let mut name = stem(&relative).to_owned();
+        name.push(format!(".{}", format.extension()));
+        let relative = relative.with_file_name(name);
         if let Some(other) = origins.insert(relative.clone(), file.clone()) {
             if other == file {
                 continue;
@@ -182,7 +185,7 @@ fn model_folders(models: &[PathBuf], folder: &Path) -> Outcome<Vec<PathBuf>> {
     }
     let mut folders: Vec<PathBuf> = Vec::new();
     for model in models {
-        let name = model.file_stem().unwrap_or_default().to_string_lossy();
+        let name = stem(model).to_string_lossy();
         let own = folder.join(name.strip_prefix("sample:").unwrap_or(&name));
         // Some file systems don't tell capitals apart.
         let lower = |path: &Path| path.to_string_lossy().to_lowercase();
@@ -192,6 +195,12 @@ fn model_folders(models: &[PathBuf], folder: &Path) -> Outcome<Vec<PathBuf>> {
         folders.push(own);
     }
     Ok(folders)
+}
+
+/// A file's name without its extension, or with it if the rest would be `.` or `..`, which lead elsewhere.
+fn stem(path: &Path) -> &OsStr {
+    let named = path.file_stem().filter(|stem| ![".", ".."].map(OsStr::new).contains(stem));
+    named.or(path.file_name()).unwrap_or_default()
 }
 
 fn same_output(one: &Path, other: &Path, out: &Path) -> Failure {

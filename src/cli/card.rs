@@ -52,11 +52,11 @@ pub(super) fn run(arguments: &CardArguments, disk: &Disk) -> Outcome {
     save_output(out, filled(&values, picture.is_some()).as_bytes(), EXTENSIONS, &inputs)
 }
 
-/// Renders the link's view of the given files, otherwise of its samples. Files on the web are not fetched.
+/// Renders the link's view of the given files, otherwise of its samples. Nothing else that the link names is read.
 fn picture(arguments: &CardArguments, sources: &Sources, disk: &Disk) -> Outcome<Option<Vec<u8>>> {
-    let is_remote = |source: &String| source.contains("://");
+    let is_sample = |source: &String| source.starts_with("sample:");
     let files: Vec<PathBuf> = match arguments.files.as_slice() {
-        [] if sources.model.is_empty() || sources.model.iter().any(is_remote) => {
+        [] if sources.model.is_empty() || !sources.model.iter().all(is_sample) => {
             warn("the card has no picture: name a copy of the link's model after the link");
             return Ok(None);
         }

@@ -129,7 +129,7 @@ fn sort_parts(error: &SortError) -> Failure {
 
 fn open_parts(error: &OpenError) -> Failure {
     match error {
-        OpenError::Read { path, .. } | OpenError::TooManyFiles { path, .. } => {
+        OpenError::Read { path, .. } | OpenError::NotGiven { path } | OpenError::TooManyFiles { path, .. } => {
             Failure::of_file(&path.display().to_string())
         }
         OpenError::NoSuchSample { name, .. } | OpenError::TooLarge { name, .. } => Failure::of_file(name),

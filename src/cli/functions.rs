@@ -125,6 +125,8 @@ pub struct PageOptions<'a> {
     pub folder: Option<&'a Path>,
     /// Where packages are installed.
     pub prefix: Option<&'a Path>,
+    /// The files that were read. The view can name them, and files in their folders or below.
+    pub files_read: &'a [PathBuf],
 }
 
 /// Returns a page that shows a model by itself, as `gaitway convert` writes it, without a picture for previews.
@@ -149,6 +151,6 @@ pub fn page(
         files: Vec::new(),
     };
     let view = View { link: options.view, clip: options.clip };
-    let editor = editor_of(opened, &MotionArguments::default(), view, &Disk::default())?;
+    let editor = editor_of(opened, &MotionArguments::default(), view, &Disk::beside(options.files_read.to_vec()))?;
     web_page::written(&editor, &template, options.title, None)
 }

@@ -7,6 +7,7 @@ use gaitway_formats::limits::MAX_FOLDER_DEPTH;
 use gaitway_formats::{GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS};
 
 use super::failure::{Failure, Outcome};
+use crate::files::is_below;
 
 /// A motion.
 pub(super) struct Input {
@@ -16,7 +17,8 @@ pub(super) struct Input {
 }
 
 /// Returns the motions in the order given, those in folders and of patterns sorted. A file given by its name may have any
-/// extension. Neither `out_dir`, which may hold the results of an earlier run, nor links to folders are searched.
+/// extension. Neither `out_dir`, which may hold the results of an earlier run, nor links to folders are searched, and links to
+/// files elsewhere are left out.
 pub(super) fn motions(paths: &[PathBuf], out_dir: &Path) -> Outcome<Vec<Input>> {
     let out_dir = fs::canonicalize(out_dir).ok();
     let mut inputs = Vec::new();
@@ -68,7 +70,7 @@ fn walk(folder: &Path, base: &Path, out_dir: Option<&Path>, depth: usize, inputs
             if is_searched {
                 walk(&path, base, out_dir, depth - 1, inputs)?;
             }
-        } else if is_motion(&path) && path.is_file() {
+        } else if is_motion(&path) && path.is_file() && (!path.is_symlink() || is_below(base, &path)) {
             let stripped = path.strip_prefix(base).unwrap_or(&path);
             let relative = stripped.strip_prefix(".").unwrap_or(stripped).to_owned();
             inputs.push(Input { file: path, relative });

@@ -1,15 +1,16 @@
 //! Where `gaitway render --frames` puts its pictures: a folder of PNGs, or a video or GIF that ffmpeg encodes. An encoder of our own
 //! would be larger than the rest of the program, and ffmpeg has every codec.
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread::{self, JoinHandle};
 
 use super::failure::{Failure, Outcome};
 use super::output::{check_output, write_output};
-use crate::files::{Disk, create_temporary, describe, encode_png};
+use crate::files::{Disk, TemporaryFile, describe, encode_png};
 
 /// File extensions for what ffmpeg encodes.
 const ENCODED_EXTENSIONS: &[&str] =
@@ -153,15 +154,20 @@ impl<'a> Encoder<'a> {
                 .with_hint("choose .webm, .gif, a folder of PNGs, or another background")
                 .in_file(out.display()));
         }
-        let temporary = TemporaryFile::new(&format!("frames.{}", container.extension()))?;
+        let temporary = {
+            let folder = std::env::temp_dir();
+            let place = |name: &str| folder.join(format!("{name}.{}", container.extension()));
+            TemporaryFile::create(place)
+                .map_err(|problem| Failure::new(describe(&problem)).in_file(folder.display()))?
+        };
         let size = format!("{width}x{height}");
         let rate = frames_per_sec.to_string();
         let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s:v", &size, "-r", &rate, "-i", "-"];
         let started = Command::new("ffmpeg")
-            .args(["-hide_banner", "-loglevel", "error"])
+            .args(["-hide_banner", "-loglevel", "error", "-y"])
             .args(input)
             .args(container.arguments(is_transparent))
-            .arg(&temporary.path)
+            .arg(as_argument(temporary.path()))
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -198,7 +204,7 @@ impl<'a> Encoder<'a> {
         drop(self.input);
         let status = self.process.wait();
         let said = self.said.join().unwrap_or_default();
-        match (status, fs::read(&self.temporary.path)) {
+        match (status, fs::read(self.temporary.path())) {
             (Ok(status), Ok(video)) if status.success() && !video.is_empty() => {
                 write_output(self.out, &video, ENCODED_EXTENSIONS, disk)
             }
@@ -207,25 +213,9 @@ impl<'a> Encoder<'a> {
     }
 }
 
-/// A path in a folder of its own, which is removed with it.
-struct TemporaryFile {
-    folder: PathBuf,
-    path: PathBuf,
-}
-
-impl TemporaryFile {
-    fn new(name: &str) -> Outcome<Self> {
-        let parent = std::env::temp_dir();
-        let created = create_temporary(|name| parent.join(name), |folder| fs::DirBuilder::new().create(folder));
-        let (folder, ()) = created.map_err(|problem| Failure::new(describe(&problem)).in_file(parent.display()))?;
-        let path = folder.join(name);
-        Ok(Self { folder, path })
-    }
-}
-
-impl Drop for TemporaryFile {
-    fn drop(&mut self) {
-        // Otherwise the system removes it some day.
-        let _ = fs::remove_dir_all(&self.folder);
-    }
+/// A path as ffmpeg takes it: neither an option, whatever TMPDIR begins with, nor the URL of another protocol.
+fn as_argument(path: &Path) -> OsString {
+    let mut argument = OsString::from("file:");
+    argument.push(path);
+    argument
 }

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
@@ -14,7 +14,7 @@ use gaitway_formats::{FileSet, LoadError, Preparation};
 use gaitway_part::Answer;
 use gaitway_retarget::JointMapFile;
 use gaitway_scene::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
-use gaitway_scene::library::{ImageData, Model, Motion};
+use gaitway_scene::library::{ImageData, Model, Motion, container_of};
 use gaitway_scene::samples;
 use gaitway_scene::state::{MEMBER_SEPARATOR, ViewerState};
 
@@ -48,16 +48,15 @@ pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> 
     Disk::default().read_paths(paths, role)
 }
 
-/// Opens the files of a view: see [`Disk::open_view`].
-pub fn open_view(view: ViewerState, with_model: bool, held: Held<'_>) -> Result<(Contents, ViewerState), OpenError> {
-    Disk::default().open_view(view, with_model, held)
-}
-
 /// The file system. It remembers which files it has read, so that none of them is overwritten.
 #[derive(Debug, Default)]
 pub struct Disk {
     images: ImageLimits,
     read: RefCell<Vec<PathBuf>>,
+    /// The files and folders that were named by the user, as opposed to those that a link or another file names.
+    given: RefCell<Vec<PathBuf>>,
+    /// Only what [`find_linked`] finds near `given` can be opened.
+    is_for_link: bool,
     standard_input: Cell<StandardInput>,
 }
 
@@ -80,6 +79,11 @@ impl Disk {
     /// Returns the file system for what a device with these limits draws.
     pub fn for_device(images: ImageLimits) -> Self {
         Self { images, ..Self::default() }
+    }
+
+    /// Returns the file system for views of what has been opened from these files and folders.
+    pub fn beside(given: Vec<PathBuf>) -> Self {
+        Self { given: given.into(), ..Self::default() }
     }
 
     /// Returns a file system where the path `-` stands for standard input.
@@ -106,14 +110,19 @@ impl Disk {
     }
 
     /// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for what is
-    /// `held`. See `view` for the details.
+    /// `held`. See `view` for the details. A link may come from anyone: it can name what the user has named, and files in those
+    /// folders or below, but neither other files nor devices and pipes.
     pub fn open_view(
         &self,
         view: ViewerState,
         with_model: bool,
         held: Held<'_>,
     ) -> Result<(Contents, ViewerState), OpenError> {
-        finish(view::open_view(self, view, with_model, held, NO_PROGRESS))
+        let given = self.given.borrow().clone();
+        let disk = Self { images: self.images.clone(), is_for_link: true, ..Self::beside(given) };
+        let opened = finish(view::open_view(&disk, view, with_model, held, NO_PROGRESS));
+        self.read.borrow_mut().append(&mut disk.read.borrow_mut());
+        opened
     }
 
     /// Opens a joint map.
@@ -200,9 +209,16 @@ impl Source for Disk {
         if address == STANDARD_STREAM && self.standard_input.get() != StandardInput::Ignored {
             let (place, name) = (Place::StandardInput, STANDARD_INPUT_NAME.to_owned());
             let content = Content::File { place, name: name.clone(), full_name: name.clone(), origin: None };
+            self.given.borrow_mut().push(STANDARD_STREAM.into());
             return Ok(Located { content, base: PathBuf::new(), label: name });
         }
-        let path = existing(Path::new(address));
+        let path = if self.is_for_link {
+            find_linked(&self.given.borrow(), Path::new(address))?
+        } else {
+            let path = existing(Path::new(address));
+            self.given.borrow_mut().push(path.clone());
+            path
+        };
         let label = path.file_name().map_or_else(String::new, lossy);
         if path.is_dir() {
             let mut files = Vec::new();
@@ -291,17 +307,52 @@ fn existing(path: &Path) -> PathBuf {
     of_stem.filter(|of_stem| of_stem.is_file()).unwrap_or_else(|| path.to_owned())
 }
 
+/// Finds what a link names: something `given`, by its path or file name, or a file in the folder of one or below. Any other path is
+/// not even looked up, since a server may be at its end.
+fn find_linked(given: &[PathBuf], address: &Path) -> Result<PathBuf, OpenError> {
+    let unmarked = address.to_str().map(|address| container_of(address.strip_prefix("file:").unwrap_or(address)));
+    let path = unmarked.map_or(address, Path::new);
+    let folders = || given.iter().map(|given| if given.is_dir() { given } else { given.parent().unwrap_or(given) });
+    let by_path = given.iter().find(|given| *given == path).cloned();
+    let below =
+        || folders().find_map(|folder| file_below(folder, path).or_else(|| file_below(folder, &beyond(folder, path)?)));
+    let by_name = || given.iter().find(|given| given.file_name() == Some(path.as_os_str())).cloned();
+    if let Some(found) = by_path.or_else(below).or_else(by_name) {
+        return Ok(found);
+    }
+    let may_look = is_relative(path) || folders().any(|folder| beyond(folder, path).is_some());
+    let path = path.to_owned();
+    match may_look && !path.exists() {
+        true => Err(OpenError::Read { path, source: ErrorKind::NotFound.into() }),
+        false => Err(OpenError::NotGiven { path }),
+    }
+}
+
+/// Returns the rest of a path that begins with a folder, as they are spelled.
+fn beyond(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let [folder, path] = [or_here(folder), path].map(std::path::absolute);
+    Some(path.ok()?.strip_prefix(folder.ok()?).ok()?.to_owned())
+}
+
 /// Returns the file at `path` if it lies in `folder` or below. `..`, an absolute path, a drive letter or a symbolic link may
 /// lead elsewhere, and a model must not read, let alone embed, what the user did not give.
 fn file_below(folder: &Path, path: &Path) -> Option<PathBuf> {
-    let is_inner = |part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir);
     let file = folder.join(path);
-    (path.components().all(is_inner) && is_below(folder, &file) && file.is_file()).then_some(file)
+    (is_relative(path) && is_below(folder, &file) && file.is_file()).then_some(file)
+}
+
+/// Whether a path has neither a root nor a drive.
+fn is_relative(path: &Path) -> bool {
+    path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir))
+}
+
+fn or_here(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// Whether a path that exists lies in `folder` or below, symbolic links resolved.
-fn is_below(folder: &Path, path: &Path) -> bool {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+pub fn is_below(folder: &Path, path: &Path) -> bool {
+    let folder = or_here(folder);
     match (folder.canonicalize(), path.canonicalize()) {
         (Ok(folder), Ok(path)) => path.starts_with(folder),
         _ => false,

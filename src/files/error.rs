@@ -38,6 +38,12 @@ pub enum OpenError {
         /// The underlying error, usually from the operating system.
         source: std::io::Error,
     },
+    /// A link names a file that the user hasn't named, somewhere else.
+    #[error("{}: a link can only name what is opened with it, and files in the same folders or below", path.display())]
+    NotGiven {
+        /// As the link has it.
+        path: PathBuf,
+    },
     /// Standard input was named a second time.
     #[error("-: standard input can be read only once; name a file instead")]
     StandardInputTwice,
@@ -127,6 +133,7 @@ impl OpenError {
             Self::Nothing | Self::StandardInputTwice | Self::InvalidUrl { .. } => ErrorCode::Malformed,
             Self::NoSuchSample { .. }
             | Self::Read { .. }
+            | Self::NotGiven { .. }
             | Self::Status { .. }
             | Self::Unreachable { .. }
             | Self::Silent { .. }

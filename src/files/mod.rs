@@ -30,7 +30,9 @@ pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
-pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, read_paths};
+pub(crate) use disk::is_below;
+#[cfg(not(target_arch = "wasm32"))]
+pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, read_paths};
 pub use early::EarlyWatch;
 pub use error::OpenError;
 #[cfg(not(target_arch = "wasm32"))]
@@ -40,7 +42,7 @@ pub use images::has_ktx2;
 pub use png::encode_png;
 pub use read::{Item, extensions};
 #[cfg(not(target_arch = "wasm32"))]
-pub use save::{SaveError, create_temporary, is_stream, refuse_input, save_file};
+pub use save::{SaveError, TemporaryFile, is_stream, refuse_input, save_file};
 pub use sort::{Role, SortError, Sorted, read_map, sort};
 pub use source::Progress;
 pub use view::Held;

@@ -2,7 +2,9 @@
 //! writes for the user is written here, never over a file that was read: [`Disk`](super::Disk) remembers those, side files
 //! included.
 
-use std::fs::{File, OpenOptions, Permissions, metadata, read_link, remove_file, rename};
+use std::fs::{
+    File, Metadata, OpenOptions, Permissions, TryLockError, metadata, read_link, remove_file, rename, symlink_metadata,
+};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -37,7 +39,7 @@ pub enum SaveError {
 
 /// Maximum length of a chain of symbolic links, as on Linux.
 const MAX_LINKS: usize = 40;
-/// Maximum number of temporary files that interrupted runs may have left in a folder.
+/// Maximum number of temporary files in a folder.
 const MAX_LEFTOVERS: usize = 100;
 
 /// Creates or replaces a file. A symbolic link stays, and the file it leads to is replaced. Devices, pipes and open descriptors
@@ -102,39 +104,100 @@ fn followed(path: &Path) -> PathBuf {
 }
 
 fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
-    let (temporary, file) = create_temporary(
-        |name| path.with_file_name(format!(".{name}.tmp")),
-        |temporary| OpenOptions::new().write(true).create_new(true).open(temporary),
-    )?;
-    let replaced = fill(file, bytes, permissions).and_then(|()| rename(&temporary, path));
-    if replaced.is_err() {
-        // The error that matters is the first one.
-        let _ = remove_file(&temporary);
-    }
-    replaced
+    let temporary = TemporaryFile::create(|name| path.with_file_name(format!(".{name}.tmp")))?;
+    fill(&temporary.file, bytes, permissions)?;
+    temporary.rename(path)
 }
 
-/// Creates a temporary file or folder. `place` returns where one with this name goes, and `create` must fail if something is there:
-/// an interrupted run may have left it behind.
-///
-/// # Errors
-/// If `create` fails for another reason, or for every name.
-pub fn create_temporary<T>(
-    place: impl Fn(&str) -> PathBuf,
-    create: impl Fn(&Path) -> io::Result<T>,
-) -> io::Result<(PathBuf, T)> {
-    let mut attempt = 0;
-    loop {
-        let temporary = place(&format!("gaitway-{}-{attempt}", std::process::id()));
-        match create(&temporary) {
-            Ok(created) => return Ok((temporary, created)),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < MAX_LEFTOVERS => attempt += 1,
-            Err(error) => return Err(error),
+/// A new file, which is removed again unless it is renamed. If the program is killed, the next one that creates such a file in that
+/// folder removes it: nothing holds its lock any more. Elsewhere than on Unix, locks would keep ffmpeg out, so names are never used
+/// again.
+#[derive(Debug)]
+pub struct TemporaryFile {
+    file: File,
+    path: PathBuf,
+}
+
+impl TemporaryFile {
+    /// `place` returns where a file of this name goes.
+    ///
+    /// # Errors
+    /// If no file can be created there.
+    pub fn create(place: impl Fn(&str) -> PathBuf) -> io::Result<Self> {
+        let place = |attempt: usize| match cfg!(unix) {
+            true => place(&format!("gaitway-{attempt}")),
+            false => place(&format!("gaitway-{}-{attempt}", std::process::id())),
+        };
+        (0..=MAX_LEFTOVERS).map(&place).for_each(|path| remove_abandoned(&path));
+        for path in (0..MAX_LEFTOVERS).map(&place) {
+            match Self::create_at(path) {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                created => return created,
+            }
+        }
+        Self::create_at(place(MAX_LEFTOVERS))
+    }
+
+    fn create_at(path: PathBuf) -> io::Result<Self> {
+        let file = OpenOptions::new().write(true).create_new(true).open(&path)?;
+        // Before the lock, another process may have taken it for abandoned.
+        if cfg!(unix) && (matches!(file.try_lock(), Err(TryLockError::WouldBlock)) || !is_at(&file, &path)) {
+            return Err(ErrorKind::AlreadyExists.into());
+        }
+        Ok(Self { file, path })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn rename(mut self, path: &Path) -> io::Result<()> {
+        rename(&self.path, path)?;
+        self.path.clear();
+        Ok(())
+    }
+}
+
+impl Drop for TemporaryFile {
+    fn drop(&mut self) {
+        if !self.path.as_os_str().is_empty() {
+            // Otherwise the next run does.
+            let _ = remove_file(&self.path);
         }
     }
 }
 
-fn fill(mut file: File, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
+/// Removes a temporary file whose program was killed: the system has given its lock back.
+fn remove_abandoned(path: &Path) {
+    // Opening a pipe would wait for its reader.
+    if !cfg!(unix) || !symlink_metadata(path).is_ok_and(|found| found.is_file()) {
+        return;
+    }
+    let Ok(file) = OpenOptions::new().write(true).open(path) else { return };
+    if file.try_lock().is_ok() && is_at(&file, path) {
+        // If that fails, another name is used.
+        let _ = remove_file(path);
+    }
+}
+
+/// Whether an open file is still the one at this path.
+fn is_at(file: &File, path: &Path) -> bool {
+    matches!((file.metadata(), metadata(path)), (Ok(open), Ok(found)) if is_same(&open, &found))
+}
+
+#[cfg(not(unix))]
+fn is_same(_one: &Metadata, _other: &Metadata) -> bool {
+    false
+}
+
+#[cfg(unix)]
+fn is_same(one: &Metadata, other: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (one.dev(), one.ino()) == (other.dev(), other.ino())
+}
+
+fn fill(mut file: &File, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
     file.write_all(bytes)?;
     if let Some(permissions) = permissions {
         file.set_permissions(permissions)?;
@@ -151,8 +214,7 @@ fn is_same_file(one: &Path, other: &Path) -> bool {
     }
     #[cfg(unix)]
     {
-        use std::os::unix::fs::MetadataExt;
-        (found.dev(), found.ino()) == (other_found.dev(), other_found.ino())
+        is_same(&found, &other_found)
     }
     #[cfg(not(unix))]
     {

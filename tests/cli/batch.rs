@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime};
 
@@ -109,6 +110,7 @@ fn a_killed_run_is_resumed() {
     assert_eq!((resumed.len(), skipped), (COUNT, before.len()));
     let after = files();
     assert_eq!(after.len(), COUNT);
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), COUNT, "no temporary file is left");
     assert!(
         before.iter().all(|file| after.contains(file)) && after.iter().all(|file| file.1.len() == after[0].1.len())
     );
@@ -169,6 +171,26 @@ fn outputs_never_replace_inputs_or_each_other() {
     check_fails(&[&model[..], &[&motion]].concat(), 2, "--out");
     assert_eq!(fs::read(&motion).expect("a file"), before);
     assert!(!folder.join("out").exists());
+}
+
+/// Without their extensions, these names are those of other folders.
+#[test]
+fn names_of_dots_are_names() {
+    let (folder, motion) = folder("dots");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    for name in ["..bvh", "...bvh"] {
+        fs::copy(&motion, folder.join(name)).expect("a copy");
+    }
+    let (out, model) = (path("in/out"), path("...glb"));
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--out", &model];
+    assert!(run(&retarget).status.success());
+    let motions = ["--motion", &path("..bvh"), &path("...bvh"), "--out-dir", &out, "--clip-only"];
+    let made = lines(&[&["retarget", "--model", "sample:walker", &model], &motions[..]].concat(), 0);
+    let mut outs: Vec<&str> = made.iter().map(|line| line["out"].as_str().expect("a path")).collect();
+    outs.sort_unstable();
+    let expected = ["...glb/...bvh.glb", "...glb/..bvh.glb", "walker/...bvh.glb", "walker/..bvh.glb"];
+    assert_eq!(outs, expected.map(|name| format!("{out}/{name}")));
+    assert!(outs.iter().all(|out| Path::new(out).is_file()), "{made:?}");
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod pins;
 mod program;
 #[path = "../support/random.rs"]
 mod random;
+mod reach;
 #[cfg(feature = "render")]
 mod render;
 mod variants;

@@ -65,7 +65,7 @@ fn a_link_loads_its_motion_and_map() {
     let unposed = document(&["pose", "sample:walker", "--json"]);
     let own = document(&["inspect", "sample:walker", "--json"])["clips"].as_array().map_or(0, Vec::len);
     let link = format!("v=1&motion=file:{motion}&clip={own}&t=0.3");
-    let linked = document(&["pose", "sample:walker", "--view", &link, "--json"]);
+    let linked = document(&["pose", "sample:walker", &motion, "--view", &link, "--json"]);
     assert_eq!(linked["nodes"], named["nodes"]);
     assert_ne!(linked["nodes"], unposed["nodes"]);
     // The joints of an exercise model have generated names, which its map refers to.

@@ -186,6 +186,13 @@ fn the_frames_of_a_loop_become_a_video() {
         let decoded = Command::new("ffmpeg").args(decode).output().expect("ffmpeg");
         assert_eq!(decoded.stdout.len(), WALKING_FRAMES * 8 * 8 * 3, "{name}");
     }
+    // A folder for temporary files whose name is an option of ffmpeg's.
+    fs::create_dir(folder.path("-f")).expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
+    let command = command.current_dir(&folder.0).env("TMPDIR", "-f").args(["render", "sample:walker", "--size", "8x8"]);
+    let output = command.args(WALKING).args(["--out", "odd.gif"]).output().expect("the program runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(fs::read_dir(folder.path("-f")).expect("a folder").next().is_none(), "nothing is left");
     let refused = |arguments: &[&str]| refusal(&render(&[&WALKING[..], arguments].concat()));
     let avi = folder.path("walk.avi");
     let found = refused(&["--out", &avi]);

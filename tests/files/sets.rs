@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use gaitway::files::{Held, OpenError, Role, SortError, open_paths, open_view, read_map, read_paths, sort};
+use gaitway::files::{Disk, Held, OpenError, Role, SortError, open_paths, read_map, read_paths, sort};
 use gaitway_formats::limits::MAX_MAP_BYTES;
 use gaitway_formats::{FileSet, LoadError};
 use gaitway_retarget::MapError;
@@ -268,7 +268,8 @@ fn a_view_opens_the_files_it_lists() {
     );
     let (state, errors) = from_link(&link);
     assert!(errors.is_empty(), "{errors:?}");
-    let (contents, view) = open_view(state, true, Held::default()).expect("the model is there");
+    let disk = Disk::beside(vec![folder.clone()]);
+    let (contents, view) = disk.open_view(state, true, Held::default()).expect("the model is there");
     assert_eq!(contents.models.len(), 1);
     let origins = |contents: &gaitway_scene::editor::Contents| -> Vec<String> {
         contents.motions.iter().flatten().map(|motion| motion.origin.clone()).collect()
@@ -280,18 +281,20 @@ fn a_view_opens_the_files_it_lists() {
     let held: Vec<_> = contents.motions.into_iter().flatten().collect();
     std::fs::remove_dir_all(&folder).expect("it was created");
     let (contents, view) =
-        open_view(view, false, Held { motions: &held, ..Held::default() }).expect("no model was asked for");
+        disk.open_view(view, false, Held { motions: &held, ..Held::default() }).expect("no model was asked for");
     assert_eq!((contents.models.len(), origins(&contents)), (0, vec!["sample:walker".to_owned()]));
     assert_eq!(contents.problems.len(), 2, "both motions that are files: {:?}", contents.problems);
     assert!(contents.problems.iter().all(|problem| problem.contains(".bvh")), "{:?}", contents.problems);
-    assert!(matches!(open_view(view, true, Held { motions: &held, ..Held::default() }), Err(OpenError::Read { .. })));
+    let opened = disk.open_view(view, true, Held { motions: &held, ..Held::default() });
+    assert!(matches!(opened, Err(OpenError::Read { .. })));
 }
 
 #[test]
 fn one_of_several_models_that_cannot_be_read_is_left_out() {
     let folder = temporary_folder("models");
     let model = write(&folder, "m.gltf", MESH.as_bytes()).to_str().expect("Unicode").to_owned();
-    let open = |link: &str| open_view(from_link(link).0, true, Held::default());
+    let disk = Disk::beside(vec![folder.clone()]);
+    let open = |link: &str| disk.open_view(from_link(link).0, true, Held::default());
     for link in [format!("model={model}&model=nowhere.glb"), format!("model=nowhere.glb&model={model}")] {
         let (contents, view) = open(&link).expect("one is there");
         assert_eq!(
@@ -336,14 +339,15 @@ fn a_view_opens_what_lights_it() {
     let folder = temporary_folder("light");
     let path = write(&folder, "beach.hdr", HDR).to_str().expect("Unicode").to_owned();
     let (state, _) = from_link(&format!("v=1&model=sample:walker&light={path}"));
-    let (contents, view) = open_view(state, false, Held::default()).expect("a view");
+    let disk = Disk::beside(vec![folder.clone()]);
+    let (contents, view) = disk.open_view(state, false, Held::default()).expect("a view");
     let environments = Vec::from_iter(contents.environment);
     assert_eq!(environments[0].origin, path, "what the view calls it");
     std::fs::remove_dir_all(&folder).expect("it was created");
     let held = Held { environments: &environments, ..Held::default() };
-    let (contents, view) = open_view(view, false, held).expect("a view");
+    let (contents, view) = disk.open_view(view, false, held).expect("a view");
     assert!(contents.environment.is_none() && contents.problems.is_empty(), "it is not read again");
-    let (contents, _) = open_view(view, false, Held::default()).expect("the rest");
+    let (contents, _) = disk.open_view(view, false, Held::default()).expect("the rest");
     assert!(contents.problems[0].contains("beach.hdr"), "{:?}", contents.problems);
 }
 
