@@ -1,12 +1,10 @@
 //! `gaitway inspect`: summarizes a model.
 
-use std::fmt::Write;
-
 use gaitway_scene::library::inspect;
 use serde_json::Value;
 
 use super::failure::Outcome;
-use super::output::{print_bytes, print_json, warn};
+use super::output::{print_json, print_lines, warn};
 use super::{InspectArguments, open};
 use crate::files::{Disk, Opened};
 
@@ -20,17 +18,14 @@ pub(super) fn run(arguments: &InspectArguments, disk: &Disk) -> Outcome {
     if arguments.json {
         return print_json(&document);
     }
-    print_bytes(text(&opened, &document).as_bytes())
+    print_lines(lines(&opened, &document))
 }
 
 /// Formats the summary for people; scripts read the JSON.
-fn text(opened: &Opened, document: &Value) -> String {
+fn lines(opened: &Opened, document: &Value) -> Vec<String> {
     let asset = &opened.model.asset;
-    let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{name:<12}{value}");
-    };
+    let mut lines = Vec::new();
+    let mut line = |name: &str, value: String| lines.push(format!("{name:<12}{value}"));
     let number = |key: &str| document[key].to_string();
     line("files", opened.files.join(", "));
     line("format", asset.format.to_owned());
@@ -80,5 +75,5 @@ fn text(opened: &Opened, document: &Value) -> String {
             ),
         );
     }
-    text
+    lines
 }

@@ -1,7 +1,5 @@
 //! `gaitway map`: proposes a joint map and explains it.
 
-use std::fmt::Write;
-
 use gaitway_character::anim::Skeleton;
 use gaitway_character::asset::Asset;
 use gaitway_retarget::{Body, Contradiction, JointMap, Proposal, Recognized, ResolvedMap, Retargeting};
@@ -10,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::failure::Outcome;
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_motion};
-use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
+use super::output::{is_standard_output, print_json, print_lines, warn, write_output};
 use super::{MapArguments, open};
 use crate::files::Disk;
 
@@ -29,7 +27,7 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     if arguments.json {
         return print_json(&proposed.document()?);
     }
-    print_bytes(proposed.text().as_bytes())
+    print_lines(proposed.lines())
 }
 
 /// A proposed map and what is reported about it.
@@ -83,15 +81,12 @@ impl<'a> Proposed<'a> {
         Ok(document)
     }
 
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for pair in &self.proposal.pairs {
+    fn lines(&self) -> impl Iterator<Item = String> {
+        self.proposal.pairs.iter().map(|pair| {
             let (target, source) = (self.model.skeleton.label(pair.target), self.motion.skeleton.label(pair.source));
             let (slot, confidence) = (pair.slot.map_or("", |slot| slot.name()), 100.0 * pair.confidence);
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{target:<32} {source:<32} {slot:<24} {confidence:>4.0} %  {}", pair.reason);
-        }
-        text
+            format!("{target:<32} {source:<32} {slot:<24} {confidence:>4.0} %  {}", pair.reason)
+        })
     }
 }
 

@@ -24,6 +24,8 @@ mod retarget;
 mod sequence;
 mod web_page;
 
+use std::borrow::Cow;
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -45,7 +47,7 @@ use edit::EditOptions;
 use failure::{Failure, Outcome};
 use layer::LayerOptions;
 use motion::{MotionArguments, Overrides};
-use output::{is_standard_output, print_error, print_json, warn};
+use output::{is_standard_output, print_error, print_json, shown, warn};
 use pin::PinOptions;
 
 /// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
@@ -430,7 +432,7 @@ pub fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         Err(error) => {
-            let _ = error.print();
+            print_usage_error(&error);
             print_failure(&Failure::new(usage_message(&error)));
             return ExitCode::from(2);
         }
@@ -442,6 +444,17 @@ pub fn main() -> ExitCode {
             print_failure(&failure);
             ExitCode::from(1)
         }
+    }
+}
+
+/// Prints clap's text in colours or, if an argument such as the name of a file has something that a terminal would obey, its first
+/// paragraph.
+fn print_usage_error(error: &clap::Error) {
+    let is_plain = |argument: OsString| matches!(shown(&argument.to_string_lossy()), Cow::Borrowed(_));
+    if std::env::args_os().all(is_plain) {
+        let _ = error.print();
+    } else {
+        print_error(&format!("error: {}", usage_message(error)));
     }
 }
 

@@ -1,5 +1,6 @@
 //! What commands write: the file of `--out` and standard output. Everything that is written passes through here.
 
+use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::io::{ErrorKind, Write, stderr, stdout};
 use std::path::{Path, PathBuf};
@@ -50,7 +51,7 @@ pub(super) fn print_json(document: &serde_json::Value) -> Outcome {
     print_bytes(format!("{document}\n").as_bytes())
 }
 
-/// Prints to standard output. A closed pipe is not an error.
+/// Prints bytes to standard output. A closed pipe is not an error.
 pub(super) fn print_bytes(bytes: &[u8]) -> Outcome {
     let mut stdout = stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
@@ -61,11 +62,41 @@ pub(super) fn print_bytes(bytes: &[u8]) -> Outcome {
     }
 }
 
-/// Prints a line to standard error. If that fails, there is nowhere left to report it.
+/// Prints lines for people to standard output.
+pub(super) fn print_lines(lines: impl IntoIterator<Item: AsRef<str>>) -> Outcome {
+    let lines = lines.into_iter().map(|line| format!("{}\n", shown(line.as_ref())));
+    print_bytes(lines.collect::<String>().as_bytes())
+}
+
+/// Prints a line for people to standard error. If that fails, there is nowhere left to report it.
 pub(super) fn print_error(line: &str) {
-    let _ = writeln!(stderr(), "{line}");
+    let _ = writeln!(stderr(), "{}", shown(line));
 }
 
 pub(super) fn warn(message: &str) {
     print_error(&format!("warning: {message}"));
+}
+
+/// Returns a line as a terminal shows it. Names come from files that nobody has vetted: what a terminal would obey, such as escape
+/// sequences, new lines and marks that reverse the text, is escaped. All text for people passes through here; JSON has its own
+/// escapes.
+pub(super) fn shown(line: &str) -> Cow<'_, str> {
+    if !line.contains(is_obeyed) {
+        return Cow::Borrowed(line);
+    }
+    let mut shown = String::with_capacity(2 * line.len());
+    for character in line.chars() {
+        match is_obeyed(character) {
+            true => shown.extend(character.escape_default()),
+            false => shown.push(character),
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// Whether a terminal obeys a character instead of showing it: a control, a line separator or a bidirectional mark.
+fn is_obeyed(character: char) -> bool {
+    let is_mark =
+        matches!(character, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    character.is_control() || is_mark
 }

@@ -1,12 +1,10 @@
 //! `gaitway pose`: prints a pose as numbers.
 
-use std::fmt::Write;
-
 use gaitway_scene::frame::{NodePose, PoseDocument};
 
 use super::failure::Outcome;
 use super::motion::{apply_link, open_editor};
-use super::output::print_bytes;
+use super::output::{print_bytes, print_lines};
 use super::{PoseArguments, apply_moment, open};
 use crate::files::Disk;
 
@@ -20,13 +18,10 @@ pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     if arguments.json {
         return print_bytes(format!("{document}\n").as_bytes());
     }
-    let mut text = String::new();
     let clip = document.clip.as_deref().unwrap_or("rest pose");
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{clip} at {} s; world positions of the nodes in metres:", document.time_secs);
-    for NodePose { node, name, world } in &document.nodes {
-        let at = |index: usize| world[index];
-        let _ = writeln!(text, "{node:>5} {name:<32} {:>10.4} {:>10.4} {:>10.4}", at(12), at(13), at(14));
-    }
-    print_bytes(text.as_bytes())
+    let title = format!("{clip} at {} s; world positions of the nodes in metres:", document.time_secs);
+    let line = |NodePose { node, name, world }: &NodePose| {
+        format!("{node:>5} {name:<32} {:>10.4} {:>10.4} {:>10.4}", world[12], world[13], world[14])
+    };
+    print_lines([title].into_iter().chain(document.nodes.iter().map(line)))
 }

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::edit::baked;
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
-use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
+use super::output::{is_standard_output, print_error, print_json, print_lines, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
 use crate::files::{Disk, Opened};
 
@@ -39,10 +39,10 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
         return print_json(&made.document);
     }
     if is_standard_output(out) {
-        print_error(made.text.trim_end());
+        made.text.lines().for_each(print_error);
         return Ok(());
     }
-    print_bytes(made.text.as_bytes())
+    print_lines(made.text.lines())
 }
 
 /// Returns the only file of an argument, which also has other uses for several.

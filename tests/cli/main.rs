@@ -26,6 +26,7 @@ mod random;
 mod reach;
 #[cfg(feature = "render")]
 mod render;
+mod terminal;
 mod variants;
 #[path = "../support/walk_bvh.rs"]
 mod walk_bvh;
