@@ -11,8 +11,11 @@ use image::{ImageReader, Limits};
 use super::ImageLimits;
 use super::images::{byte_count, fitted, is_ktx2, largest_edge, push_decoded, transcoded};
 
-/// Memory a decoder may use besides the pixels, which may have 16 bits per channel.
+/// Memory a decoder may use besides the pixels.
 const DECODER_BYTES: u64 = 64 << 20;
+/// Memory for the pixels of an image as it is stored, before it is scaled down: 16,384 × 16,384 with 8 bits per channel. With 16,
+/// half as many fit.
+const MAX_STORED_BYTES: u64 = 1 << 30;
 
 /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added.
 pub fn decode_images(asset: &mut Asset, limits: &ImageLimits) -> Vec<Option<ImageData>> {
@@ -42,18 +45,20 @@ fn decode(image: &Image, largest_edge: u32, limits: &ImageLimits) -> Result<(Ima
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_IMAGE_SIDE);
     limits.max_image_height = Some(MAX_IMAGE_SIDE);
-    limits.max_alloc = Some(2 * byte_count([image.width, image.height]) + DECODER_BYTES);
+    let stored_bytes = (2 * byte_count([image.width, image.height])).min(MAX_STORED_BYTES);
+    limits.max_alloc = Some(stored_bytes + DECODER_BYTES);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
-    let (width, height) = pixels.dimensions();
-    let full_size = [width, height];
+    let pixels = reader.decode().map_err(|e| e.to_string())?;
+    let full_size @ [width, height] = [pixels.width(), pixels.height()];
     if width == 0 || height == 0 {
         return Err(format!("{width} × {height} pixels"));
     }
+    // Before it is converted, so that a large image isn't held twice.
     let pixels = match fitted(width, height, largest_edge) {
-        Some([width, height]) => image::imageops::thumbnail(&pixels, width, height),
+        Some([width, height]) => pixels.thumbnail_exact(width, height),
         None => pixels,
     };
+    let pixels = pixels.into_rgba8();
     let (width, height) = pixels.dimensions();
     Ok((ImageData::Rgba8 { width, height, pixels: pixels.into_raw() }, full_size))
 }

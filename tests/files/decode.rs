@@ -64,6 +64,25 @@ fn image_sizes_in_headers_are_not_trusted() {
     check_unreadable(huge);
 }
 
+/// Two gigabytes of pixels with 16 bits per channel, of which the file has none. Where the header is sound, nothing but the limit keeps
+/// them from being allocated.
+#[test]
+fn large_images_are_not_decoded_at_any_cost() {
+    let chunk = |kind: &[u8; 4], data: &[u8]| {
+        let mut crc = flate2::Crc::new();
+        [kind, data].into_iter().for_each(|part: &[u8]| crc.update(part));
+        [&(data.len() as u32).to_be_bytes()[..], kind, data, &crc.sum().to_be_bytes()].concat()
+    };
+    let side = 16_384_u32.to_be_bytes();
+    let header = chunk(b"IHDR", &[&side[..], &side, &[16, 6, 0, 0, 0]].concat());
+    let file = [b"\x89PNG\r\n\x1a\n", &header[..], &chunk(b"IDAT", &[0x78, 0x9c]), &chunk(b"IEND", &[])].concat();
+    let image = Image { name: "skin".to_owned(), mime: "image/png", bytes: file.into(), width: 16_384, height: 16_384 };
+    let mut asset = Asset::new(AssetParts { images: vec![image], ..AssetParts::default() }).expect("indices in range");
+    assert!(decode_images(&mut asset, &ImageLimits::default())[0].is_none());
+    let warnings: Vec<String> = asset.warnings.iter().map(ToString::to_string).collect();
+    assert!(warnings[0].to_lowercase().contains("memory limit") && warnings.len() == 1, "{warnings:?}");
+}
+
 #[test]
 fn pixels_are_decoded_exactly() {
     let pixels = [255, 0, 0, 255, 10, 200, 30, 128];
