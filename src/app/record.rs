@@ -36,6 +36,9 @@ impl App {
         }
         let aspect = size[0] as f32 / size[1] as f32;
         let Some(frames) = LoopFrames::new(library, state, aspect, frames_per_sec) else { return };
+        if frames.count() > LoopFrames::MAX_COUNT {
+            return self.fail_to_record(format, text::TOO_MANY_FRAMES);
+        }
         let transparent = settings.transparent || state.display.background == Background::Transparent;
         let frames = if transparent && format == RecordingFormat::Gif { frames.without_ground() } else { frames };
         let (frame_count, model) = (frames.count(), model.id);

@@ -7,6 +7,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::io::{IsTerminal, Write, stderr};
 use std::num::NonZeroUsize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -95,7 +96,7 @@ impl Batch<'_> {
             line["skipped"] = json!("the output is newer than the motion, the model and the map");
             return (line, Ended::Skipped);
         }
-        match self.write(job) {
+        match guarded(|| self.write(job)) {
             Ok(made) => {
                 for (key, value) in summary(made.document) {
                     line[key] = value;
@@ -129,6 +130,14 @@ impl Batch<'_> {
         save_file(&job.out, &bytes, &[])?;
         Ok(made)
     }
+}
+
+/// Does a job. One that shows a fault of the program, a panic, fails like any other and costs no other its result.
+fn guarded<T>(job: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+    // What a job shares with others is only read.
+    catch_unwind(AssertUnwindSafe(job)).unwrap_or_else(|_| {
+        Err(Failure::new("this motion shows a fault of Gaitway's").with_hint("please report it, with the file"))
+    })
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {
@@ -297,6 +306,13 @@ fn progress_text(state: &ProgressState, total: usize, secs: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_panic_is_a_failure() {
+        let failed = guarded(|| if std::hint::black_box(true) { panic!("as the test asked") } else { Ok(()) });
+        assert!(failed.is_err_and(|failure| failure.message().contains("please report it")));
+        assert_eq!(guarded(|| Ok(1)).ok(), Some(1));
+    }
 
     #[test]
     fn progress_has_a_bar_the_rate_of_what_took_time_and_the_time_left() {

@@ -71,6 +71,11 @@ fn render_frames(arguments: &RenderArguments, frames_per_sec: u32, editor: &Edit
     }
     let frames = LoopFrames::new(library, state, aspect(size), frames_per_sec)
         .ok_or_else(|| Failure::new("nothing moves").with_hint("choose a clip with --clip").at("--frames"))?;
+    if frames.count() > LoopFrames::MAX_COUNT {
+        let expected = format!("at most {} frames", LoopFrames::MAX_COUNT);
+        let failure = Failure::expected(expected, frames.count().to_string()).at("--frames");
+        return Err(failure.with_hint("choose a part of the clip with --view range=START,END"));
+    }
     let is_transparent = state.display.background == Background::Transparent;
     let format = Format { size, frames_per_sec, frame_count: frames.count(), is_transparent };
     let mut sequence = Sequence::create(&arguments.out, format, disk)?;

@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
 
+use super::budget::MAX_ANCESTORS;
 use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
@@ -31,6 +32,11 @@ pub enum RetargetError {
         "no joint of the model follows a joint of the motion: name pairs in a joint map (`gaitway map` writes one to start from)"
     )]
     NoPairs,
+    /// The mapped joints lie below too many others.
+    #[error(
+        "the joints lie too deep below each other: all mapped ones together may have at most {MAX_ANCESTORS} ancestors"
+    )]
+    TooDeep,
     /// A retargeted channel is invalid.
     #[error("joint “{joint}” cannot be written: {problem}")]
     Channel {

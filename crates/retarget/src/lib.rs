@@ -38,6 +38,7 @@
 mod align;
 mod bake;
 mod baker;
+mod budget;
 mod change;
 mod contacts;
 mod feet;
@@ -58,6 +59,7 @@ mod two_bones;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
+pub use budget::MAX_VIDEO_FRAMES;
 pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
 pub use map::{

@@ -9,6 +9,7 @@ use glam::Affine3A;
 use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
 use super::align::{Alignment, Rest, align};
 use super::bake::{RetargetError, Retargeted, bake};
+use super::budget::are_too_deep;
 use super::contacts::Bodies;
 use super::keys::tracks::SourceTracks;
 use super::map::ResolvedMap;
@@ -53,6 +54,9 @@ impl<'a> Retargeting<'a> {
         };
         if map.pairs.is_empty() {
             return Err(RetargetError::NoPairs);
+        }
+        if are_too_deep(&model.asset.skeleton, &source.asset.skeleton, &map.pairs) {
+            return Err(RetargetError::TooDeep);
         }
         let target_nodes = node_locals(&model.asset.skeleton);
         let target_skeleton = &model.asset.skeleton;

@@ -332,6 +332,8 @@ pub const SAVE_IMAGE: &str = "Save image (PNG)";
 pub const FRAME_RATE: &str = "Frame rate";
 /// Button that records a video.
 pub const RECORD: &str = "Record one loop";
+/// Why a clip that lasts too long isn't recorded.
+pub const TOO_MANY_FRAMES: &str = "it would have more than a million frames; choose in and out points first";
 /// Button that records an animated GIF.
 pub const RECORD_GIF: &str = "Record one loop as a GIF";
 /// Tooltip of the button.

@@ -50,7 +50,7 @@ pub fn write(
         return Err(WriteError::EmptyClip { clip: clip.name().to_owned() });
     }
     let (count, frame_secs) = frames_of(clip, frames_per_sec);
-    check_frames(clip, count)?;
+    check_frames(clip, count, bones.len())?;
     let (mut pose, mut cursor, mut world) = (skeleton.rest().clone(), SampleCursor::default(), Vec::new());
     for frame in 0..count {
         let time_secs = (frame as f64 * frame_secs) as f32;
@@ -185,7 +185,7 @@ fn text(bones: &[Bone], count: usize, frame_secs: f64) -> String {
             path.pop();
             close(&mut out, path.len());
         }
-        let indent = "\t".repeat(path.len());
+        let indent = indentation(path.len());
         let keyword = if path.is_empty() { "ROOT" } else { "JOINT" };
         let positions = if bone.has_positions { POSITIONS } else { "" };
         let channels = if bone.has_positions { 6 } else { 3 };
@@ -227,8 +227,14 @@ fn text(bones: &[Bone], count: usize, frame_secs: f64) -> String {
 }
 
 fn close(out: &mut String, depth: usize) {
-    out.push_str(&"\t".repeat(depth));
+    out.push_str(&indentation(depth));
     out.push_str("}\n");
+}
+
+/// Deeper joints aren't indented further, or a file of 100,000 nested ones would have gigabytes of tabs.
+fn indentation(depth: usize) -> String {
+    const MAX_LEVELS: usize = 64;
+    "\t".repeat(depth.min(MAX_LEVELS))
 }
 
 /// Three numbers, each after a space.

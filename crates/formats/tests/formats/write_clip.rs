@@ -123,6 +123,12 @@ fn an_endless_clip_is_refused() {
         let error = write_bvh(&asset, &asset.skeleton, &joints, &clip, 30.0).expect_err("too many frames");
         assert!(matches!(error, WriteError::TooLong { .. }) && error.to_string().contains("1000000 frames"), "{error}");
     }
+    // The more joints it has, the fewer frames. A root joins these.
+    let hands = crate::skeletons::asset(vec![joint("hand", None, Transform::IDENTITY); 1000]);
+    let all: Vec<JointIndex> = hands.skeleton.joints().collect();
+    let clip = moving(&hands, &[0.0, 1e3]);
+    let error = write_bvh(&hands, &hands.skeleton, &all, &clip, 30.0).expect_err("too many frames").to_string();
+    assert!(error.contains("at most 12570 frames, found 30001"), "{error}");
 }
 
 /// A body in an A-pose that faces −Z, with rotated rests. Its arms hang by 45°.

@@ -7,9 +7,10 @@ mod times;
 use gaitway_character::anim::{Clip, JointIndex, Pose, Property, PropertyTarget, SampleCursor, Skeleton};
 use glam::{DQuat, DVec3};
 
+use crate::budget::{added_poses, held_poses};
 use crate::change::track::{Target, Track, Tracks};
 use crate::keys::limits::{BETWEEN_KEYS, BETWEEN_SAMPLES, Limits};
-use crate::keys::resample::{Curve, resample};
+use crate::keys::resample::{Curve, resample_adding};
 use crate::pose::WorldPose;
 use column::{Column, MAX_WEIGHT_ERROR, Replaced, Sample, Samples, columns, numbers, world};
 use times::SampleTimes;
@@ -42,6 +43,11 @@ impl<'a> Baker<'a> {
     /// Returns the duration of the clip.
     pub fn end_secs(&self) -> f32 {
         self.clip.duration_secs()
+    }
+
+    /// Returns how often something with keys at so many times may be repeated.
+    pub fn max_repeats(&self, keys: usize) -> usize {
+        held_poses(self.skeleton.len()) / keys.max(1)
     }
 
     /// Replaces the channel of a joint's property.
@@ -87,8 +93,13 @@ impl<'a> Baker<'a> {
         let error = |from: &Sample, to: &Sample, factor: f64, at: &Sample| {
             largest_error(skeleton, &limits, &columns, [from, to], factor, at)
         };
-        let (times, jumps) = times.finish();
-        let samples = resample(&times, &jumps, Curve { value, error, tolerance: BETWEEN_SAMPLES });
+        let (times, jumps) = times.finish(held_poses(skeleton.len()));
+        let samples = resample_adding(
+            &times,
+            &jumps,
+            Curve { value, error, tolerance: BETWEEN_SAMPLES },
+            added_poses(skeleton.len()),
+        );
         let mut kept = Tracks::of(clip);
         kept.tracks.retain(|track| {
             property_of(track.target).is_none_or(|(joint, property)| !replaced[joint.get()][property as usize])

@@ -17,6 +17,12 @@ pub const BETWEEN_KEYS: f64 = 0.7;
 /// Error of a position that was interpolated between `f32` values, as a share of its distance from the origin.
 pub const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
+/// Returns the height that errors are measured by. If all joints are in one point, a metre stands in for it: no key would be close
+/// enough.
+pub fn height_or_metre(height: f64) -> f64 {
+    if height > 1e-6 && height.is_finite() { height } else { 1.0 }
+}
+
 /// The largest errors allowed for joints.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
@@ -29,8 +35,7 @@ impl Limits {
         let positions = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY).positions;
         let least = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let extent = positions.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max) - least;
-        let height = Some(extent.max_element()).filter(|&height| height > 0.0 && height.is_finite()).unwrap_or(1.0);
-        Self { offset: MAX_OFFSET_PER_METRE * height }
+        Self { offset: MAX_OFFSET_PER_METRE * height_or_metre(extent.max_element()) }
     }
 
     /// Returns the largest error of a position this far from the origin, in its unit. No keys bring it closer than `f32` allows.

@@ -3,6 +3,9 @@
 
 use glam::DVec3;
 
+use super::limits::ROUNDING;
+use crate::budget::MAX_ADDED_TIMES;
+
 /// Maximum number of times an interval between two given times is halved.
 pub const MAX_HALVINGS: u32 = 8;
 
@@ -42,8 +45,19 @@ pub fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f32> {
 pub fn resample<T>(
     times: &[f32],
     jumps: &[f32],
-    mut curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
+    curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
 ) -> Resampled<T> {
+    resample_adding(times, jumps, curve, MAX_ADDED_TIMES)
+}
+
+/// Like [`resample`], but adds no more than `max_added` keys between the given times: the rest is interpolated.
+pub fn resample_adding<T>(
+    times: &[f32],
+    jumps: &[f32],
+    mut curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
+    max_added: usize,
+) -> Resampled<T> {
+    let mut left = max_added;
     let mut keys = Resampled { times: Vec::with_capacity(times.len()), values: Vec::with_capacity(times.len()) };
     for &time in times {
         let key = (time, (curve.value)(time));
@@ -51,10 +65,10 @@ pub fn resample<T>(
             let just_before = time.next_down();
             if jumps.binary_search_by(|jump| jump.total_cmp(&time)).is_ok() && just_before > start {
                 let end = (just_before, (curve.value)(just_before));
-                refine(&mut curve, &end, 0, &mut keys);
+                refine(&mut curve, &end, 0, &mut left, &mut keys);
                 keys.push(end);
             } else {
-                refine(&mut curve, &key, 0, &mut keys);
+                refine(&mut curve, &key, 0, &mut left, &mut keys);
             }
         }
         keys.push(key);
@@ -69,7 +83,11 @@ pub fn resample_positions(
     tolerance: f64,
     value: impl Fn(f32) -> DVec3,
 ) -> Resampled<DVec3> {
-    let error = |from: &DVec3, to: &DVec3, factor: f64, at: &DVec3| from.lerp(*to, factor).distance(*at);
+    let error = |from: &DVec3, to: &DVec3, factor: f64, at: &DVec3| {
+        let distance = from.lerp(*to, factor).distance(*at);
+        // No keys bring it closer than `f32` allows, however far from the origin.
+        if distance > ROUNDING * at.length() { distance } else { 0.0 }
+    };
     resample(times, jumps, Curve { value, error, tolerance })
 }
 
@@ -78,11 +96,12 @@ fn refine<T>(
     curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
     end: &(f32, T),
     halvings: u32,
+    left: &mut usize,
     keys: &mut Resampled<T>,
 ) {
     let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
     let length = end.0 - start_secs;
-    let Some(middle_secs) = middle(start_secs, end.0) else { return };
+    let Some(middle_secs) = middle(start_secs, end.0).filter(|_| *left > 0) else { return };
     // Halfway through an S-curve there is no error.
     let is_close = [0.25, 0.5, 0.75].into_iter().all(|part| {
         let time = start_secs + part * length;
@@ -97,9 +116,10 @@ fn refine<T>(
         return;
     }
     let middle = (middle_secs, (curve.value)(middle_secs));
-    refine(curve, &middle, halvings + 1, keys);
+    *left -= 1;
+    refine(curve, &middle, halvings + 1, left, keys);
     keys.push(middle);
-    refine(curve, end, halvings + 1, keys);
+    refine(curve, end, halvings + 1, left, keys);
 }
 
 /// Bisects to a jump between the last key and `end`, and adds keys on both sides of it. A smooth curve would have been close

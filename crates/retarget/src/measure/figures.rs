@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
 use super::smoothness::smoothness;
 use crate::align::swing::compared_segments;
+use crate::budget::{MAX_TOUCH_STEPS, measured_steps};
 use crate::contacts::{Bodies, BodyMotion, SourceScene, TouchFigures};
 use crate::feet::Soles;
 use crate::keys::resample::union;
@@ -266,7 +267,8 @@ fn add_direction_errors(
 fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFigures {
     let mut figures = TouchFigures::default();
     let Some(bodies) = bodies.filter(|bodies| bodies.target.has_mesh) else { return figures };
-    let steps = (clip.duration_secs() / TOUCH_STEP_SECS) as usize;
+    let steps = measured_steps(clip.duration_secs() / TOUCH_STEP_SECS, transfer.target_skeleton.len());
+    let steps = steps.min(MAX_TOUCH_STEPS);
     let times: Vec<f32> = (0..=steps).map(|step| step as f32 * TOUCH_STEP_SECS).collect();
     let source = SourceScene::new(transfer, bodies, times);
     let mut played = PlayedClip::new(transfer, &bodies.target.moving_joints().collect::<Vec<_>>());

@@ -3,6 +3,7 @@
 use gaitway_character::anim::{Clip, Pose, SampleCursor, Skeleton, model_from_joint};
 use glam::{Affine3A, Quat, Vec3A};
 
+use crate::budget::measured_steps;
 use crate::map::Pair;
 use crate::pose::with_ancestors;
 
@@ -28,7 +29,7 @@ pub fn smoothness(skeleton: &Skeleton, pairs: &[Pair], clip: &Clip) -> Smoothnes
     // Unit quaternions are apart by twice the sine of a quarter of the angle.
     let mut largest_chord: Option<f32> = None;
     let (mut jerk_sum, mut jerk_count) = (0.0, 0_usize);
-    for frame in 0..=(clip.duration_secs() * FRAMES_PER_SEC + 1e-3) as u32 {
+    for frame in 0..=measured_steps(clip.duration_secs() * FRAMES_PER_SEC + 1e-3, skeleton.len()) {
         pose.copy_from(skeleton.rest());
         clip.sample(skeleton, frame as f32 / FRAMES_PER_SEC, &mut cursor, &mut pose);
         std::mem::swap(&mut before, &mut now);

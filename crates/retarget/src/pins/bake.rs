@@ -9,7 +9,7 @@ use crate::baker::Baker;
 const MAX_STEP_SECS: f32 = 1.0 / 60.0;
 
 /// Clips that repeat more often than this are sampled without regard to the times of pins in later rounds.
-const MAX_ROUNDS: f64 = 10_000.0;
+const MAX_ROUNDS: usize = 10_000;
 
 /// Pins while they are baked, alone or with other changes to the clip.
 #[derive(Debug)]
@@ -36,7 +36,7 @@ impl<'a> BakedPins<'a> {
             .chain([0.0])
             .filter(|edge| (0.0..=period_secs).contains(edge))
             .collect();
-        let rounds = if period_secs > 0.0 { (end_secs / period_secs).ceil().min(MAX_ROUNDS) as usize } else { 1 };
+        let rounds = if period_secs > 0.0 { ((end_secs / period_secs).ceil() as usize).min(MAX_ROUNDS) } else { 1 };
         let in_round = |round: usize| edges.iter().map(move |edge| (round as f64 * period_secs + edge) as f32);
         // Rounding may put a jump on either side of such a time.
         let around = |time: f32| [time.next_down(), time, time.next_up()];

@@ -4,6 +4,7 @@ use gaitway_character::anim::{Clip, JointIndex, JointMask, Pose, Skeleton};
 
 use super::{ClipLayer, ClipOverLayers, LayerBuffers};
 use crate::baker::{Baker, timelines};
+use crate::keys::resample::union;
 
 /// A layer with its clip and joints.
 #[derive(Debug, Clone)]
@@ -16,8 +17,8 @@ pub struct StackedLayer<'a> {
     pub included: Vec<bool>,
 }
 
-/// Clips that repeat more often than this are sampled without regard to their keys.
-const MAX_REPEATS: f64 = 10_000.0;
+/// Clips that repeat more often than this, or have too many keys for it, are sampled without regard to their keys.
+const MAX_REPEATS: usize = 10_000;
 
 /// A stack of layers while it is baked, alone or with other changes to the clip.
 #[derive(Debug)]
@@ -101,7 +102,8 @@ fn add_layer(baker: &mut Baker<'_>, StackedLayer { layer, source, .. }: &Stacked
 fn add_rounds(baker: &mut Baker<'_>, layer: &ClipLayer, clip: &Clip, period_secs: f32) -> bool {
     let (period_secs, end_secs) = (f64::from(period_secs), f64::from(baker.end_secs()));
     let repeats = end_secs * layer.speed / period_secs;
-    if layer.speed <= 0.0 || period_secs <= 0.0 || repeats > MAX_REPEATS {
+    let keys = union(clip.timelines().iter().map(Vec::as_slice)).len();
+    if layer.speed <= 0.0 || period_secs <= 0.0 || repeats > baker.max_repeats(keys).min(MAX_REPEATS) as f64 {
         return false;
     }
     let rounding = rounding(end_secs + period_secs / layer.speed);

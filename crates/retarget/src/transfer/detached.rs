@@ -8,6 +8,7 @@ use gaitway_character::asset::Slot;
 
 use super::Transfer;
 use crate::keys::channel::NewChannel;
+use crate::keys::limits::height_or_metre;
 use crate::keys::resample::{resample_positions, union};
 use crate::pose::{Scratch, is_within};
 
@@ -48,7 +49,7 @@ pub fn detached_channels(transfer: &Transfer, ends: &[(JointIndex, JointIndex)],
         };
         // The tolerance is in the units of the end's parent.
         let unit_length = rest.parent_frame(transfer.target_skeleton, end).matrix3.x_axis.length().max(1e-12);
-        let tolerance = TOLERANCE_OF_HEIGHT * height / unit_length;
+        let tolerance = TOLERANCE_OF_HEIGHT * height_or_metre(height) / unit_length;
         NewChannel::resampled_translation(end, resample_positions(&times, &[], tolerance, translation))
     };
     ends.iter().map(channel).collect()

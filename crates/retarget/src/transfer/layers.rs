@@ -8,6 +8,7 @@ use gaitway_character::anim::{
 };
 use gaitway_character::asset::Asset;
 
+use crate::budget::affordable_rounds;
 use crate::change::{time::trim, track::Tracks};
 use crate::map::ResolvedMap;
 
@@ -109,8 +110,11 @@ pub fn baking(clip: &Clip, layers: &[LayerClip], periods_secs: &[f64], asked_loo
         below && periods_secs.iter().all(|&period| (secs - (secs / period).round() * period).abs() <= MAX_GAP_SECS)
     };
     match asked_loops {
-        Some(loops) => Baking { loops: loops.clamp(1, 1000), seamless: fits(loops.clamp(1, 1000)) },
-        None => match (1..=MAX_LOOPS).find(|&loops| fits(loops)) {
+        Some(loops) => {
+            let loops = loops.clamp(1, max_loops(clip));
+            Baking { loops, seamless: fits(loops) }
+        }
+        None => match (1..=MAX_LOOPS.min(max_loops(clip))).find(|&loops| fits(loops)) {
             Some(loops) => Baking { loops, seamless: true },
             None => Baking { loops: 1, seamless: false },
         },
@@ -151,7 +155,8 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
         let loops = total_secs / duration_secs;
         let stretch = if baking.seamless { loops / loops.round().max(1.0) } else { 1.0 };
         let period_secs = duration_secs * stretch;
-        let loops = (total_secs / period_secs).ceil() as usize;
+        // One that is too short for that stands still from there.
+        let loops = affordable_rounds(key_count(&layer.clip), total_secs / period_secs);
         add(&layer.clip, Some(Repeat { loops, period_secs, stretch, total_secs }));
     }
     let period_secs = f64::from(clip.duration_secs());
@@ -164,6 +169,18 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
     let mut tracks = Tracks::of(&baked);
     trim(&mut tracks, 0.0, total_secs as f32);
     tracks.build(clip.name(), &model.skeleton)
+}
+
+/// Most loops that a clip can have: the budget has so many keys, and floats such times.
+fn max_loops(clip: &Clip) -> usize {
+    affordable_rounds(key_count(clip), 1000.0).min((f32::MAX / clip.duration_secs()) as usize).max(1)
+}
+
+/// Number of keys of all channels.
+fn key_count(clip: &Clip) -> usize {
+    let joints = clip.channels().iter().map(|channel| clip.timelines()[channel.timeline as usize].len());
+    let properties = clip.properties().iter().map(|channel| clip.property_timelines()[channel.timeline as usize].len());
+    joints.chain(properties).sum()
 }
 
 /// How often a clip is repeated, and how long one loop is after stretching.

@@ -8,7 +8,7 @@ use super::rotation::RotationLaw;
 use super::yaw::Yaw;
 use super::{Hips, Transfer};
 use crate::keys::channel::NewChannel;
-use crate::keys::limits::MAX_OFFSET_PER_METRE;
+use crate::keys::limits::{MAX_OFFSET_PER_METRE, height_or_metre};
 use crate::keys::resample::{resample_positions, union};
 use crate::keys::tracks::Track;
 use crate::math::unit;
@@ -47,7 +47,7 @@ pub fn hips_channels(
     // The tolerance is in the units of the hips' parent.
     let carrier = hips.carrier;
     let unit_length = rest_parent_frame(transfer, carrier).matrix3.x_axis.length().max(1e-12);
-    let tolerance = MAX_OFFSET_PER_METRE * hips.height / unit_length;
+    let tolerance = MAX_OFFSET_PER_METRE * height_or_metre(hips.height) / unit_length;
     let turning = turning_times(transfer, hips, laws);
     let times = union(turning.iter().map(Vec::as_slice).chain([path.times.as_slice()]));
     let positions = resample_positions(&times, &jumps(transfer, hips), tolerance, translation);

@@ -18,6 +18,7 @@ mod changed_people;
 mod contact_table;
 mod contacts;
 mod coursework;
+mod endless;
 mod feet;
 mod figure;
 mod hold;

@@ -1,6 +1,7 @@
 //! The frames of a video that shows one loop of the active clip. Their times depend only on the view, not on a clock.
 
 use gaitway_character::anim::LoopMode;
+use gaitway_retarget::MAX_VIDEO_FRAMES;
 
 use super::playhead::{active_clip, play_range};
 use super::{CameraChoice, Command, ViewerState, apply, resolve_camera};
@@ -15,6 +16,9 @@ pub struct LoopFrames {
 }
 
 impl LoopFrames {
+    /// Most frames that are worth drawing: a damaged file may have a clip of a thousand years.
+    pub const MAX_COUNT: u32 = MAX_VIDEO_FRAMES;
+
     /// Starts at the in point, with the loop mode and speed of the view; `None` if there is nothing to play. `aspect` is the
     /// video's width over height.
     pub fn new(library: &Library, state: &ViewerState, aspect: f32, frames_per_sec: u32) -> Option<Self> {

@@ -86,3 +86,11 @@ fn the_turntable_turns_the_camera_of_the_first_frame() {
     assert!((turned - std::f32::consts::FRAC_PI_4).abs() < 1e-5, "{turned}");
     assert_eq!(orbit(5).distance, orbit(0).distance);
 }
+
+/// A clip of a thousand years is more than anyone draws, and no reason to count wrongly.
+#[test]
+fn frames_of_ages_are_too_many() {
+    let library = moving_box(0.5, &[0.0, 3e10], &[Vec3::ZERO, Vec3::X]);
+    let frames = LoopFrames::new(&library, &ViewerState::default(), ASPECT, 60).expect("something plays");
+    assert!(frames.count() > LoopFrames::MAX_COUNT);
+}

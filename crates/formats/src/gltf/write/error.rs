@@ -3,7 +3,7 @@
 use gaitway_character::anim::Clip;
 
 use crate::LoadError;
-use crate::limits::MAX_WRITTEN_FRAMES;
+use crate::limits::{MAX_WRITTEN_FRAMES, MAX_WRITTEN_POSES};
 
 /// Everything that prevents writing a file. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -50,10 +50,12 @@ pub enum WriteError {
         joint: String,
     },
     /// The clip would have too many frames.
-    #[error("clip “{clip}”: expected at most {MAX_WRITTEN_FRAMES} frames, found {found}; trim it first")]
+    #[error("clip “{clip}”: expected at most {max} frames, found {found}; trim it first")]
     TooLong {
         /// Name of the clip.
         clip: String,
+        /// Maximum number of frames for as many joints.
+        max: usize,
         /// Number of frames that it would have.
         found: usize,
     },
@@ -65,10 +67,11 @@ pub enum WriteError {
     },
 }
 
-/// Checks how many frames a clip is about to be sampled at.
-pub(crate) fn check_frames(clip: &Clip, found: usize) -> Result<(), WriteError> {
-    if found <= MAX_WRITTEN_FRAMES {
+/// Checks at how many frames a clip of this many joints is about to be sampled.
+pub(crate) fn check_frames(clip: &Clip, found: usize, joints: usize) -> Result<(), WriteError> {
+    let max = MAX_WRITTEN_FRAMES.min(MAX_WRITTEN_POSES / joints.max(1));
+    if found <= max {
         return Ok(());
     }
-    Err(WriteError::TooLong { clip: clip.name().to_owned(), found })
+    Err(WriteError::TooLong { clip: clip.name().to_owned(), max, found })
 }

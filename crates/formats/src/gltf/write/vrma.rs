@@ -27,8 +27,8 @@ const FACING_TOLERANCE_RADIANS: f32 = 0.2;
 
 /// Writes `clip` of `asset`, whose body has these `slots` and faces `forward`.
 pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip) -> Result<Vec<u8>, WriteError> {
-    check_frames(clip, (clip.duration_secs() * RESAMPLED_PER_SEC) as usize)?;
     let bones = bones(asset, slots, forward).ok_or_else(|| WriteError::NoBody { clip: clip.name().to_owned() })?;
+    check_frames(clip, (clip.duration_secs() * RESAMPLED_PER_SEC) as usize, bones.len())?;
     let properties: Vec<_> =
         clip.properties().iter().filter(|channel| node_name(asset, channel.target).is_some()).collect();
     let mut joints: Vec<Joint> = bones.iter().map(|bone| bone.node(&bones)).collect();
