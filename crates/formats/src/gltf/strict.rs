@@ -10,6 +10,9 @@ use serde::de::{
     Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 
+/// What a material counts as: two bytes of text become more than a kilobyte.
+const OBJECTS_OF_MATERIAL: usize = 16;
+
 /// Why a text could not be read.
 pub enum Error {
     /// It has more than the given number of objects.
@@ -35,8 +38,8 @@ struct Strict<'c, T> {
 }
 
 impl<'c, T> Strict<'c, T> {
-    fn count<E: serde::de::Error>(&self) -> Result<(), E> {
-        let left = self.left.get().saturating_sub(1);
+    fn count<E: serde::de::Error>(&self, objects: usize) -> Result<(), E> {
+        let left = self.left.get().saturating_sub(objects);
         self.left.set(left);
         if left == 0 { Err(E::custom("too many objects")) } else { Ok(()) }
     }
@@ -64,14 +67,14 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Self::Error> {
-        self.count::<D::Error>()?;
+        self.count::<D::Error>(if name == "Material" { OBJECTS_OF_MATERIAL } else { 1 })?;
         let visitor = Strict { is_struct: true, ..self.around(visitor) };
         self.inner.deserialize_struct(name, fields, visitor)
     }
 
     /// The contents of an extension without a type, each a value of its own.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Self::Error> {
-        self.count::<D::Error>()?;
+        self.count::<D::Error>(1)?;
         let visitor = self.around(visitor);
         self.inner.deserialize_any(visitor)
     }

@@ -2,7 +2,7 @@
 
 use gaitway_formats::limits::{
     Limit, MAX_ARCHIVE_FILES, MAX_FOLDER_DEPTH, MAX_FOLDER_FILES, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, MAX_JSON_OBJECTS,
-    MAX_JSON_VALUES, MAX_MAP_BYTES, MAX_READ_BYTES,
+    MAX_JSON_VALUES, MAX_MAP_BYTES, MAX_READ_BYTES, MAX_WRITTEN_FRAMES, MAX_WRITTEN_POSES,
 };
 use gaitway_formats::load;
 use serde_json::{Value, json};
@@ -58,6 +58,9 @@ fn objects_are_counted_before_they_are_built() {
     let text = format!(r#"{{"asset":{{"version":"2.0"}},"samplers":[{}{{}}]}}"#, "{},".repeat(MAX_JSON_OBJECTS));
     let problem = load(&one("m.gltf", text.into_bytes())).expect_err("over the limit").to_string();
     assert!(problem.contains(&format!("at most {MAX_JSON_OBJECTS} objects in all")), "{problem}");
+    let text = format!(r#"{{"asset":{{"version":"2.0"}},"materials":[{}{{}}]}}"#, "{},".repeat(MAX_JSON_OBJECTS / 16));
+    let problem = load(&one("m.gltf", text.into_bytes())).expect_err("over the limit").to_string();
+    assert!(problem.contains(&format!("at most {MAX_JSON_OBJECTS} objects in all")), "{problem}");
     // A text that has to be corrected is held as a tree, whatever it consists of.
     let text = format!(r#"{{"asset":{{"version":2.0}},"extras":[{}0]}}"#, "0,".repeat(MAX_JSON_VALUES));
     let problem = load(&one("m.gltf", text.into_bytes())).expect_err("over the limit").to_string();
@@ -107,6 +110,8 @@ fn the_limits_are_those_of_the_documentation() {
         ("folders inside folders", MAX_FOLDER_DEPTH as u64),
         ("pixels of an image's width or height", u64::from(MAX_IMAGE_SIDE)),
         ("MiB of decoded images", MAX_IMAGE_BYTES >> 20),
+        ("frames of a clip", MAX_WRITTEN_FRAMES as u64),
+        ("joints of a clip's frames", MAX_WRITTEN_POSES as u64),
         ("JSON objects", MAX_JSON_OBJECTS as u64),
         ("MiB of a joint map", MAX_MAP_BYTES as u64 >> 20),
         ("JSON values", MAX_JSON_VALUES as u64),
