@@ -1,13 +1,13 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use gaitway_character::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
+use gaitway_character::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Keys, Property};
 
 use super::budget::MAX_ANCESTORS;
 use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
-use super::pose::{ancestry, is_within, node_locals};
+use super::pose::{Local, ancestry, is_within, node_locals};
 use super::transfer::{
     CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, extraction_joint, hips_channels,
     rotation_laws,
@@ -133,6 +133,15 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         channels.extend(hips_channels(transfer, hips, &laws, root_turn.as_ref()));
     }
     let ends = detached_ends(transfer);
+    if !policy.is_same_skeleton {
+        let moves = |joint: JointIndex| {
+            let is_translation =
+                |channel: &NewChannel| channel.joint == joint && channel.keys.property() == Property::Translation;
+            channels.iter().chain(&copied).any(is_translation) || ends.iter().any(|(end, _)| *end == joint)
+        };
+        let still = rest_translations(transfer, &rest, moves);
+        channels.extend(still);
+    }
     // In an equal skeleton, the copied translations keep the ends in place.
     let detached = if ends.is_empty() || (policy.translations && policy.is_same_skeleton) {
         Vec::new()
@@ -144,6 +153,17 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     channels.extend(copied);
     channels.extend(detached);
     build(transfer, channels)
+}
+
+/// Returns constant translations for mapped joints whose rest isn't where their nodes are, so that limbs are as long as in the rest
+/// that their rotations are measured from.
+fn rest_translations(transfer: &Transfer, nodes: &[Local], moves: impl Fn(JointIndex) -> bool) -> Vec<NewChannel> {
+    let elsewhere = transfer.map.pairs.iter().filter_map(|pair| {
+        let rest = transfer.alignment.target.locals[pair.target.get()].translation;
+        let is_elsewhere = rest != nodes[pair.target.get()].translation && !moves(pair.target);
+        is_elsewhere.then(|| NewChannel::constant(pair.target, Keys::Translation(vec![rest.as_vec3()])))
+    });
+    elsewhere.collect()
 }
 
 /// Builds the clip from its channels.

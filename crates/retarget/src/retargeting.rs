@@ -60,7 +60,7 @@ impl<'a> Retargeting<'a> {
         }
         let target_nodes = node_locals(&model.asset.skeleton);
         let target_skeleton = &model.asset.skeleton;
-        let target_locals = target_rest(model.asset, &target_nodes, map.rest.model);
+        let target_locals = target_rest(model.asset, map.rest.model);
         let SourceRest { locals, unmoved, target_from_source, is_in_place, found } = source_rest(RestInput {
             source: source.asset,
             source_slots: source.slots,

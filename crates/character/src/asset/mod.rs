@@ -22,6 +22,7 @@ use crate::mesh::{Material, Mesh, Skin, Texture};
 pub use error::AssetError;
 pub use humanoid::{Humanoid, Side, Slot};
 pub use panorama::Panorama;
+pub use reference_pose::BoundTransform;
 pub use scene_joints::SceneJoints;
 pub use warning::{Warning, Warnings};
 

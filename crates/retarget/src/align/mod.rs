@@ -22,7 +22,8 @@ use swing::SwingInput;
 #[derive(Debug)]
 pub struct Alignment {
     pub source: WorldPose,
-    /// The aligned rest. Joints without a source keep their node's rest relative to their parent.
+    /// The aligned rest. Joints without a source keep their node's rest relative to their parent. So do the translations of those
+    /// without a slot, which are often helpers, of the face, and of all joints if both skeletons are the same rig.
     pub target: WorldPose,
     /// The target's rest before its limbs were swung.
     pub unaligned_target: WorldPose,
@@ -82,20 +83,24 @@ pub fn align(
             target: &target_pose,
         }),
     };
-    let locals = aligned_locals(map, &swings, target.skeleton, &target_pose, target_nodes);
+    let mut locals = target_nodes.to_vec();
+    let body = pair_of_slot.iter().filter(|(slot, _)| target_from_source.is_none() && !is_face(**slot));
+    for (_, &pair) in body {
+        let joint = map.pairs[pair].target.get();
+        locals[joint].translation = target.locals[joint].translation;
+    }
+    align_rotations(&mut locals, map, &swings, target.skeleton, &target_pose);
     let aligned = WorldPose::new(target.skeleton, locals, common_from_target);
     Alignment { source: source_pose, target: aligned, unaligned_target: target_pose, pair_of_slot }
 }
 
-/// Local transforms of the aligned rest: swings and corrections on mapped joints, the nodes' own rotations on others.
-fn aligned_locals(
-    map: &ResolvedMap,
-    swings: &[DQuat],
-    skeleton: &Skeleton,
-    target: &WorldPose,
-    nodes: &[Local],
-) -> Vec<Local> {
-    let mut locals = nodes.to_vec();
+fn is_face(slot: Slot) -> bool {
+    matches!(slot, Slot::LeftEye | Slot::RightEye | Slot::Jaw)
+}
+
+/// Turns the nodes' local transforms into the aligned rest: swings and corrections on mapped joints, the nodes' own rotations on
+/// others.
+fn align_rotations(locals: &mut [Local], map: &ResolvedMap, swings: &[DQuat], skeleton: &Skeleton, target: &WorldPose) {
     let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
     let mut pairs = map.pairs.iter().zip(swings).peekable();
     for joint in skeleton.joints() {
@@ -108,7 +113,6 @@ fn aligned_locals(
         local.rotation = unit(parent.conjugate() * rotation);
         rotations.push(rotation);
     }
-    locals
 }
 
 /// A pair fills its target's slot, or its source's if the target has none.

@@ -2,7 +2,7 @@
 //! own. Rotations come from orthonormalized matrices, so scaled or rotated ancestors are harmless.
 
 use gaitway_character::anim::{Clip, Skeleton};
-use gaitway_character::asset::{Asset, Humanoid};
+use gaitway_character::asset::{Asset, BoundTransform, Humanoid};
 use glam::DQuat;
 
 use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
@@ -110,22 +110,17 @@ pub fn source_rest(input: RestInput) -> SourceRest {
     }
 }
 
-/// Returns the target's rest pose. Only rotations depend on `choice`: translations and scales are always the nodes',
-/// which the player animates from.
-pub fn target_rest(target: &Asset, nodes: &[Local], choice: RestChoice) -> Vec<Local> {
-    let mut locals = chosen_locals(target, target.clips.first(), choice);
-    for (local, node) in locals.iter_mut().zip(nodes) {
-        (local.translation, local.scale) = (node.translation, node.scale);
-    }
-    locals
+/// Returns the target's rest pose.
+pub fn target_rest(target: &Asset, choice: RestChoice) -> Vec<Local> {
+    chosen_locals(target, target.clips.first(), choice)
 }
 
-/// `Auto` is [`Asset::reference_pose`]. Without a clip, the first frame is the nodes' rest.
+/// Rotations and translations of one pose. `Auto` is [`Asset::reference_pose`]. Without a clip, the first frame is the nodes' rest.
 fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
     let skeleton = &asset.skeleton;
     match (choice, clip) {
-        (RestChoice::Auto, _) => rotated(node_locals(skeleton), asset.reference_rotations()),
-        (RestChoice::Bind, _) => rotated(node_locals(skeleton), asset.bind_rotations()),
+        (RestChoice::Auto, _) => bound(node_locals(skeleton), asset.reference_transforms()),
+        (RestChoice::Bind, _) => bound(node_locals(skeleton), asset.bind_transforms()),
         (RestChoice::FirstFrame, Some(clip)) => {
             clip_locals(skeleton, clip, clip.first_key_secs(), &mut Scratch::default())
         }
@@ -133,9 +128,10 @@ fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<
     }
 }
 
-/// The same with other rotations where there are any.
-fn rotated(mut locals: Vec<Local>, rotations: Vec<Option<DQuat>>) -> Vec<Local> {
-    for (local, rotation) in locals.iter_mut().zip(rotations) {
+/// The same as the skin was bound, where it covers a joint.
+fn bound(mut locals: Vec<Local>, transforms: Vec<BoundTransform>) -> Vec<Local> {
+    for (local, BoundTransform { translation, rotation }) in locals.iter_mut().zip(transforms) {
+        local.translation = translation.unwrap_or(local.translation);
         local.rotation = rotation.unwrap_or(local.rotation);
     }
     locals

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Which poses count as the rests that rotations are measured from.
+/// Which poses count as the rests that motion is measured from, rotations and translations alike.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestChoices {
-    /// The model's. Only rotations depend on it; translations and scales are always the nodes'.
+    /// The model's.
     pub model: RestChoice,
     /// The motion's.
     pub motion: RestChoice,

@@ -32,4 +32,5 @@ mod soles;
 mod stack;
 mod surface;
 mod verdicts;
+mod whole_rests;
 mod written;
