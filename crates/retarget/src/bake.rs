@@ -142,6 +142,12 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         let still = rest_translations(transfer, &rest, moves);
         channels.extend(still);
     }
+    let reflection = transfer.target_skeleton.reflection();
+    let in_file = |channel: NewChannel| match &reflection {
+        Some(reflection) => channel.in_mirror(reflection),
+        None => channel,
+    };
+    let mut channels: Vec<NewChannel> = channels.into_iter().map(in_file).collect();
     // In an equal skeleton, the copied translations keep the ends in place.
     let detached = if ends.is_empty() || (policy.translations && policy.is_same_skeleton) {
         Vec::new()
@@ -149,7 +155,7 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         let so_far = build(transfer, channels.clone())?;
         detached_channels(transfer, &ends, &so_far.clip)
     };
-    let detached = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect::<Vec<_>>();
+    let detached: Vec<NewChannel> = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect();
     channels.extend(copied);
     channels.extend(detached);
     build(transfer, channels)

@@ -1,6 +1,6 @@
 //! Poses in double precision: local transforms, and the rotation and position of every joint that follow from them.
 
-use gaitway_character::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, Transform};
+use gaitway_character::anim::{Clip, JointIndex, Pose, Reflection, SampleCursor, Skeleton, Transform};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::math::unit;
@@ -14,6 +14,15 @@ pub struct Local {
 }
 
 impl Local {
+    /// Returns the local transform of a joint of a mirrored skeleton in the mirror.
+    pub fn in_mirror(self, reflection: &Reflection, joint: JointIndex) -> Self {
+        Self {
+            translation: reflection.translation(joint, self.translation),
+            rotation: reflection.rotation(joint, self.rotation),
+            scale: reflection.scale(joint, self.scale),
+        }
+    }
+
     pub fn to_affine(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
@@ -112,10 +121,12 @@ impl<'a> PartialPose<'a> {
     }
 }
 
-/// Translations of a joint that is moved in each pose, from where it is there.
+/// Translations of a joint, as its file has them, that is moved in each pose, from where it is there.
 pub fn moved(skeleton: &Skeleton, joint: JointIndex, poses: &[WorldPose], moves: &[DVec3]) -> Vec<Vec3> {
+    let reflection = skeleton.reflection();
     let translation = |(pose, by): (&WorldPose, &DVec3)| {
-        pose.parent_frame(skeleton, joint).inverse().transform_point3(pose.position(joint) + by).as_vec3()
+        let local = pose.parent_frame(skeleton, joint).inverse().transform_point3(pose.position(joint) + by);
+        reflection.as_ref().map_or(local, |reflection| reflection.translation(joint, local)).as_vec3()
     };
     poses.iter().zip(moves).map(translation).collect()
 }
@@ -133,9 +144,19 @@ pub fn parent_frame(
     DAffine3::from_quat(world_from_model) * model_from_parent
 }
 
-/// The rest pose's local transforms.
+/// The rest pose's local transforms; those of a mirrored skeleton in the mirror.
 pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
-    locals_of(skeleton.rest())
+    locals_in_mirror(skeleton, skeleton.rest())
+}
+
+fn locals_in_mirror(skeleton: &Skeleton, pose: &Pose) -> Vec<Local> {
+    let mut locals = locals_of(pose);
+    if let Some(reflection) = skeleton.reflection() {
+        for joint in skeleton.joints() {
+            locals[joint.get()] = locals[joint.get()].in_mirror(&reflection, joint);
+        }
+    }
+    locals
 }
 
 pub fn locals_of(pose: &Pose) -> Vec<Local> {
@@ -158,9 +179,9 @@ impl Scratch {
     }
 }
 
-/// Samples the local transforms of a clip as the player would play it.
+/// Samples the local transforms of a clip as the player would play it; those of a mirrored skeleton in the mirror.
 pub fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32, scratch: &mut Scratch) -> Vec<Local> {
-    locals_of(scratch.sample(skeleton, clip, time_secs))
+    locals_in_mirror(skeleton, scratch.sample(skeleton, clip, time_secs))
 }
 
 /// The joint and its ancestors, up to the root.

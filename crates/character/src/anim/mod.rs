@@ -30,6 +30,7 @@ mod playback;
 mod polar;
 mod pose;
 mod property;
+mod reflection;
 mod sampler;
 mod skeleton;
 mod transform;
@@ -46,5 +47,6 @@ pub use property::{
     CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
     TextureSlot, ToonColor,
 };
+pub use reflection::Reflection;
 pub use skeleton::{Joint, Skeleton, SkeletonError};
 pub use transform::Transform;

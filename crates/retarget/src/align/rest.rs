@@ -119,8 +119,8 @@ pub fn target_rest(target: &Asset, choice: RestChoice) -> Vec<Local> {
 fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
     let skeleton = &asset.skeleton;
     match (choice, clip) {
-        (RestChoice::Auto, _) => bound(node_locals(skeleton), asset.reference_transforms()),
-        (RestChoice::Bind, _) => bound(node_locals(skeleton), asset.bind_transforms()),
+        (RestChoice::Auto, _) => bound(skeleton, asset.reference_transforms()),
+        (RestChoice::Bind, _) => bound(skeleton, asset.bind_transforms()),
         (RestChoice::FirstFrame, Some(clip)) => {
             clip_locals(skeleton, clip, clip.first_key_secs(), &mut Scratch::default())
         }
@@ -128,9 +128,16 @@ fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<
     }
 }
 
-/// The same as the skin was bound, where it covers a joint.
-fn bound(mut locals: Vec<Local>, transforms: Vec<BoundTransform>) -> Vec<Local> {
-    for (local, BoundTransform { translation, rotation }) in locals.iter_mut().zip(transforms) {
+/// The nodes' rest, and where the skin covers a joint, the pose that it was bound in.
+fn bound(skeleton: &Skeleton, transforms: Vec<BoundTransform>) -> Vec<Local> {
+    let mut locals = node_locals(skeleton);
+    let reflection = skeleton.reflection();
+    for (joint, BoundTransform { translation, rotation }) in skeleton.joints().zip(transforms) {
+        // What mirrors the body is above it, and no part of its pose.
+        if reflection.as_ref().is_some_and(|reflection| reflection.changes(joint)) {
+            continue;
+        }
+        let local = &mut locals[joint.get()];
         local.translation = translation.unwrap_or(local.translation);
         local.rotation = rotation.unwrap_or(local.rotation);
     }

@@ -268,8 +268,8 @@ impl Rigs<'_> {
         let target = self.target_of[top.get()]?;
         // Nothing animates the ancestors, so they are at their node transforms, whatever a skin says.
         let parent_rotation = |skeleton: &Skeleton, joint: JointIndex| {
-            let above = ancestry(skeleton, joint).skip(1);
-            above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().local(joint).rotation.as_dquat() * below)
+            let nodes = node_locals(skeleton);
+            ancestry(skeleton, joint).skip(1).fold(DQuat::IDENTITY, |below, joint| nodes[joint.get()].rotation * below)
         };
         let above =
             parent_rotation(self.source.skeleton, top) * parent_rotation(self.target.skeleton, target).conjugate();

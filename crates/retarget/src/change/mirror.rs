@@ -10,7 +10,7 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::track::{Target, Tracks};
 use crate::map::{opposite_joints, pairs_by_side};
-use crate::pose::{WorldPose, node_locals};
+use crate::pose::{WorldPose, locals_of};
 use crate::recognize::Recognized;
 
 /// Left and right of a skeleton.
@@ -50,7 +50,7 @@ impl Symmetry {
 
 pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
     let skeleton = &asset.skeleton;
-    let rest = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY);
+    let rest = WorldPose::new(skeleton, locals_of(skeleton.rest()), DQuat::IDENTITY);
     let reflection = symmetry.reflection();
     let names = asset.avatar.expressions.iter().map(|expression| expression.name.as_str());
     let expressions: Vec<[usize; 2]> = pairs_by_side(names).collect();

@@ -9,7 +9,7 @@ use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 
 use super::track::{Target, Tracks};
 use crate::math::unit;
-use crate::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, is_within, parent_frame};
+use crate::pose::{Local, Scratch, WorldPose, ancestry, is_within, locals_of, parent_frame};
 
 /// Returns the joints that carry all others: the animated joints without an animated ancestor.
 fn carriers(tracks: &Tracks, skeleton: &Skeleton) -> Vec<JointIndex> {
@@ -100,6 +100,6 @@ fn start(tracks: &Tracks, asset: &Asset) -> Option<DVec3> {
     let skeleton = &asset.skeleton;
     let joint = handle(asset, traveller(tracks, skeleton)?);
     let clip = tracks.clone().build("", skeleton);
-    let locals = clip_locals(skeleton, &clip, 0.0, &mut Scratch::default());
+    let locals = locals_of(Scratch::default().sample(skeleton, &clip, 0.0));
     Some(WorldPose::new(skeleton, locals, DQuat::IDENTITY).position(joint))
 }

@@ -1,6 +1,6 @@
 //! A channel of the retargeted clip before it is built.
 
-use gaitway_character::anim::{Clip, Interpolation, JointIndex, Keys, Property};
+use gaitway_character::anim::{Clip, Interpolation, JointIndex, Keys, Property, Reflection};
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::resample::Resampled;
@@ -30,6 +30,20 @@ impl NewChannel {
     pub fn resampled_translation(joint: JointIndex, positions: Resampled<DVec3>) -> Self {
         let values = positions.values.into_iter().map(DVec3::as_vec3).collect();
         Self::resampled(joint, positions.times, Keys::Translation(values))
+    }
+
+    /// Returns the channel of a mirrored skeleton, from the one in the mirror.
+    pub fn in_mirror(mut self, reflection: &Reflection) -> Self {
+        match &mut self.keys {
+            Keys::Translation(values) => {
+                values.iter_mut().for_each(|at| *at = reflection.translation(self.joint, at.as_dvec3()).as_vec3());
+            }
+            Keys::Rotation(values) => {
+                values.iter_mut().for_each(|turn| *turn = reflection.rotation(self.joint, turn.as_dquat()).as_quat());
+            }
+            Keys::Scale(_) | Keys::MorphWeights { .. } => {}
+        }
+        self
     }
 
     /// Copies the channels of a clip, with one joint's translation and the rotations of others replaced by keys at the given times.

@@ -1,7 +1,7 @@
 //! The source's channels by joint and property, in double precision. Gives the values that the player samples (glTF 2.0,
 //! appendix C), whereas the player's sampler works on whole poses in single precision.
 
-use gaitway_character::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Skeleton};
+use gaitway_character::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Reflection, Skeleton};
 use glam::{DQuat, DVec3, DVec4, Quat, Vec3};
 
 use crate::math::{slerp, unit};
@@ -49,11 +49,19 @@ pub struct SourceTracks<'a> {
     pub scales: Vec<Track<'a, DVec3>>,
     /// Which joints have a channel at all, even a constant one.
     pub has_channel: Vec<bool>,
+    /// Tracks have the values of the file; transforms are those in the mirror.
+    reflection: Option<Reflection>,
 }
 
 impl<'a> SourceTracks<'a> {
     /// `unmoved` holds the local transforms of joints that the clip does not animate.
     pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
+        let reflection = skeleton.reflection();
+        let in_file = |(joint, local): (JointIndex, &Local)| match &reflection {
+            Some(reflection) => local.in_mirror(reflection, joint),
+            None => *local,
+        };
+        let unmoved: Vec<Local> = skeleton.joints().zip(unmoved).map(in_file).collect();
         let mut tracks = Self {
             skeleton,
             clip,
@@ -61,6 +69,7 @@ impl<'a> SourceTracks<'a> {
             rotations: unmoved.iter().map(|local| Track::Constant(local.rotation)).collect(),
             scales: unmoved.iter().map(|local| Track::Constant(local.scale)).collect(),
             has_channel: vec![false; unmoved.len()],
+            reflection,
         };
         for channel in clip.channels() {
             if !muted.contains(&(channel.joint, channel.keys.property())) {
@@ -99,18 +108,34 @@ impl<'a> SourceTracks<'a> {
     /// Returns the joints' local transforms at a time. For several joints, timelines that they share are searched once.
     pub fn locals_at(&self, time_secs: f32) -> impl FnMut(JointIndex) -> Local {
         let mut search = Search { time_secs, last: None };
-        move |joint| Local {
-            translation: vector(&self.translations[joint.get()], &mut search),
-            rotation: rotation(&self.rotations[joint.get()], &mut search),
-            scale: vector(&self.scales[joint.get()], &mut search),
+        move |joint| {
+            let local = Local {
+                translation: vector(&self.translations[joint.get()], &mut search),
+                rotation: rotation(&self.rotations[joint.get()], &mut search),
+                scale: vector(&self.scales[joint.get()], &mut search),
+            };
+            self.reflection.as_ref().map_or(local, |reflection| local.in_mirror(reflection, joint))
         }
+    }
+
+    /// The joint's local rotation at a time.
+    pub fn rotation(&self, joint: JointIndex, time_secs: f32) -> DQuat {
+        let local = rotation(&self.rotations[joint.get()], &mut Search { time_secs, last: None });
+        self.reflection.as_ref().map_or(local, |reflection| reflection.rotation(joint, local))
+    }
+
+    /// Whether the joint's keys are its transforms, and not those in a mirror.
+    pub fn has_own_keys(&self, joint: JointIndex) -> bool {
+        self.reflection.as_ref().is_none_or(|reflection| !reflection.changes(joint))
     }
 
     /// World position of a joint, without sampling the joints beside its ancestors.
     pub fn position(&self, joint: JointIndex, time_secs: f32, world_from_model: DQuat) -> DVec3 {
         let world_from_parent =
             parent_frame(self.skeleton, joint, world_from_model, |ancestor| self.local(ancestor, time_secs));
-        world_from_parent.transform_point3(vector_at(&self.translations[joint.get()], time_secs))
+        let local = vector(&self.translations[joint.get()], &mut Search { time_secs, last: None });
+        let local = self.reflection.as_ref().map_or(local, |reflection| reflection.translation(joint, local));
+        world_from_parent.transform_point3(local)
     }
 
     pub fn is_moving(&self, joint: JointIndex) -> bool {
@@ -191,14 +216,6 @@ fn hermite(segment: &Segment) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     let length = segment.length_secs;
     [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), -2.0 * t3 + 3.0 * t2, length * (t3 - t2)]
-}
-
-pub fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
-    vector(track, &mut Search { time_secs, last: None })
-}
-
-pub fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
-    rotation(track, &mut Search { time_secs, last: None })
 }
 
 fn vector<'a>(track: &Track<'a, DVec3>, search: &mut Search<'a>) -> DVec3 {

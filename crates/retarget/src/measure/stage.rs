@@ -35,7 +35,8 @@ impl StagePair {
 }
 
 /// Brings the source into the model's space: facing the same way, with the hips at the same place and height.
-pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>) -> Affine3A {
+/// `is_mirrored` says which of the two skeletons is mirrored, the source's first.
+pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>, is_mirrored: [bool; 2]) -> Affine3A {
     let common_from_source = DAffine3::from_quat(alignment.source.world_from_model);
     let model_from_common = DAffine3::from_quat(alignment.target.world_from_model.conjugate());
     let target_from_source = hips.map_or(DAffine3::IDENTITY, |hips| {
@@ -43,7 +44,9 @@ pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>) -> Affine3A
             * DAffine3::from_scale(DVec3::splat(hips.scale))
             * DAffine3::from_translation(-hips.source_rest)
     });
-    (model_from_common * target_from_source * common_from_source).as_affine3a()
+    let [source, target] =
+        is_mirrored.map(|is| DAffine3::from_scale(DVec3::new(if is { -1.0 } else { 1.0 }, 1.0, 1.0)));
+    (target * model_from_common * target_from_source * common_from_source * source).as_affine3a()
 }
 
 pub fn stage_pairs(map: &ResolvedMap, alignment: &Alignment) -> Vec<StagePair> {

@@ -5,6 +5,8 @@ use gaitway_character::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use gaitway_character::asset::Asset;
 use glam::{Affine3A, Vec3};
 
+use super::tree::mirror_from_model;
+
 /// Number of times at which the first clip is sampled.
 const MOMENTS: u8 = 8;
 
@@ -89,7 +91,7 @@ pub(super) fn regions_at_rest(asset: &Asset) -> Vec<Option<Region>> {
 
 fn matrices(asset: &Asset, pose: &Pose) -> Vec<Affine3A> {
     let mut matrices = Vec::new();
-    model_from_joint(&asset.skeleton, pose, Affine3A::IDENTITY, &mut matrices);
+    model_from_joint(&asset.skeleton, pose, mirror_from_model(&asset.skeleton), &mut matrices);
     matrices
 }
 

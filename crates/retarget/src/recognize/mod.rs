@@ -26,7 +26,7 @@ use glam::Vec3;
 
 use by_shape::Found;
 use evidence::Evidence;
-use tree::Tree;
+use tree::{Tree, mirror_from_model};
 
 pub(crate) use creature::chains;
 pub use names::Name;
@@ -102,6 +102,10 @@ pub struct Facing {
 }
 
 impl Facing {
+    fn map(self, by: impl Fn(Vec3) -> Vec3) -> Self {
+        Self { up: self.up.map(&by), left: self.left.map(&by), forward: self.forward.map(&by) }
+    }
+
     /// Whether the side named left is on the right as the toes point: the model is mirrored or its names are swapped, and
     /// (right → left) × up points backwards.
     pub fn is_mirrored(&self) -> bool {
@@ -189,6 +193,8 @@ pub fn recognize(asset: &Asset) -> Recognized {
         by_position = !named_otherwise.is_empty();
         contradictions.extend(named_otherwise);
     }
+    let model_from_mirror = mirror_from_model(&asset.skeleton).inverse();
+    let facing = facing.map(|direction| model_from_mirror.transform_vector3(direction));
     Recognized { parts, left_out, facing, contradictions, by_position }
 }
 

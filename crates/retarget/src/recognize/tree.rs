@@ -146,6 +146,12 @@ fn usable(asset: &Asset) -> Vec<bool> {
 
 fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
     let mut model_from = Vec::new();
-    model_from_joint(skeleton, pose, Affine3A::IDENTITY, &mut model_from);
+    model_from_joint(skeleton, pose, mirror_from_model(skeleton), &mut model_from);
     model_from.into_iter().map(|transform| transform.translation.into()).collect()
+}
+
+/// Where bodies are recognized: in model space, or in the mirror of a skeleton whose left and right a node above them exchanges.
+pub(super) fn mirror_from_model(skeleton: &Skeleton) -> Affine3A {
+    let is_mirrored = skeleton.reflection().is_some();
+    if is_mirrored { Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)) } else { Affine3A::IDENTITY }
 }

@@ -9,7 +9,7 @@ use super::root_motion::keeps_everything;
 use crate::keys::channel::NewChannel;
 use crate::map::{Keep, Pair, ResolvedMap};
 use crate::math::angle_between;
-use crate::pose::{Local, ancestry, is_within, node_locals};
+use crate::pose::{Local, ancestry, is_within, locals_of};
 
 /// Rests closer than this are equal, as a share of the skeleton's size and in radians.
 const REST_TOLERANCE: f64 = 1e-4;
@@ -48,7 +48,7 @@ fn follows_path(transfer: &Transfer) -> bool {
 
 /// Whether the joints of every pair have the same name, the same parent's name and the same rest.
 fn is_same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skeleton) -> bool {
-    let (targets, sources) = (node_locals(target), node_locals(source));
+    let (targets, sources) = (locals_of(target.rest()), locals_of(source.rest()));
     let size = targets.iter().map(|local| local.translation.length()).fold(0.0, f64::max).max(1e-12);
     let parent_name =
         |skeleton: &Skeleton, joint| skeleton.parent(joint).map(|parent| skeleton.name(parent).to_owned());
@@ -67,7 +67,7 @@ fn is_same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skeleton) -> 
 /// Returns the translations, scales and morph weights that the policy carries over.
 pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChannel> {
     let Transfer { map, tracks, target_skeleton, .. } = *transfer;
-    let rests = Rests { source: node_locals(tracks.skeleton), target: node_locals(target_skeleton) };
+    let rests = Rests { source: locals_of(tracks.skeleton.rest()), target: locals_of(target_skeleton.rest()) };
     let is_on_path =
         |joint: JointIndex| transfer.hips_pair().is_some_and(|hips| is_within(target_skeleton, hips.target, joint));
     let mut channels = Vec::new();

@@ -38,6 +38,7 @@ pub fn detached_ends(transfer: &Transfer) -> Vec<(JointIndex, JointIndex)> {
 pub fn detached_channels(transfer: &Transfer, ends: &[(JointIndex, JointIndex)], clip: &Clip) -> Vec<NewChannel> {
     let times = union(clip.timelines().iter().map(Vec::as_slice));
     let height = transfer.hips.map_or(1.0, |hips| hips.height);
+    let reflection = transfer.target_skeleton.reflection();
     let scratch = RefCell::new(Scratch::default());
     let channel = |&(end, limb): &(JointIndex, JointIndex)| {
         let rest = &transfer.alignment.unaligned_target;
@@ -45,7 +46,8 @@ pub fn detached_channels(transfer: &Transfer, ends: &[(JointIndex, JointIndex)],
         let translation = |time: f32| {
             let pose = transfer.target_pose(clip, time, &mut scratch.borrow_mut());
             let position = pose.position(limb) + pose.rotation(limb) * offset;
-            pose.parent_frame(transfer.target_skeleton, end).inverse().transform_point3(position)
+            let local = pose.parent_frame(transfer.target_skeleton, end).inverse().transform_point3(position);
+            reflection.as_ref().map_or(local, |reflection| reflection.translation(end, local))
         };
         // The tolerance is in the units of the end's parent.
         let unit_length = rest.parent_frame(transfer.target_skeleton, end).matrix3.x_axis.length().max(1e-12);

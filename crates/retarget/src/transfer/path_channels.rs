@@ -146,7 +146,7 @@ fn transformed_channel(transfer: &Transfer, hips: &Hips, path: &HipsPath) -> Opt
         ancestry(transfer.target_skeleton, pair.target).skip(1).any(|joint| transfer.map.source_of(joint).is_some());
     let step_would_slide =
         channel.interpolation == Interpolation::Step && path.policy.stopped * path.travel.slope != DVec3::ZERO;
-    if source_ancestor_moves || target_ancestor_turns || step_would_slide {
+    if source_ancestor_moves || target_ancestor_turns || step_would_slide || !tracks.has_own_keys(pair.source) {
         return None;
     }
     let world_from_source_parent =

@@ -16,7 +16,7 @@ use super::yaw::Yaw;
 use crate::keys::channel::NewChannel;
 use crate::keys::limits::MAX_TURN;
 use crate::keys::resample::{Curve, Resampled, resample, union};
-use crate::keys::tracks::{SourceTracks, Track, rotation_at};
+use crate::keys::tracks::{SourceTracks, Track};
 use crate::math::{angle_between, slerp, unit};
 use crate::pose::ancestry;
 
@@ -66,7 +66,7 @@ impl<'a> RotationLaw<'a> {
     }
 
     fn factor_at(&self, factor: Factor, time_secs: f32) -> DQuat {
-        let rotation = rotation_at(self.track(factor), time_secs);
+        let rotation = self.tracks.rotation(factor.joint, time_secs);
         if factor.inverted { rotation.conjugate() } else { rotation }
     }
 
@@ -105,7 +105,7 @@ impl<'a> RotationLaw<'a> {
                 let is_rest = !self.has_channel() && angle_between(rotation, rest) < 1e-6;
                 (!is_rest).then(|| NewChannel::constant(joint, Keys::Rotation(vec![rotation.as_quat()])))
             }
-            [factor] => self.transformed(joint, factor),
+            [factor] if self.tracks.has_own_keys(factor.joint) => self.transformed(joint, factor),
             _ => Some(self.resampled(joint)),
         }
     }

@@ -27,6 +27,7 @@ mod laws;
 mod layers;
 mod pairs;
 mod pins;
+mod reflections;
 mod rests;
 mod soles;
 mod stack;

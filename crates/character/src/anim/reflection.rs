@@ -1,0 +1,96 @@
+//! A skeleton that a node above its body mirrors, as an armature with a negative scale does.
+//!
+//! Below such a node, local transforms mean what they do on any other skeleton; only what is made of them is mirrored. So the
+//! skeleton is looked at in a mirror: X is negated in model space, which changes the local transforms of the mirroring node and of
+//! everything that isn't below it, and nothing else.
+
+use glam::{DQuat, DVec3, Vec3};
+
+use super::{JointIndex, Skeleton};
+
+/// How the local transforms of a mirrored skeleton change in a mirror.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reflection {
+    places: Vec<Place>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    /// Below the node that mirrors.
+    Below,
+    /// That node; after its turn in the mirror, a turn of its own remains, depending on the axes that it negates.
+    Mirrors(DQuat),
+    Elsewhere,
+}
+
+impl Skeleton {
+    /// Returns the reflection if most joints are mirrored at rest.
+    pub fn reflection(&self) -> Option<Reflection> {
+        let rest = self.rest();
+        let scale = |joint: JointIndex| rest.local(joint).scale;
+        if !self.joints().any(|joint| is_mirroring(scale(joint))) {
+            return None;
+        }
+        let mut is_mirrored: Vec<bool> = Vec::with_capacity(self.len());
+        let mut places = Vec::with_capacity(self.len());
+        for joint in self.joints() {
+            let above = self.parent(joint).is_some_and(|parent| is_mirrored[parent.get()]);
+            let mirrors = is_mirroring(scale(joint));
+            is_mirrored.push(above != mirrors);
+            places.push(match (above, mirrors) {
+                (true, _) => Place::Below,
+                (false, true) => Place::Mirrors(turn_of(scale(joint))),
+                (false, false) => Place::Elsewhere,
+            });
+        }
+        let mirrored = is_mirrored.iter().filter(|mirrored| **mirrored).count();
+        (2 * mirrored > self.len()).then_some(Reflection { places })
+    }
+}
+
+fn is_mirroring(scale: Vec3) -> bool {
+    scale.x * scale.y * scale.z < 0.0
+}
+
+/// The rotation that negating X and these axes make together.
+fn turn_of(scale: Vec3) -> DQuat {
+    match (scale.x < 0.0, scale.y < 0.0) {
+        (true, false) => DQuat::IDENTITY,
+        (true, true) => DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0),
+        (false, true) => DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0),
+        (false, false) => DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0),
+    }
+}
+
+impl Reflection {
+    /// Whether a joint's local transform is another one in the mirror.
+    pub fn changes(&self, joint: JointIndex) -> bool {
+        self.places[joint.get()] != Place::Below
+    }
+
+    /// Returns a point or direction of model space in the mirror.
+    pub fn vector(&self, vector: DVec3) -> DVec3 {
+        vector * DVec3::new(-1.0, 1.0, 1.0)
+    }
+
+    /// Returns a joint's local translation in the mirror, and back again.
+    pub fn translation(&self, joint: JointIndex, translation: DVec3) -> DVec3 {
+        if self.changes(joint) { self.vector(translation) } else { translation }
+    }
+
+    /// Returns a joint's local rotation in the mirror, and back again; linear, so that tangents change alike.
+    pub fn rotation(&self, joint: JointIndex, rotation: DQuat) -> DQuat {
+        let DQuat { x, y, z, w } = rotation;
+        let mirrored = DQuat::from_xyzw(x, -y, -z, w);
+        match self.places[joint.get()] {
+            Place::Below => rotation,
+            Place::Mirrors(turn) => mirrored * turn,
+            Place::Elsewhere => mirrored,
+        }
+    }
+
+    /// Returns a joint's local scale in the mirror.
+    pub fn scale(&self, joint: JointIndex, scale: DVec3) -> DVec3 {
+        if matches!(self.places[joint.get()], Place::Mirrors(_)) { scale.abs() } else { scale }
+    }
+}
