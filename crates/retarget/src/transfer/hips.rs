@@ -8,7 +8,7 @@ use crate::align::Alignment;
 use crate::keys::resample::union;
 use crate::keys::tracks::SourceTracks;
 use crate::map::{PathOrigin, ResolvedMap};
-use crate::pose::{ancestry, is_within};
+use crate::pose::{WorldPose, ancestry, is_within};
 use crate::skin::moves_skin;
 
 const LEGS: [Slot; 8] = [
@@ -40,7 +40,8 @@ pub struct Hips {
     pub source_rest: DVec3,
     /// Where the target is when the source is at `source_rest`, in target units.
     pub target_rest: DVec3,
-    /// Height of the target's hips above the ground at the aligned rest, in target units.
+    /// Height of the target's hips above the ground at the aligned rest, in target units; the length of its legs if these hips are
+    /// near the ground, of its torso without legs.
     pub height: f64,
 }
 
@@ -91,7 +92,18 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     } else {
         lowest_joints(alignment, legs.iter().copied())
     };
-    let (source_height, height) = (source_rest.y - source_ground, target_rest.y - target_ground);
+    let (mut source_height, mut height) = (source_rest.y - source_ground, target_rest.y - target_ground);
+    let of_both = |length: fn(&WorldPose, &Humanoid) -> Option<f64>| {
+        Some((length(&alignment.source, source_slots)?, length(&alignment.target, target_slots)?))
+    };
+    // Hips may be a root on the ground, and a bust has no legs to stand on.
+    let instead = match (of_both(leg_length), of_both(torso_length)) {
+        (Some(legs), _) => {
+            (source_height < MIN_HIPS_HEIGHT * legs.0 || height < MIN_HIPS_HEIGHT * legs.1).then_some(legs)
+        }
+        (None, torso) => torso.filter(|_| legs.is_empty()),
+    };
+    (source_height, height) = instead.unwrap_or((source_height, height));
     let is_usable = source_height > 1e-9 && height > 1e-9 && (height / source_height).is_finite();
     let source_legs: Vec<JointIndex> = legs.into_iter().map(|(source, _)| source).collect();
     if rests_in_the_ground(input, pair, &source_legs, source_ground) {
@@ -113,6 +125,28 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
         target_rest,
         height: height.max(1e-9),
     })
+}
+
+/// Hips that are less high than this share of a leg's length aren't at the top of the legs.
+const MIN_HIPS_HEIGHT: f64 = 0.25;
+
+/// Mean length of the legs, from hip to ankle. None without two whole ones.
+fn leg_length(pose: &WorldPose, slots: &Humanoid) -> Option<f64> {
+    let legs = [
+        [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
+        [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
+    ];
+    let [left, right] = legs.map(|leg| {
+        let [hip, knee, ankle] = leg.map(|slot| slots.joint(slot).map(|joint| pose.position(joint)));
+        Some(hip?.distance(knee?) + knee?.distance(ankle?))
+    });
+    Some(0.5 * (left? + right?))
+}
+
+/// Distance from the hips to the head.
+fn torso_length(pose: &WorldPose, slots: &Humanoid) -> Option<f64> {
+    let [hips, head] = [Slot::Hips, Slot::Head].map(|slot| slots.joint(slot).map(|joint| pose.position(joint)));
+    Some(hips?.distance(head?))
 }
 
 /// The joint that takes the path of these hips.

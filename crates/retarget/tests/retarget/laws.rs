@@ -7,7 +7,8 @@ use gaitway_retarget::{
 };
 use glam::{DQuat, DVec3, Quat, Vec3};
 
-use crate::figure::{Figure, Rig, build};
+use crate::figure::{BODY, Figure, Rig, build};
+use crate::rests::with_rest;
 
 /// Maps all slots that both have.
 pub fn map(model: &Figure, motion: &Figure) -> ResolvedMap {
@@ -331,4 +332,41 @@ fn figures_tell_a_good_clip_from_a_bad_one() {
     let figures = retargeting.measure(&wrong, None).0;
     assert!(figures.orientation_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
     assert!(figures.limb_direction_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
+}
+
+/// A root on the ground fills the slot of the hips, or there are no legs: the path is scaled by what there is of the body.
+#[test]
+fn a_path_is_scaled_by_legs_or_torso_where_hips_have_no_height() {
+    let legs: Vec<Slot> = BODY.iter().map(|(slot, ..)| *slot).filter(|slot| slot.name().ends_with("Leg")).collect();
+    let feet = BODY
+        .iter()
+        .map(|(slot, ..)| *slot)
+        .filter(|slot| slot.name().ends_with("Foot") || slot.name().ends_with("Toes"));
+    let legless: Vec<Slot> = legs.into_iter().chain(feet).collect();
+    let grounded = |mut figure: Figure| {
+        let hips = figure.joint(Slot::Hips);
+        let height = figure.asset.skeleton.rest().local(hips).translation.y;
+        let skeleton = with_rest(&figure.asset.skeleton, |joint, rest| {
+            if joint == hips {
+                rest.translation.y = 0.0;
+            } else if figure.asset.skeleton.parent(joint) == Some(hips) {
+                rest.translation.y += height;
+            }
+        });
+        figure.asset = Asset::from(skeleton);
+        figure
+    };
+    let with_legs = |size: f64, prefix| build(&Rig { size, prefix, ..Rig::default() });
+    let bust = |size: f64, prefix| build(&Rig { size, prefix, without: legless.clone(), ..Rig::default() });
+    for (model, mut motion) in [
+        (with_legs(2.0, ""), grounded(with_legs(1.0, "m_"))),
+        (grounded(with_legs(2.0, "")), with_legs(1.0, "m_")),
+        (grounded(with_legs(2.0, "")), grounded(with_legs(1.0, "m_"))),
+        (bust(2.0, ""), bust(1.0, "m_")),
+        (bust(2.0, ""), with_legs(1.0, "m_")),
+    ] {
+        motion.dance(3, 20.0, Interpolation::Linear);
+        let scale = retarget(&model, &motion, &map(&model, &motion)).hips_scale.unwrap();
+        assert!((scale - 2.0).abs() < 1e-3, "{scale}");
+    }
 }
