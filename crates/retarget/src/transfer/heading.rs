@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DQuat;
 
+use super::averaged::{averaged, steps};
 use super::root_motion::RootPolicy;
 use super::rotation::RotationLaw;
 use super::yaw::Yaw;
@@ -16,6 +17,9 @@ use crate::pose::ancestry;
 
 /// Less turning than this from first to last key is sway and stays with the hips when travel moves to the root joint.
 const MIN_EXTRACTED_DEGREES: f64 = 5.0;
+
+/// Hips that turn away from a constant speed by more than this aren't only swaying.
+const MAX_SWAY_DEGREES: f64 = 45.0;
 
 /// Returns the law of each pair, with the turning removed that the root options ask for, and the turning that goes to the
 /// root joint instead.
@@ -35,21 +39,44 @@ fn remove_turning(transfer: &Transfer, hips: &Hips, policy: &RootPolicy, laws: &
         return None;
     }
     let top = hips.top_pair(transfer.map, transfer.target_skeleton);
-    let Yaw { times, radians: headings } = heading(transfer, hips, top, laws)?;
-    let (first_secs, last_secs) = (*times.first()?, *times.last()?);
-    let secs = f64::from(last_secs - first_secs);
-    let slope = if secs > 0.0 { (headings[headings.len() - 1] - headings[0]) / secs } else { 0.0 };
-    let line = |time: f32| slope * f64::from(time - first_secs);
-    let is_extracted = root_options.yaw == RootPart::Keep
-        && policy.extraction_joint.is_some()
-        && (slope * secs).to_degrees().abs() > MIN_EXTRACTED_DEGREES;
-    let removed: Vec<f64> = match root_options.yaw {
-        RootPart::Keep if !is_extracted => return None,
-        RootPart::Keep | RootPart::InPlace => times.iter().map(|&time| -line(time)).collect(),
-        RootPart::Freeze => headings.iter().map(|heading| headings[0] - heading).collect(),
+    let heading = heading(transfer, hips, top, laws)?;
+    let root_turn = match root_options.yaw {
+        RootPart::Keep => Some(root_turning(&heading)?),
+        RootPart::InPlace | RootPart::Freeze => None,
     };
-    laws[top].yaw = Some(Yaw { times: times.clone(), radians: removed });
-    is_extracted.then(|| Yaw { radians: times.iter().map(|&time| line(time)).collect(), times })
+    let (Yaw { times, radians: headings }, line) = (&heading, turning_line(&heading));
+    laws[top].yaw = Some(match (&root_turn, root_options.yaw) {
+        (Some(turn), _) => Yaw { times: turn.times.clone(), radians: turn.radians.iter().map(|turn| -turn).collect() },
+        (None, RootPart::Freeze) => {
+            Yaw { times: times.clone(), radians: headings.iter().map(|heading| headings[0] - heading).collect() }
+        }
+        (None, _) => Yaw { times: times.clone(), radians: times.iter().map(|&time| -line(time)).collect() },
+    });
+    root_turn
+}
+
+/// The turning from the first to the last key at a constant speed, from where it starts.
+fn turning_line(heading: &Yaw) -> impl Fn(f32) -> f64 + use<> {
+    let Yaw { times, radians } = heading;
+    let (first_secs, last) = (times[0], times.len() - 1);
+    let secs = f64::from(times[last] - first_secs);
+    let slope = if secs > 0.0 { (radians[last] - radians[0]) / secs } else { 0.0 };
+    move |time| slope * f64::from(time - first_secs)
+}
+
+/// The turning of a root joint: at a constant speed, or as the hips turn, without their sway, if they stray from that. None if it
+/// is too little.
+fn root_turning(heading: &Yaw) -> Option<Yaw> {
+    let Yaw { times, radians } = heading;
+    let (line, last_secs) = (turning_line(heading), times[times.len() - 1]);
+    let sway = |(&time, turned): (&f32, &f64)| (turned - radians[0] - line(time)).abs();
+    if times.iter().zip(radians).map(sway).fold(0.0, f64::max).to_degrees() > MAX_SWAY_DEGREES {
+        let times = steps(times[0], last_secs);
+        let turned: Vec<f64> = times.iter().map(|&time| heading.at(time) - radians[0]).collect();
+        return Some(Yaw { radians: averaged(&turned), times });
+    }
+    let is_enough = line(last_secs).to_degrees().abs() > MIN_EXTRACTED_DEGREES;
+    is_enough.then(|| Yaw { radians: times.iter().map(|&time| line(time)).collect(), times: times.clone() })
 }
 
 /// Yaw of the target's hips away from their aligned rest, before any of it is removed. None without keys.

@@ -1,5 +1,6 @@
 //! Transfers the motion: rotations, the hips' path, root motion, copied channels, detached limbs, and layered clips.
 
+mod averaged;
 mod copy;
 mod detached;
 mod heading;

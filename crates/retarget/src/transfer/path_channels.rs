@@ -30,6 +30,7 @@ pub fn hips_channels(
         channels.extend(root_joint_channels(transfer, root, &path, root_turn));
     }
     if root_turn.is_none()
+        && path.travel.is_straight()
         && let Some(transformed) = transformed_channel(transfer, hips, &path)
     {
         channels.push(transformed);
@@ -55,18 +56,17 @@ pub fn hips_channels(
     channels
 }
 
-/// Channels of the root joint: linear travel, and its turning.
+/// Channels of the root joint: its travel and its turning.
 fn root_joint_channels(transfer: &Transfer, root: JointIndex, path: &HipsPath, turn: Option<&Yaw>) -> Vec<NewChannel> {
     let rest = &transfer.alignment.target;
     let local = rest.locals[root.get()];
     let world_from_parent = rest.parent_frame(transfer.target_skeleton, root);
     let parent_from_world = world_from_parent.inverse();
     let position = |time: f32| {
-        let step = parent_from_world.transform_vector3(path.policy.extracted * path.travel.at(time));
+        let step = parent_from_world.transform_vector3(path.policy.extracted * path.travel.root(time));
         (local.translation + step).as_vec3()
     };
-    let (first, last) = (path.times[0], path.times[path.times.len() - 1]);
-    let times = if first < last { vec![first, last] } else { vec![first] };
+    let times = path.travel.root_times();
     let positions = times.iter().map(|&time| position(time)).collect();
     let mut channels = vec![NewChannel {
         joint: root,
@@ -145,7 +145,7 @@ fn transformed_channel(transfer: &Transfer, hips: &Hips, path: &HipsPath) -> Opt
     let target_ancestor_turns =
         ancestry(transfer.target_skeleton, pair.target).skip(1).any(|joint| transfer.map.source_of(joint).is_some());
     let step_would_slide =
-        channel.interpolation == Interpolation::Step && path.policy.stopped * path.travel.slope != DVec3::ZERO;
+        channel.interpolation == Interpolation::Step && path.policy.stopped() * path.travel.slope != DVec3::ZERO;
     if source_ancestor_moves || target_ancestor_turns || step_would_slide || !tracks.has_own_keys(pair.source) {
         return None;
     }

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 
 use super::Transfer;
 use super::heading::rotation_laws;
-use super::path::{HipsPath, Travel};
+use super::path::HipsPath;
 use super::yaw::Yaw;
 use crate::math::HORIZONTAL;
 use crate::pose::WorldPose;
@@ -47,9 +47,8 @@ impl RemovedTravel {
 pub fn removed_travel(transfer: &Transfer, times: &[f32]) -> RemovedTravel {
     let Some(hips) = transfer.hips else { return RemovedTravel::default() };
     let Some(path) = HipsPath::new(transfer, hips) else { return RemovedTravel::default() };
-    let Travel { first_secs, slope, .. } = path.travel;
     let removed = |time: f32| {
-        let extracted = path.policy.extracted * slope * f64::from(time - first_secs);
+        let extracted = path.policy.extracted * path.travel.root(time);
         (path.unedited(time) - path.at(time) - extracted) * HORIZONTAL
     };
     let yaw = match path.policy.extraction_joint {

@@ -14,8 +14,8 @@ pub struct RootPolicy {
     pub extraction_joint: Option<JointIndex>,
     /// Travel that moves to that joint.
     pub extracted: DVec3,
-    /// Travel that the hips lose, extracted or not.
-    pub stopped: DVec3,
+    /// Travel that is removed.
+    pub in_place: DVec3,
     pub frozen: DVec3,
 }
 
@@ -31,12 +31,12 @@ impl RootPolicy {
             Some(_) => axes(RootPart::Keep) * HORIZONTAL,
             None => DVec3::ZERO,
         };
-        Self {
-            extraction_joint,
-            extracted,
-            stopped: axes(RootPart::InPlace) + extracted,
-            frozen: axes(RootPart::Freeze),
-        }
+        Self { extraction_joint, extracted, in_place: axes(RootPart::InPlace), frozen: axes(RootPart::Freeze) }
+    }
+
+    /// Travel that the hips lose, extracted or not.
+    pub fn stopped(&self) -> DVec3 {
+        self.in_place + self.extracted
     }
 }
 

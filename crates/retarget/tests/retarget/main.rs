@@ -32,6 +32,7 @@ mod rests;
 mod soles;
 mod stack;
 mod surface;
+mod travel;
 mod verdicts;
 mod whole_rests;
 mod written;
