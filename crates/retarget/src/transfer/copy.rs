@@ -1,5 +1,5 @@
 //! Translations of joints other than the hips, scales of all joints, and morph weights: copied between equal skeletons,
-//! converted on request, otherwise left out so that limbs keep their lengths.
+//! converted on request and between creatures, otherwise left out so that limbs keep their lengths.
 
 use gaitway_character::anim::{Channel, Interpolation, JointIndex, Keys, Property, Skeleton};
 use glam::{DQuat, DVec3, Vec3};
@@ -70,6 +70,11 @@ pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChanne
     let rests = Rests { source: locals_of(tracks.skeleton.rest()), target: locals_of(target_skeleton.rest()) };
     let is_on_path =
         |joint: JointIndex| transfer.hips_pair().is_some_and(|hips| is_within(target_skeleton, hips.target, joint));
+    // A creature's motion is in its translations as well: bodies hop, and feet hang beside their legs.
+    let is_creature = transfer.hips.is_some() && transfer.alignment.pair_of_slot.is_empty();
+    let carries = |pair: &Pair| {
+        is_creature && map.translations == Keep::Auto && tracks.translations[pair.source.get()].is_moving()
+    };
     let mut channels = Vec::new();
     for pair in &map.pairs {
         let is_same_name = target_skeleton.name(pair.target) == tracks.skeleton.name(pair.source);
@@ -77,7 +82,8 @@ pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChanne
         for channel in tracks.clip.channels().iter().filter(|channel| channel.joint == pair.source) {
             let property = channel.keys.property();
             let is_wanted = match property {
-                Property::Translation => policy.translations && (policy.path || !is_on_path(pair.target)),
+                Property::Translation if is_on_path(pair.target) => policy.translations && policy.path,
+                Property::Translation => policy.translations || carries(pair),
                 Property::Scale => policy.scales,
                 Property::MorphWeights => morphs > 0,
                 Property::Rotation => false,

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::align::Alignment;
 use crate::keys::resample::union;
 use crate::keys::tracks::SourceTracks;
-use crate::map::{PathOrigin, ResolvedMap};
+use crate::map::{Pair, PathOrigin, ResolvedMap};
 use crate::pose::{WorldPose, ancestry, is_within};
 use crate::skin::moves_skin;
 
@@ -77,8 +77,8 @@ pub struct HipsInput<'a> {
     pub target_slots: &'a Humanoid,
 }
 
-/// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
-/// ancestor and whose source travels stands in for them.
+/// Returns None if no pair involves the hips. In a map without humanoid slots, the pair whose source travels and whose target
+/// carries most others stands in for them.
 pub fn match_hips(input: HipsInput) -> Option<Hips> {
     let HipsInput { map, alignment, tracks, target, source_slots, target_slots } = input;
     let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
@@ -178,12 +178,21 @@ fn travelling_pair(input: HipsInput) -> Option<usize> {
     if !alignment.pair_of_slot.is_empty() {
         return None;
     }
-    map.pairs.iter().position(|pair| {
-        let has_mapped_ancestor =
-            ancestry(&target.skeleton, pair.target).skip(1).any(|joint| map.source_of(joint).is_some());
-        let travels = ancestry(tracks.skeleton, pair.source).any(|joint| tracks.translations[joint.get()].is_moving());
-        !has_mapped_ancestor && travels
-    })
+    // A joint travels along with what isn't mapped above it.
+    let is_source = |joint: JointIndex| map.pairs.iter().any(|pair| pair.source == joint);
+    let travels = |pair: &Pair| {
+        let moves = |joint: JointIndex| tracks.translations[joint.get()].is_moving();
+        let mut above = ancestry(tracks.skeleton, pair.source).skip(1).take_while(|&joint| !is_source(joint));
+        moves(pair.source) || above.any(moves)
+    };
+    let is_carried = |pair: &Pair| {
+        let mut above = ancestry(&target.skeleton, pair.target).skip(1).filter_map(|joint| map.pair_index(joint));
+        above.any(|pair| travels(&map.pairs[pair]))
+    };
+    let carried =
+        |pair: &Pair| map.pairs.iter().filter(|other| is_within(&target.skeleton, other.target, pair.target)).count();
+    let carriers = map.pairs.iter().enumerate().filter(|(_, pair)| travels(pair) && !is_carried(pair));
+    carriers.rev().max_by_key(|(_, pair)| carried(pair)).map(|(index, _)| index)
 }
 
 /// Heights of the lowest source joint and the lowest target joint at the aligned rest.

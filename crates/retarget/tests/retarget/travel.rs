@@ -1,12 +1,15 @@
-//! Travel that moves to a root joint.
+//! Motion that translations carry: travel that moves to a root joint, and creatures, which hop.
 
-use gaitway_character::anim::{ClipBuilder, Interpolation, Keys, Property};
-use gaitway_character::asset::Slot;
-use gaitway_retarget::{ResolvedMap, Retargeting};
-use glam::{DVec3, Quat, Vec3};
+use gaitway_character::anim::{
+    Clip, ClipBuilder, Interpolation, JointIndex, Keys, Property, SampleCursor, Transform, model_from_joint,
+};
+use gaitway_character::asset::{Asset, AssetParts, Slot};
+use gaitway_retarget::{Body, ResolvedMap, Retargeting, propose, recognize};
+use glam::{Affine3A, DVec3, Quat, Vec3};
 
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, degrees, map};
+use crate::skeletons;
 
 /// Makes a figure walk along a curve for 6 s, facing along it: places and headings at each share of the time.
 fn walking(mut figure: Figure, path: impl Fn(f32) -> (Vec3, f32)) -> Figure {
@@ -73,5 +76,65 @@ fn an_extracted_root_goes_below_the_hips() {
         let keys = moves_root(Property::Translation).map(|channel| &extracted.timelines()[channel.timeline as usize]);
         assert_eq!(keys.unwrap().len() == 2, is_straight);
         assert_eq!(moves_root(Property::Rotation).is_some(), !is_straight, "the root turns with the path");
+    }
+}
+
+/// Four legs, with feet beside them as inverse kinematics leaves them, at some size.
+fn creature(size: f32) -> Asset {
+    let mut joints = Vec::new();
+    let mut add = |name: String, parent: Option<usize>, at: [f32; 3]| {
+        joints.push(skeletons::joint(&name, parent, Transform::from_translation(size * Vec3::from(at))));
+        joints.len() - 1
+    };
+    let root = add("root".into(), None, [0.0; 3]);
+    let trunk = add("Body".into(), Some(root), [0.0, 0.4, 0.0]);
+    let neck = add("Neck1".into(), Some(trunk), [0.0, 0.05, 0.2]);
+    add("Head".into(), Some(neck), [0.0, 0.1, 0.05]);
+    add("Tail1".into(), Some(trunk), [0.0, 0.0, -0.2]);
+    for (side, x) in [("L", 0.075), ("R", -0.075)] {
+        for (end, z) in [("Front", 0.175), ("Back", -0.175)] {
+            let upper = add(format!("{end}UpperLeg.{side}"), Some(trunk), [x, -0.025, z]);
+            add(format!("{end}LowerLeg.{side}"), Some(upper), [0.0, -0.175, 0.025]);
+            add(format!("{end}Foot.{side}"), Some(root), [x, 0.04, z]);
+        }
+    }
+    skeletons::asset(joints)
+}
+
+/// Body and feet rise by 0.4 m, one foot after the other.
+fn hopping(asset: Asset) -> Asset {
+    let moves = |name: &str| name == "Body" || name.contains("Foot");
+    let mut clip = ClipBuilder::new("hop", &asset.skeleton);
+    for (at, joint) in asset.skeleton.joints().filter(|&joint| moves(asset.skeleton.name(joint))).enumerate() {
+        let rest = asset.skeleton.rest().local(joint).translation;
+        let keys = Keys::Translation(vec![rest, rest + 0.4 * Vec3::Y + 0.1 * Vec3::Z, rest + 0.2 * Vec3::Z]);
+        clip.channel(joint, Interpolation::Linear, &[0.0, 1.0 + 0.1 * at as f32, 2.0], keys).unwrap();
+    }
+    let clips = vec![clip.build()];
+    Asset::new(AssetParts { clips, ..asset.into_parts() }).unwrap()
+}
+
+fn positions(asset: &Asset, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
+    let (mut pose, mut world) = (asset.skeleton.rest().clone(), Vec::new());
+    clip.sample(&asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+    model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world);
+    world.into_iter().map(|joint| joint.translation.into()).collect()
+}
+
+#[test]
+fn creatures_hop_at_their_size() {
+    let (motion, model) = (hopping(creature(1.0)), creature(2.6));
+    let slots = [&model, &motion].map(|asset| recognize(asset).humanoid());
+    let map = propose(&model, &motion).to_map(&model, &motion).resolve(&model, &motion).unwrap();
+    let [target, source] = [Body { asset: &model, slots: &slots[0] }, Body { asset: &motion, slots: &slots[1] }];
+    let clip = Retargeting::new(target, source, 0, &map).unwrap().bake().unwrap().clip;
+    for time in [0.0, 0.5, 1.0, 1.3, 2.0] {
+        let (wanted, found) = (positions(&motion, &motion.clips[0], time), positions(&model, &clip, time));
+        for joint in motion.skeleton.joints() {
+            let name = motion.skeleton.name(joint);
+            let twin: JointIndex = model.skeleton.find(name).unwrap();
+            let off = (2.6 * wanted[joint.get()]).distance(found[twin.get()]);
+            assert!(off < 1e-3, "{name} is {off} m away at {time}");
+        }
     }
 }
