@@ -1,7 +1,9 @@
 //! The visible part of a skeleton: which joints count, the bones between them, and the root that carries the character.
 
-use gaitway_character::anim::{Clip, JointIndex, Keys};
+use gaitway_character::anim::{Clip, JointIndex, Keys, model_from_joint};
 use gaitway_character::asset::Asset;
+use gaitway_character::mesh::Bounds;
+use glam::{Affine3A, Vec3};
 
 /// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh,
 /// all but cameras, lights and what is hidden. Computed once per model.
@@ -42,6 +44,7 @@ impl Rig {
             if asset.instances.is_empty() {
                 let animated = std::mem::replace(&mut real, vec![true; skeleton.len()]);
                 drop_containers(asset, &animated, &mut real);
+                drop_distant(asset, &mut real);
             }
             real.iter_mut().zip(&helpers).for_each(|(real, helper)| *real &= !helper);
         }
@@ -132,6 +135,53 @@ fn drop_containers(asset: &Asset, animated: &[bool], real: &mut [bool]) {
     for joint in skeleton.joints() {
         let below_real = skeleton.parent(joint).is_some_and(|parent| real[parent.get()]);
         real[joint.get()] = below_real || animated[joint.get()] || !contains_animated[joint.get()];
+    }
+}
+
+/// A bone this many times as long as the median is none: it leads to something beside the body.
+const LONGEST_BONE: f32 = 20.0;
+
+/// What is this many body sizes away, with fewer joints than this share of the body's, isn't part of it.
+const FAR: f32 = 2.0;
+const SMALL: f32 = 0.25;
+
+/// Unmarks cameras, lights and the like in a skeleton without a mesh: a few joints far from the body.
+fn drop_distant(asset: &Asset, real: &mut [bool]) {
+    let skeleton = &asset.skeleton;
+    let mut world_from_joint = Vec::with_capacity(skeleton.len());
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world_from_joint);
+    let position = |joint: JointIndex| Vec3::from(world_from_joint[joint.get()].translation);
+    let bone = |joint: JointIndex| {
+        let parent = skeleton.parent(joint).filter(|parent| real[parent.get()])?;
+        Some((parent, position(parent).distance(position(joint))))
+    };
+    let joints: Vec<JointIndex> = skeleton.joints().filter(|joint| real[joint.get()]).collect();
+    let mut lengths: Vec<f32> = joints
+        .iter()
+        .filter_map(|&joint| bone(joint))
+        .map(|(_, length)| length)
+        .filter(|length| *length > 0.0)
+        .collect();
+    lengths.sort_by(f32::total_cmp);
+    let Some(&median) = lengths.get(lengths.len() / 2) else { return };
+    // Joints connected by bones, as the first joint of each group.
+    let mut group: Vec<JointIndex> = skeleton.joints().collect();
+    let mut sizes = vec![0_usize; skeleton.len()];
+    for &joint in &joints {
+        if let Some((parent, _)) = bone(joint).filter(|(_, length)| *length <= LONGEST_BONE * median) {
+            group[joint.get()] = group[parent.get()];
+        }
+        sizes[group[joint.get()].get()] += 1;
+    }
+    let Some(&body) = joints.iter().max_by_key(|joint| sizes[joint.get()]) else { return };
+    let bounds = Bounds::of(joints.iter().filter(|joint| group[joint.get()] == body).map(|&joint| position(joint)));
+    let far = FAR * bounds.diagonal();
+    let is_near = |joint: JointIndex| position(joint).clamp(bounds.min, bounds.max).distance(position(joint)) <= far;
+    let mut has_near = vec![false; skeleton.len()];
+    joints.iter().for_each(|&joint| has_near[group[joint.get()].get()] |= is_near(joint));
+    for joint in joints {
+        let first = group[joint.get()].get();
+        real[joint.get()] = has_near[first] || sizes[first] as f32 >= SMALL * sizes[body.get()] as f32;
     }
 }
 
@@ -226,7 +276,7 @@ mod tests {
     use glam::{Affine3A, Vec3};
 
     use super::Rig;
-    use gaitway_character::anim::{Joint, JointIndex, Skeleton};
+    use gaitway_character::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton, Transform};
     use gaitway_character::asset::{Asset, AssetParts, MeshInstance};
     use gaitway_character::mesh::{Geometry, Influences, Mesh, Skin};
 
@@ -271,5 +321,35 @@ mod tests {
         let parts = AssetParts { skeleton, skins: vec![skin], ..AssetParts::default() };
         let rig = Rig::new(&Asset::new(parts).expect("indices in range"));
         assert_eq!((rig.bones().len(), rig.has_controls()), (3, false));
+    }
+
+    /// A body of ten joints, and a camera 150 m away with its target: in a tree of its own, or below what carries the body; still or
+    /// animated.
+    #[test]
+    fn far_cameras_are_not_part_of_a_motions_body() {
+        for (is_below, is_animated) in [(false, false), (true, false), (false, true), (true, true)] {
+            let joint = |name: &str, parent: Option<usize>, at: Vec3| Joint {
+                name: name.to_owned(),
+                parent,
+                rest: Transform::from_translation(at),
+                ..Joint::default()
+            };
+            let mut joints = vec![joint("Root", None, Vec3::ZERO), joint("Hips", Some(0), Vec3::Y)];
+            (2..11).for_each(|at| joints.push(joint("Spine", Some(at - 1), 0.1 * Vec3::Y)));
+            joints.push(joint("Camera", is_below.then_some(0), 150.0 * Vec3::Z));
+            joints.push(joint("Target", Some(11), -0.5 * Vec3::Z));
+            let skeleton = Skeleton::new(joints).expect("parents come first");
+            let mut clip = ClipBuilder::new("clip", &skeleton);
+            for animated in [Some(1), is_animated.then_some(0), is_animated.then_some(11)].into_iter().flatten() {
+                let joint = JointIndex(animated);
+                let keys = Keys::Translation(vec![skeleton.rest().local(joint).translation; 2]);
+                clip.channel(joint, Interpolation::Linear, &[0.0, 1.0], keys).expect("a channel");
+            }
+            let parts = AssetParts { clips: vec![clip.build()], skeleton, ..AssetParts::default() };
+            let asset = Asset::new(parts).expect("indices in range");
+            let rig = Rig::new(&asset);
+            let real: Vec<usize> = (1..13).filter(|&joint| rig.is_real(JointIndex(joint as u32))).collect();
+            assert_eq!(real, (1..11).collect::<Vec<_>>(), "below {is_below}, animated {is_animated}");
+        }
     }
 }
