@@ -6,8 +6,8 @@ use gaitway_character::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use gaitway_character::asset::Asset;
 use gaitway_formats::write_model;
 use gaitway_retarget::{
-    ChangedClip, ClipOverLayers, ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped,
-    layer_clips,
+    ChangedClip, ClipOverLayers, ClipRef, Figures, FitWarning, JointMap, MapError, ResolvedMap, Retargeted,
+    Retargeting, Unmapped, layer_clips,
 };
 use gaitway_scene::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use gaitway_scene::library::{Model, Motion, Take, clip_file_name, map_for, warning_documents, with_expressions};
@@ -84,6 +84,7 @@ pub(super) fn make(
         let message = "no joint above the hips is free for the extracted root motion; it stays on the hips".to_owned();
         warnings.push(("nowhere-to-extract", message));
     }
+    warnings.extend(FitWarning::of(&figures).iter().map(|warning| (warning.code(), warning.to_string())));
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip);
     let name = clip_file_name(&motion.source, source_clip, &motion.asset);
@@ -280,11 +281,11 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         joints => format!("{joints} joints resampled"),
     };
     format!(
-        "joints            {} mapped, {} of the body parts both have\n\
+        "joints            {} mapped, {} of the limbs, trunk and head that both have\n\
          keys              {} → {}: {kept}\n\
          hips              × {}\n\
          limb directions   mean error {}, max. {}\n\
-         facing            mean error {}, max. {}\n\
+         facing            mean error {}, max. {}; along the path {}\n\
          rotations         mean error {}, max. {}\n\
          largest turn      {} in 1/60 s\n\
          jerk              {}\n\
@@ -294,6 +295,8 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          joint penetration {}\n\
          self-penetration  {}\n\
          contact error     {}\n\
+         skin stretch      mean {}, max. {}{}\n\
+         idle limbs        {}\n\
          planted feet      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
@@ -304,6 +307,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.limb_direction_error_degrees_max, "°"),
         number(figures.facing_error_degrees_mean, "°"),
         number(figures.facing_error_degrees_max, "°"),
+        number(figures.facing_path_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_max, "°"),
         number(figures.largest_turn_degrees_per_frame, "°"),
@@ -315,6 +319,10 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.ground_penetration_metres_max, " m"),
         number(figures.self_penetration_share.map(|share| 100.0 * share), " %"),
         number(figures.contact_error_metres_mean, " m"),
+        number(figures.skin_stretch_mean, ""),
+        number(figures.skin_stretch_max, ""),
+        figures.skin_stretch_max_joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}")),
+        if figures.idle_chains.is_empty() { "none".to_owned() } else { figures.idle_chains.join(", ") },
         retargeted.planting.map_or("–".to_owned(), |planting| planting.to_string()),
     )
 }

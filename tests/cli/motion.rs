@@ -134,6 +134,11 @@ fn retarget_reports_the_documented_keys() {
         "jerk_metres_per_sec3_mean",
         "self_penetration_share",
         "contact_error_metres_mean",
+        "facing_path_error_degrees_mean",
+        "skin_stretch_max",
+        "skin_stretch_mean",
+        "skin_stretch_max_joint",
+        "idle_chains",
         "coverage",
     ] {
         assert!(report["figures"].get(key).is_some(), "{key}");

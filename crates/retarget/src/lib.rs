@@ -67,7 +67,7 @@ pub use map::{
     Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
     Unmapped, opposite_joints, propose, propose_recognized,
 };
-pub use measure::{Figures, FootTrack, StagePair, Verdict, Verdicts};
+pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize, words};
 pub use retargeting::{Body, Retargeting};

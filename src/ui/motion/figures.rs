@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use egui::{Align2, Color32, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use gaitway_character::anim::Clip;
-use gaitway_retarget::{Contacts, Figures, Planting, Verdict, Verdicts};
+use gaitway_retarget::{Contacts, Figures, FitWarning, Planting, Verdict, Verdicts};
 use gaitway_scene::state::active_clip;
 
 use super::{Contents, MotionTab, Pairing};
@@ -35,6 +35,8 @@ enum Line {
         text: String,
     },
     Note(String),
+    /// What is wrong, and where.
+    Warning(String),
 }
 
 pub(super) fn show(
@@ -73,6 +75,9 @@ pub(super) fn show(
             }
             Line::Figure { name, value, verdict, text } => row(ui, name, value, *verdict, text),
             Line::Note(note) => controls::hint(ui, note),
+            Line::Warning(warning) => {
+                ui.label(RichText::new(warning).color(style::palette(ui).warning));
+            }
         }
     }
 }
@@ -88,7 +93,9 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
         Contacts::Off => "Angle between a limb and its source: the visible error.",
         Contacts::Keep => "Angle between a limb and its source. Arms and legs turn away from theirs to keep contacts.",
     };
-    let mut lines = vec![group("LIMB DIRECTION ERROR", hint)];
+    let sentence = |warning: FitWarning| Line::Warning(text::sentence(&warning.to_string()));
+    let mut lines: Vec<Line> = FitWarning::of(figures).into_iter().map(sentence).collect();
+    lines.push(group("LIMB DIRECTION ERROR", hint));
     lines.extend(angles(
         figures.limb_direction_error_degrees_mean,
         verdicts.limb_direction_error_mean,
@@ -105,6 +112,7 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
         figures.facing_error_degrees_max,
         verdicts.facing_error_max,
     ));
+    lines.push(figure("Along the path", degrees(figures.facing_path_error_degrees_mean), verdicts.facing_path_error));
     let hint =
         "Difference from the source's rotations, each from its own rest pose, before feet and contacts are kept.";
     lines.push(group(capitals!(text::ROTATION_ERROR), hint));
@@ -128,8 +136,21 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
     ]);
     lines.extend(contact_lines(figures, verdicts));
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
-    lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));
-    lines.push(figure(text::COVERAGE, figures.coverage.map(text::percent), verdicts.coverage));
+    let times = |value: Option<f64>| value.map(|value| format!("× {value:.2}"));
+    lines.push(group("SKIN STRETCH", "Lengths of the mesh's edges against those as it was bound, where joints meet."));
+    lines.extend([
+        figure(text::MEAN, times(figures.skin_stretch_mean), verdicts.skin_stretch_mean),
+        figure("Largest", times(figures.skin_stretch_max), verdicts.skin_stretch_max),
+    ]);
+    let idle = match figures.idle_chains.as_slice() {
+        [] => "none".to_owned(),
+        chains => chains.join(", "),
+    };
+    lines.extend([
+        group("COVERAGE", "Mapped joints of limbs, trunk and head, as far as both files have them."),
+        figure(text::COVERAGE, figures.coverage.map(text::percent), verdicts.coverage),
+        figure("Idle limbs", figures.coverage.map(|_| idle), verdicts.idle_chains),
+    ]);
     lines
 }
 

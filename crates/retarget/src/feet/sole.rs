@@ -46,6 +46,14 @@ impl Sole {
         center.y + self.positions(pose).map(|point| (turn * (point - center)).y).fold(f64::INFINITY, f64::min)
     }
 
+    /// Returns where the sole is from its ankle, ahead in a foot: the mean of its points, which counts far ones more.
+    pub fn ahead(&self, pose: &WorldPose, ankle: JointIndex) -> DVec3 {
+        let offsets = || self.positions(pose).map(|point| point - pose.position(ankle));
+        let weight: f64 = offsets().map(DVec3::length_squared).sum();
+        let sum: DVec3 = offsets().map(|offset| offset * offset.length_squared()).sum();
+        if weight > 0.0 { sum / weight } else { DVec3::ZERO }
+    }
+
     /// The joints that the sole is attached to, repeatedly.
     pub fn joints(&self) -> impl Iterator<Item = JointIndex> {
         self.points.iter().map(|&(joint, _)| joint)

@@ -7,19 +7,20 @@ use glam::DQuat;
 use serde::Serialize;
 
 use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use super::moments::moments;
 use super::smoothness::smoothness;
 use crate::align::swing::compared_segments;
 use crate::budget::{MAX_TOUCH_STEPS, measured_steps};
 use crate::contacts::{Bodies, BodyMotion, SourceScene, TouchFigures};
 use crate::feet::Soles;
 use crate::keys::resample::union;
-use crate::map::{Pair, ResolvedMap};
+use crate::map::Pair;
 use crate::math::{angle_between, degrees_between};
 use crate::pose::{Local, PartialPose, Scratch, WorldPose};
 use crate::transfer::{Transfer, lowest_leg_joint, removed_travel};
 
 /// Quality figures; `None` for what cannot be measured.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Figures {
     /// Angle between the direction of a limb (or the torso) and its source's: the visible error. Measured from positions
     /// alone, so a wrong rest shows in it, unless it turns a limb about itself.
@@ -58,7 +59,20 @@ pub struct Figures {
     /// Mean distance of the contacts that the source's hands have with its body, and hands and knees with the ground, from where
     /// the target has them.
     pub contact_error_metres_mean: Option<f64>,
-    /// Share of the slots that both sides have whose joints are mapped.
+    /// Mean angle between which way the body faces along its path and how its source does, by where feet point, or knees where a
+    /// body has no feet; without regard to names and slots.
+    pub facing_path_error_degrees_mean: Option<f64>,
+    /// By how much the lengths of the skin's edges differ from those of the mesh as it was bound: the ratio for the edges around one
+    /// joint, where and when it is largest. 1 if none changes. Measured where ends move differently.
+    pub skin_stretch_max: Option<f64>,
+    /// The same on average, over all such edges and the whole clip.
+    pub skin_stretch_mean: Option<f64>,
+    /// The joint of `skin_stretch_max`.
+    pub skin_stretch_max_joint: Option<String>,
+    /// Limbs and other chains of joints that stay still although their counterparts in the motion move: parts of the body, or names
+    /// of joints they begin with. Chains are found by hierarchy and place.
+    pub idle_chains: Vec<String>,
+    /// Share of the joints in the chains that both bodies have which are mapped, on average over the chains.
     pub coverage: Option<f64>,
 }
 
@@ -114,20 +128,20 @@ impl Spread {
 pub fn measure(
     transfer: &Transfer,
     bodies: Option<&Bodies>,
-    [source_slots, target_slots]: [&Humanoid; 2],
+    slots: [&Humanoid; 2],
     measured: MeasuredClip,
 ) -> (Figures, Vec<FootTrack>) {
     let times = measured_times(transfer.tracks.clip);
     let removed = removed_travel(transfer, &times);
     let segments = mapped_segments(transfer, compared_segments());
     let facing_segments = mapped_segments(transfer, FACING.into_iter());
-    let ground_joints: Vec<JointIndex> = ON_GROUND.into_iter().filter_map(|slot| target_slots.joint(slot)).collect();
-    let ground = lowest_leg_joint(target_slots, &transfer.alignment.target.positions);
+    let ground_joints: Vec<JointIndex> = ON_GROUND.into_iter().filter_map(|slot| slots[1].joint(slot)).collect();
+    let ground = lowest_leg_joint(slots[1], &transfer.alignment.target.positions);
 
     let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
-    let mut feet = mapped_feet(transfer, soles.feet);
+    let mut feet = mapped_feet(transfer, soles.feet.clone());
     let pairs = &transfer.map.pairs;
     let mut source_pose = mapped_source(transfer);
     // The feet themselves are mapped; joints of their soles may not be.
@@ -159,6 +173,7 @@ pub fn measure(
     let sole_penetration = depths.reduce(f64::max);
     let smoothness = smoothness(transfer.target_skeleton, pairs, measured.clip);
     let (contacts, tracks) = foot_tracks(transfer, &times, feet);
+    let moments = moments(transfer, slots, measured.clip, soles);
     let figures = Figures {
         limb_direction_error_degrees_mean: direction.mean(),
         limb_direction_error_degrees_max: direction.max(),
@@ -175,7 +190,12 @@ pub fn measure(
         jerk_metres_per_sec3_mean: smoothness.jerk_mean,
         self_penetration_share: touches.self_penetration_share(),
         contact_error_metres_mean: touches.contact_error(),
-        coverage: coverage(transfer.map, source_slots, target_slots),
+        facing_path_error_degrees_mean: moments.facing_path_error_degrees,
+        skin_stretch_max: moments.worst_stretch.map(|(stretch, _)| stretch),
+        skin_stretch_mean: moments.mean_stretch,
+        skin_stretch_max_joint: moments.worst_stretch.map(|(_, joint)| transfer.target_skeleton.label(joint)),
+        idle_chains: moments.idle_chains,
+        coverage: moments.coverage,
     };
     (figures, tracks)
 }
@@ -195,21 +215,21 @@ fn mapped_source<'a>(transfer: &Transfer<'a>) -> PartialPose<'a> {
 }
 
 /// The measured joints of the target, in the common frame.
-struct PlayedClip<'a> {
+pub(super) struct PlayedClip<'a> {
     skeleton: &'a Skeleton,
     scratch: Scratch,
     pose: PartialPose<'a>,
 }
 
 impl<'a> PlayedClip<'a> {
-    fn new(transfer: &Transfer<'a>, joints: &[JointIndex]) -> Self {
+    pub fn new(transfer: &Transfer<'a>, joints: &[JointIndex]) -> Self {
         let skeleton = transfer.target_skeleton;
         let pose = PartialPose::new(skeleton, transfer.alignment.target.world_from_model, joints.iter().copied());
         Self { skeleton, scratch: Scratch::default(), pose }
     }
 
     /// Poses the joints as the player would play a clip.
-    fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
+    pub fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
         let sampled = self.scratch.sample(self.skeleton, clip, time_secs);
         self.pose.update(|joint| Local::from(&sampled.local(joint)))
     }
@@ -280,11 +300,4 @@ fn touches(transfer: &Transfer, bodies: Option<&Bodies>, clip: &Clip) -> TouchFi
         figures.add(bodies, &source.touches[at], on_ground, frames, source.target_from_source(at));
     }
     figures
-}
-
-fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {
-    let both: Vec<JointIndex> =
-        Slot::ALL.iter().filter_map(|&slot| source_slots.joint(slot).and(target_slots.joint(slot))).collect();
-    let mapped = both.iter().filter(|&&joint| map.source_of(joint).is_some()).count();
-    (!both.is_empty()).then(|| mapped as f64 / both.len() as f64)
 }

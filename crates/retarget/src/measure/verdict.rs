@@ -16,7 +16,7 @@ pub enum Verdict {
 
 /// The largest values that are good and acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Limits {
+pub(super) struct Limits {
     good: f64,
     acceptable: f64,
 }
@@ -45,11 +45,16 @@ const GROUND_PENETRATION: Limits = limits(0.02, 0.05);
 const CONTACT_ERROR: Limits = limits(0.02, 0.06);
 /// Share of the points on limbs.
 const SELF_PENETRATION: Limits = limits(0.01, 0.04);
-/// Share of the body parts that are not mapped.
-const UNMAPPED: Limits = limits(0.05, 0.2);
+/// Degrees.
+pub(super) const FACING_PATH: Limits = limits(20.0, 45.0);
+/// Ratios to the lengths as bound.
+pub(super) const SKIN_STRETCH_MAX: Limits = limits(2.5, 5.0);
+const SKIN_STRETCH_MEAN: Limits = limits(1.15, 1.3);
+/// Share of the chains' joints that are not mapped.
+const UNMAPPED: Limits = limits(0.1, 0.25);
 
 impl Limits {
-    fn verdict(self, value: f64) -> Verdict {
+    pub fn verdict(self, value: f64) -> Verdict {
         match value {
             _ if value <= self.good => Verdict::Good,
             _ if value <= self.acceptable => Verdict::Acceptable,
@@ -74,6 +79,10 @@ pub struct Verdicts {
     pub sole_penetration: Option<Verdict>,
     pub contact_error: Option<Verdict>,
     pub self_penetration: Option<Verdict>,
+    pub facing_path_error: Option<Verdict>,
+    pub skin_stretch_max: Option<Verdict>,
+    pub skin_stretch_mean: Option<Verdict>,
+    pub idle_chains: Option<Verdict>,
     pub coverage: Option<Verdict>,
 }
 
@@ -102,6 +111,13 @@ impl Verdicts {
             sole_penetration: judged(sizes(figures.sole_penetration_metres_max), SOLE_PENETRATION),
             contact_error: judged(sizes(figures.contact_error_metres_mean), CONTACT_ERROR),
             self_penetration: judged(figures.self_penetration_share, SELF_PENETRATION),
+            facing_path_error: judged(figures.facing_path_error_degrees_mean, FACING_PATH),
+            skin_stretch_max: judged(figures.skin_stretch_max, SKIN_STRETCH_MAX),
+            skin_stretch_mean: judged(figures.skin_stretch_mean, SKIN_STRETCH_MEAN),
+            idle_chains: figures.coverage.map(|_| match figures.idle_chains.as_slice() {
+                [] => Verdict::Good,
+                _ => Verdict::NeedsReview,
+            }),
             coverage: judged(figures.coverage.map(|coverage| 1.0 - coverage), UNMAPPED),
         }
     }
@@ -121,6 +137,10 @@ impl Verdicts {
             self.sole_penetration,
             self.contact_error,
             self.self_penetration,
+            self.facing_path_error,
+            self.skin_stretch_max,
+            self.skin_stretch_mean,
+            self.idle_chains,
             self.coverage,
         ];
         all.into_iter().flatten().max()

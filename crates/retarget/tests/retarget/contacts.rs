@@ -195,9 +195,9 @@ fn a_hand_stays_out_of_a_larger_belly_and_keeps_touching_it() {
     let model = with_boxes(&Rig::default(), 0.22);
     let (off, before) = retarget(&model, &motion, Contacts::Off);
     let (keep, after) = retarget(&model, &motion, Contacts::Keep);
-    let shares = [before, after].map(|figures| figures.self_penetration_share.unwrap());
+    let shares = [&before, &after].map(|figures| figures.self_penetration_share.unwrap());
     assert!(shares[0] > 0.02 && shares[1] < 0.4 * shares[0], "{shares:?}");
-    let errors = [before, after].map(|figures| figures.contact_error_metres_mean.unwrap());
+    let errors = [&before, &after].map(|figures| figures.contact_error_metres_mean.unwrap());
     assert!(errors[0] > 0.05 && errors[1] < 0.5 * errors[0], "{errors:?}");
     // Nothing else changes: not the trunk, nor the direction of a hand.
     for slot in [Slot::Hips, Slot::Spine, Slot::Chest, Slot::Head, Slot::LeftUpperLeg, Slot::LeftLowerLeg] {
@@ -218,7 +218,7 @@ fn a_leg_stays_out_of_the_one_that_stands() {
     let model = with_legs(0.075);
     let (off, before) = retarget(&model, &motion, Contacts::Off);
     let (keep, after) = retarget(&model, &motion, Contacts::Keep);
-    let shares = [before, after].map(|figures| figures.self_penetration_share.unwrap());
+    let shares = [&before, &after].map(|figures| figures.self_penetration_share.unwrap());
     assert!(shares[0] > 0.01 && shares[1] < 0.3 * shares[0], "{shares:?}");
     let feet =
         |time: f32, slot: Slot| [&off.clip, &keep.clip].map(|clip| model.world(clip, time)[model.joint(slot).get()]);
@@ -279,7 +279,7 @@ fn hands_rest_on_the_ground_whatever_the_proportions() {
             [Contacts::Off, Contacts::Keep].map(|contacts| retarget(&model, &motion, contacts));
         let heights = [&off.clip, &keep.clip].map(|clip| fingertips(&model, clip, 1.7) - source);
         assert!(heights[0].abs() > 0.04 && heights[1].abs() < 0.01, "{leg_length}: {heights:?}");
-        let errors = [before, after].map(|figures| figures.contact_error_metres_mean.unwrap());
+        let errors = [&before, &after].map(|figures| figures.contact_error_metres_mean.unwrap());
         assert!(errors[0] > 0.05 * size && errors[1] < 0.3 * errors[0], "{leg_length}: {errors:?}");
         // Nothing changes while the hands are up, nor the trunk and the legs at any time.
         for time in [0.0, 0.4, 3.1, 3.5] {
@@ -381,9 +381,9 @@ fn fat_hands_clap_without_going_through_each_other() {
         middle(left, 0.085).x - middle(right, -0.085).x - 2.0 * 0.05
     };
     assert!(gap(&off.clip) < -0.05 && gap(&keep.clip).abs() < 0.025, "{} {}", gap(&off.clip), gap(&keep.clip));
-    let errors = [before, after].map(|figures| figures.contact_error_metres_mean.unwrap());
+    let errors = [&before, &after].map(|figures| figures.contact_error_metres_mean.unwrap());
     assert!(errors[1] < 0.5 * errors[0], "{errors:?}");
-    let shares = [before, after].map(|figures| figures.self_penetration_share.unwrap());
+    let shares = [&before, &after].map(|figures| figures.self_penetration_share.unwrap());
     assert!(shares[1] < 0.6 * shares[0], "{shares:?}");
 }
 

@@ -16,7 +16,7 @@ fn metres(percent: f64) -> Option<f64> {
 }
 
 /// In the order of the document.
-const ROWS: [Row; 15] = [
+const ROWS: [Row; 18] = [
     (
         |value| Figures { limb_direction_error_degrees_mean: Some(value), ..Figures::default() },
         |verdicts| verdicts.limb_direction_error_mean,
@@ -90,6 +90,21 @@ const ROWS: [Row; 15] = [
         |value| Figures { self_penetration_share: Some(value / 100.0), ..Figures::default() },
         |verdicts| verdicts.self_penetration,
         Contacts::Keep,
+    ),
+    (
+        |value| Figures { facing_path_error_degrees_mean: Some(value), ..Figures::default() },
+        |verdicts| verdicts.facing_path_error,
+        Contacts::Off,
+    ),
+    (
+        |value| Figures { skin_stretch_max: Some(value), ..Figures::default() },
+        |verdicts| verdicts.skin_stretch_max,
+        Contacts::Off,
+    ),
+    (
+        |value| Figures { skin_stretch_mean: Some(value), ..Figures::default() },
+        |verdicts| verdicts.skin_stretch_mean,
+        Contacts::Off,
     ),
     (
         |value| Figures { coverage: Some(1.0 - value / 100.0), ..Figures::default() },

@@ -1,0 +1,74 @@
+//! Figures that need no more than a few moments of the clip, spread evenly.
+
+use gaitway_character::anim::{Clip, JointIndex, Pose, SampleCursor, model_from_joint};
+use gaitway_character::asset::Humanoid;
+use glam::Affine3A;
+
+use super::facing::{Heading, Legs, facing_path_error};
+use super::figures::PlayedClip;
+use super::limbs::{coverage, limbs};
+use super::stretch::SkinEdges;
+use crate::feet::Soles;
+use crate::pose::PartialPose;
+use crate::transfer::{Transfer, removed_travel};
+
+/// The rate, and the fewest and most moments of a clip.
+const PER_SEC: f32 = 4.0;
+const COUNT: [f32; 2] = [8.0, 48.0];
+
+/// Part of [`Figures`](super::Figures).
+#[derive(Debug, Default)]
+pub struct Moments {
+    pub worst_stretch: Option<(f64, JointIndex)>,
+    pub mean_stretch: Option<f64>,
+    pub idle_chains: Vec<String>,
+    pub coverage: Option<f64>,
+    pub facing_path_error_degrees: Option<f64>,
+}
+
+/// Plays the clip at some moments. `soles` are the target's.
+pub fn moments(transfer: &Transfer, slots: [&Humanoid; 2], clip: &Clip, soles: Soles) -> Moments {
+    let skeleton = transfer.target_skeleton;
+    let count = (clip.duration_secs() * PER_SEC).clamp(COUNT[0], COUNT[1]) as usize;
+    let times: Vec<f32> = (0..=count).map(|at| clip.duration_secs() * at as f32 / count as f32).collect();
+    let mut model_from_joints = Vec::new();
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut model_from_joints);
+    let mut skin = SkinEdges::new(transfer.target, &model_from_joints);
+    let mut limbs = limbs(transfer, slots);
+
+    let removed = removed_travel(transfer, &times);
+    let [source_legs, target_legs] = [Legs::of_source(transfer), Legs::of_target(transfer, soles)];
+    let mut headings = Vec::new();
+    let mut source_pose =
+        PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, source_legs.joints());
+    let mut played = PlayedClip::new(transfer, &target_legs.joints().collect::<Vec<_>>());
+
+    let (mut pose, mut cursor) = (Pose::default(), SampleCursor::default());
+    for (index, &time) in times.iter().enumerate() {
+        pose.copy_from(skeleton.rest());
+        clip.sample(skeleton, time, &mut cursor, &mut pose);
+        model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut model_from_joints);
+        skin.add(&model_from_joints);
+        for limb in &mut limbs {
+            let mut source = transfer.tracks.locals_at(time);
+            limb.add(|joint| pose.local(joint).rotation.as_dquat(), |joint| source(joint).rotation);
+        }
+        if let Some(hips) = transfer.hips_pair() {
+            let source = source_pose.update(transfer.tracks.locals_at(time));
+            let target = played.pose(clip, time);
+            let turn_back = removed.turn(time).conjugate();
+            let restored = removed.restored(transfer, target, hips.target, index, turn_back);
+            headings.push([
+                Heading::new(&source_legs, source, source.position(hips.source)),
+                Heading::new(&target_legs, target, restored).turned(turn_back),
+            ]);
+        }
+    }
+    Moments {
+        worst_stretch: skin.worst(),
+        mean_stretch: skin.mean(),
+        idle_chains: limbs.iter().filter(|limb| limb.is_idle()).map(|limb| limb.name.clone()).collect(),
+        coverage: coverage(&limbs),
+        facing_path_error_degrees: facing_path_error([&source_legs, &target_legs], &headings),
+    }
+}
