@@ -7,7 +7,7 @@ use gaitway_character::asset::Asset;
 use gaitway_formats::write_model;
 use gaitway_retarget::{
     ChangedClip, ClipOverLayers, ClipRef, Figures, FitWarning, JointMap, MapError, ResolvedMap, Retargeted,
-    Retargeting, Unmapped, layer_clips,
+    Retargeting, Unmapped, has_expressions_alone, layer_clips,
 };
 use gaitway_scene::editor::{ClipFormat, ModelFiles, OpenedMap, write_clip};
 use gaitway_scene::library::{Model, Motion, Take, clip_file_name, map_for, warning_documents, with_expressions};
@@ -86,7 +86,7 @@ pub(super) fn make(
     }
     warnings.extend(FitWarning::of(&figures).iter().map(|warning| (warning.code(), warning.to_string())));
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
-    let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip);
+    let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip)?;
     let name = clip_file_name(&motion.source, source_clip, &motion.asset);
     let clip = clip.with_name(name.unwrap_or_default());
     let layers = layer_clips(&model.asset, &resolved);
@@ -119,7 +119,7 @@ fn resolve_map(
     };
     let looked_up = given.map(|opened| opened.map.look_up_joints(&model.asset, &motion.asset));
     let (mut map, proposal) = map_for(model, motion, looked_up.transpose().map_err(in_map)?.as_ref());
-    let is_empty = proposal.is_some_and(|proposal| proposal.pairs.is_empty());
+    let is_empty = proposal.is_some_and(|proposal| proposal.pairs.is_empty()) && !has_expressions_alone(&motion.asset);
     if is_empty && !model.has_skeleton() {
         return Err(Failure::new(format!("{} {}", model.source, Model::NO_SKELETON)).in_file(&motion.source));
     }

@@ -9,8 +9,8 @@ use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
 use super::pose::{Local, ancestry, is_within, node_locals};
 use super::transfer::{
-    CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, extraction_joint, hips_channels,
-    rotation_laws,
+    CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, expression_channels, extraction_joint,
+    hips_channels, rotation_laws,
 };
 
 /// Why a clip cannot be retargeted.
@@ -37,6 +37,9 @@ pub enum RetargetError {
         "the joints lie too deep below each other: all mapped ones together may have at most {MAX_ANCESTORS} ancestors"
     )]
     TooDeep,
+    /// The motion animates expressions alone, and the model has none of them.
+    #[error("the motion animates expressions alone; the model has none of them, and no morph targets of their names")]
+    NoExpressions,
     /// A retargeted channel is invalid.
     #[error("joint “{joint}” cannot be written: {problem}")]
     Channel {
@@ -156,6 +159,10 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         detached_channels(transfer, &ends, &so_far.clip)
     };
     let detached: Vec<NewChannel> = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect();
+    let expressions = expression_channels(transfer).into_iter().filter(|new| {
+        !copied.iter().any(|channel| channel.joint == new.joint && channel.keys.property() == Property::MorphWeights)
+    });
+    channels.extend(expressions);
     channels.extend(copied);
     channels.extend(detached);
     build(transfer, channels)

@@ -12,7 +12,7 @@ use super::bake::{RetargetError, Retargeted, bake};
 use super::budget::are_too_deep;
 use super::contacts::Bodies;
 use super::keys::tracks::SourceTracks;
-use super::map::ResolvedMap;
+use super::map::{ResolvedMap, has_expressions_alone};
 use super::measure::{Figures, FootTrack, MeasuredClip, StagePair, measure, model_from_source, stage_pairs};
 use super::pose::node_locals;
 use super::transfer::{Hips, HipsInput, Transfer, match_hips};
@@ -52,7 +52,7 @@ impl<'a> Retargeting<'a> {
             None if clips.is_empty() => return Err(RetargetError::NoClips),
             None => return Err(RetargetError::NoSuchClip { index: clip, count: clips.len() }),
         };
-        if map.pairs.is_empty() {
+        if map.pairs.is_empty() && !has_expressions_alone(source.asset) {
             return Err(RetargetError::NoPairs);
         }
         if are_too_deep(&model.asset.skeleton, &source.asset.skeleton, &map.pairs) {

@@ -6,6 +6,7 @@
 
 mod convert;
 mod error;
+mod expressions;
 mod file;
 mod joint_map;
 mod names;
@@ -18,6 +19,7 @@ mod shared_names;
 mod unmapped;
 
 pub use error::MapError;
+pub use expressions::has_expressions_alone;
 pub use file::{JointMapFile, SourceRef};
 pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
 pub use opposite::{opposite_joints, pairs_by_side};

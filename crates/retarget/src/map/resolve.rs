@@ -7,6 +7,7 @@ use gaitway_character::asset::Asset;
 use glam::{DQuat, Quat};
 
 use super::error::MapError;
+use super::expressions::has_expressions_alone;
 use super::joint_map::{JointMap, MutedChannel, MutedProperty};
 use super::resolved::{Layer, Pair, ResolvedMap};
 use super::unmapped::{ClipRef, Unmapped};
@@ -15,11 +16,11 @@ impl JointMap {
     /// Looks up every joint and clip of the map: targets and clips in `model`, sources in `motion`.
     ///
     /// # Errors
-    /// If a number, clip or option is out of range, or no joint has a source.
+    /// If a number, clip or option is out of range, or no joint has a source although the motion moves some.
     pub fn resolve(&self, model: &Asset, motion: &Asset) -> Result<ResolvedMap, MapError> {
         check_crossfade(self.crossfade_secs)?;
         let joints = resolve_joints(self, model, motion)?;
-        if joints.pairs.is_empty() {
+        if joints.pairs.is_empty() && !has_expressions_alone(motion) {
             return Err(MapError::NothingMapped);
         }
         let default_layer = resolve_layer(model, &self.unmapped, "unmapped")?;

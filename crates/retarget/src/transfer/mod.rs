@@ -3,6 +3,7 @@
 mod averaged;
 mod copy;
 mod detached;
+mod expressions;
 mod heading;
 mod hips;
 mod layers;
@@ -15,6 +16,7 @@ mod yaw;
 
 pub use copy::{CopyPolicy, copied_channels};
 pub use detached::{detached_channels, detached_ends};
+pub use expressions::expression_channels;
 pub use heading::rotation_laws;
 pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -11,7 +11,7 @@ use gaitway_character::asset::Asset;
 use gaitway_formats::file_stem;
 use gaitway_retarget::{
     Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RestChoice,
-    RetargetError, Retargeting, StagePair, layer_clips, propose_recognized,
+    RetargetError, Retargeting, StagePair, has_expressions_alone, layer_clips, propose_recognized,
 };
 use glam::Affine3A;
 
@@ -117,7 +117,10 @@ pub fn map_for(model: &Model, motion: &Motion, map: Option<&JointMap>) -> (Joint
 }
 
 /// Adds the expressions that a clip of a motion animates and the model has, and the gaze, to the retargeted clip.
-pub fn with_expressions(clip: Clip, model: &Asset, motion: &Asset, source_clip: usize) -> Clip {
+///
+/// # Errors
+/// If the motion animates nothing else, and nothing that the model has.
+pub fn with_expressions(clip: Clip, model: &Asset, motion: &Asset, source_clip: usize) -> Result<Clip, RetargetError> {
     let target_of_model = |target| match target {
         PropertyTarget::Expression(index) => {
             let name = &motion.avatar.expressions.get(index)?.name;
@@ -126,10 +129,12 @@ pub fn with_expressions(clip: Clip, model: &Asset, motion: &Asset, source_clip: 
         PropertyTarget::LookAt => model.avatar.look_at.map(|_| target),
         _ => None,
     };
-    match motion.clips.get(source_clip) {
+    let clip = match motion.clips.get(source_clip) {
         Some(source) => clip.with_properties_of(source, &target_of_model),
         None => clip,
-    }
+    };
+    let is_still = clip.channels().is_empty() && clip.properties().is_empty();
+    if is_still && has_expressions_alone(motion) { Err(RetargetError::NoExpressions) } else { Ok(clip) }
 }
 
 /// Retargets all clips of a motion to a model.
@@ -148,7 +153,7 @@ pub(super) fn borrow(
         let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
-        let clip = with_expressions(baked.clip, model.asset, motion.asset, source_clip);
+        let clip = with_expressions(baked.clip, model.asset, motion.asset, source_clip).map_err(error)?;
         Ok(Arc::new(BorrowedClip {
             clip,
             layers: layers.clone(),

@@ -19,7 +19,7 @@ use gaitway_character::anim::Clip;
 use gaitway_character::asset::{Panorama, SharedBytes};
 use gaitway_character::mesh::Bounds;
 use gaitway_formats::FileSet;
-use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice};
+use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice, has_expressions_alone};
 pub use image::{ImageData, Images};
 pub use inspect::{inspect, warning_documents};
 pub use lints::joint_of_place;
@@ -70,7 +70,9 @@ fn borrow_motion(
 ) -> Result<Vec<Arc<BorrowedClip>>, BorrowError> {
     let (map, proposal) = map_for(model, motion, map);
     let resolved = match proposal {
-        Some(proposal) if proposal.pairs.is_empty() => Err(MapError::NothingInCommon),
+        Some(proposal) if proposal.pairs.is_empty() && !has_expressions_alone(&motion.asset) => {
+            Err(MapError::NothingInCommon)
+        }
         _ => map.resolve(&model.asset, &motion.asset),
     };
     let resolved = resolved.map_err(|problem| BorrowError::Map { motion: motion.source.clone(), problem })?;

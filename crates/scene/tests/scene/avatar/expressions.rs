@@ -6,8 +6,8 @@ use std::sync::Arc;
 use gaitway_character::anim::{PropertyTarget, TextureSlot};
 use gaitway_character::asset::Asset;
 use gaitway_character::avatar::{Expression, Override, resolve_weights};
-use gaitway_scene::library::{Motion, inspect};
-use gaitway_scene::state::{Command, History, ViewerState, apply};
+use gaitway_scene::library::{ClipId, Library, Motion, inspect};
+use gaitway_scene::state::{ClipChoice, Command, History, ViewerState, apply};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -216,6 +216,48 @@ fn a_vrma_animates_expressions_of_the_same_name() {
     assert_eq!(frame(&library, &state).expressions(), [0.0, 0.75]);
     let document = inspect(model(&library), &[]);
     assert_eq!(document["borrowed_clips"][0]["properties"], json!(["/extensions/VRMC_vrm/expressions/preset/happy"]));
+}
+
+/// A .vrma may animate expressions and no bone: of an avatar, or morph targets of their names.
+#[test]
+fn a_vrma_of_expressions_alone_needs_no_body() {
+    let mut motion = Build::new();
+    motion.json["nodes"] = json!([{ "name": "happy" }, { "name": "wink" }]);
+    let expressions = json!({ "preset": { "happy": { "node": 0 } }, "custom": { "wink": { "node": 1 } } });
+    motion.json["extensionsUsed"] = json!(["VRMC_vrm_animation"]);
+    motion.json["extensions"] = json!({ "VRMC_vrm_animation": { "specVersion": "1.0", "expressions": expressions } });
+    let times = motion.accessor(F32, "SCALAR", 2, &floats(&[0.0, 1.0]));
+    let weights = motion.accessor(F32, "VEC3", 2, &floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]));
+    let channel = |node: usize| json!({ "sampler": 0, "target": { "node": node, "path": "translation" } });
+    motion.json["animations"] = json!([{
+        "name": "smile",
+        "channels": [channel(0), channel(1)], "samplers": [{ "input": times, "output": weights }],
+    }]);
+    let motion = Arc::new(motion.loaded());
+    let playing = |build: Build| {
+        let mut library = library(build);
+        library.set_motions(vec![Motion::new("smile.vrma".to_owned(), motion.clone())]);
+        library.borrow_each(vec![None]);
+        library
+    };
+    let at_half = |library: &Library| {
+        let borrowed = ClipId::Borrowed(library.motions()[0].id().clone(), 0);
+        let mut state = ViewerState::default();
+        apply(&mut state, library, Command::SetClip(ClipChoice::Clip(borrowed)));
+        apply(&mut state, library, Command::Seek(0.5));
+        frame(library, &state)
+    };
+    let avatar = playing(face_vrm_1());
+    assert_eq!(at_half(&avatar).expressions(), [0.5, 0.5]);
+
+    // Without expressions of its own, a face smiles by its morph targets.
+    let mut plain = face("KHR_materials_unlit", json!({}));
+    plain.json["meshes"][0]["extras"] = json!({ "targetNames": ["other", "Happy"] });
+    let plain = playing(plain);
+    assert_eq!(at_half(&plain).pose().morph_weights, [0.0, 0.5]);
+    // Nothing of it moves this one.
+    let none = playing(face("KHR_materials_unlit", json!({})));
+    assert!(none.borrow_errors()[0].to_string().contains("none of them"), "{:?}", none.borrow_errors());
 }
 
 #[test]
