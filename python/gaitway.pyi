@@ -87,6 +87,7 @@ class RetargetOptions(TypedDict, total=False):
     scales: _Keep | None
     rest_model: _Rest | None
     rest_motion: _Rest | None
+    up: Literal["auto", "y", "z"] | None
     unmapped: str | int | None
     name: str | None
     mirror: bool

@@ -36,7 +36,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use gaitway_character::anim::{ClipQuery, LoopMode, find_clip};
 use gaitway_character::asset::Warnings;
 use gaitway_character::mesh::SkinningMode;
-use gaitway_retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart};
+use gaitway_retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart, UpChoice};
 use gaitway_scene::editor::{ClipFormat, Editor};
 use gaitway_scene::library::Model;
 use gaitway_scene::state::{ClipChoice, Command, unknown_clip};
@@ -232,6 +232,9 @@ struct RetargetOptions {
     /// The rest pose of the motion.
     #[arg(long, value_enum)]
     rest_motion: Option<RestArgument>,
+    /// Which axis is up in the motion's data [default: as the map says; found in the motion without one].
+    #[arg(long, value_enum)]
+    up: Option<UpArgument>,
     /// What unmapped joints do: `rest`, or play the model's own clip of this name or index.
     #[arg(long, value_name = "rest|CLIP", allow_negative_numbers = true)]
     unmapped: Option<String>,
@@ -264,6 +267,7 @@ arguments_of! {
     KeepArgument of Keep { Auto, Keep, Drop }
     FormatArgument of ClipFormat { Glb, Bvh, Vrma }
     RestArgument of RestChoice { Auto, Node, Bind, FirstFrame }
+    UpArgument of UpChoice { Auto, Y, Z }
 }
 
 #[derive(Debug, Args)]

@@ -45,6 +45,16 @@ pub(super) fn doubtful_rest(rest: FoundRest) -> Option<String> {
     })
 }
 
+/// Code of the warning worded by [`doubtful_up`].
+pub(super) const DOUBTFUL_UP: &str = "doubtful-up";
+
+/// A warning for a body that may lie or stand, with what to do about it.
+pub(super) fn doubtful_up(rest: FoundRest) -> Option<String> {
+    let message = "the body lies throughout the clip, but would stand on the ground if another axis were up; if it should, try \
+                   --up z or --up y";
+    rest.is_up_doubtful.then(|| message.to_owned())
+}
+
 /// Where a rest comes from, for scripts.
 pub(super) fn rest_document(rest: FoundRest) -> Value {
     let (origin, time_secs) = match rest.origin {

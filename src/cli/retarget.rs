@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::edit::baked;
 use super::failure::{Failure, Outcome};
-use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
+use super::motion::{DOUBTFUL_REST, DOUBTFUL_UP, doubtful_rest, doubtful_up, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_error, print_json, print_lines, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
 use crate::files::{Disk, Opened};
@@ -86,6 +86,7 @@ pub(super) fn make(
     }
     warnings.extend(FitWarning::of(&figures).iter().map(|warning| (warning.code(), warning.to_string())));
     warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
+    warnings.extend(doubtful_up(pair.motion_rest()).map(|message| (DOUBTFUL_UP, message)));
     let clip = with_expressions(retargeted.clip.clone(), &model.asset, &motion.asset, source_clip)?;
     let name = clip_file_name(&motion.source, source_clip, &motion.asset);
     let clip = clip.with_name(name.unwrap_or_default());
@@ -195,6 +196,7 @@ fn apply_options(map: &mut JointMap, options: &RetargetOptions) {
     map.scales = options.scales.map_or(map.scales, Into::into);
     map.rest.model = options.rest_model.map_or(map.rest.model, Into::into);
     map.rest.motion = options.rest_motion.map_or(map.rest.motion, Into::into);
+    map.rest.up = options.up.map_or(map.rest.up, Into::into);
     if let Some(unmapped) = &options.unmapped {
         map.unmapped = match (unmapped.as_str(), unmapped.parse()) {
             ("rest", _) => Unmapped::Rest,

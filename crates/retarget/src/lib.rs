@@ -65,7 +65,7 @@ pub use feet::Planting;
 pub use map::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
     Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
-    Unmapped, has_expressions_alone, opposite_joints, propose, propose_recognized,
+    Unmapped, UpChoice, has_expressions_alone, opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};

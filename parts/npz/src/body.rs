@@ -63,6 +63,11 @@ const FINGERS: [(&str, [f64; 3], [f64; 3]); 5] = [
 /// The numbers of joints that bodies have: SMPL without and with hands, SMPL+H, SMPL-X.
 pub const JOINT_COUNTS: [usize; 4] = [22, 24, 52, 55];
 
+/// The parents of the joints that all bodies have and their positions relative to these.
+pub fn bones() -> impl Iterator<Item = (usize, DVec3)> {
+    BODY.iter().map(|&Joint(_, parent, offset)| (parent, offset.into()))
+}
+
 /// Writes the nodes; a joint's index is its node's. `count` is one of [`JOINT_COUNTS`].
 pub fn write(count: usize, glb: &mut Glb) {
     let named = |Joint(name, parent, offset): &Joint| ((*name).to_owned(), *parent, *offset);

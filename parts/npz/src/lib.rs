@@ -38,7 +38,8 @@
 //! Right-handed, metres. At rest the person stands in a T-pose, faces +Z and has +Y up, with the origin near the breastbone: the
 //! pelvis lies at `body::PELVIS`, and `trans` moves it from there. AMASS has Z up in the world, so that its pelvis is
 //! rotated by 90° while a person stands; other data has Y up. The one that the pelvis's own Y axis is closer to on average
-//! is taken as up.
+//! is taken as up, unless the body would be in the ground then and isn't with the other one: `trans` shows whether a person
+//! stands or lies.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![forbid(unsafe_code)]
@@ -64,6 +65,6 @@ pub fn convert(bytes: &[u8]) -> Answer {
     let motion = motion::Motion::read(&archive, &mut warnings)?;
     let mut glb = Glb::new(".npz");
     body::write(motion.joints(), &mut glb);
-    motion.write(&mut glb)?;
+    motion.write(&mut glb, &mut warnings)?;
     Ok(Output { bytes: glb.write()?, warnings: warnings.into_sentences() })
 }

@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::archive::Archive;
 use crate::array::Array;
-use crate::body::{JOINT_COUNTS, PELVIS};
+use crate::body::{JOINT_COUNTS, PELVIS, bones};
 
 /// Assumed where a file states no rate: that of most video, and of tools that fit SMPL bodies to it.
 const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
@@ -26,6 +26,15 @@ enum Kind {
     /// Rows of a matrix.
     Matrix = 9,
 }
+
+/// Moments at which the body's height is looked up.
+const MAX_LOOKS: usize = 64;
+
+/// A body that is deeper in the ground than this, in metres, isn't upright along that axis.
+const MAX_DEPTH: f64 = 0.35;
+
+/// The least difference between the two axes, in the mean direction of the pelvis, that shows which one is up.
+const MIN_LEAN: f64 = 0.2;
 
 /// Rotations of some of the joints: frames × joints.
 struct Group {
@@ -144,8 +153,9 @@ impl Motion {
     }
 
     /// Writes the clip. Joints that never turn have no keys.
-    pub fn write(&self, glb: &mut Glb) -> Result<(), String> {
-        let y_up = if self.is_z_up() { DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
+    pub fn write(&self, glb: &mut Glb, warnings: &mut Warnings) -> Result<(), String> {
+        let y_up =
+            if self.is_z_up(warnings) { DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
         let times: Vec<f32> = (0..self.frames).map(|frame| (frame as f64 / self.frames_per_sec) as f32).collect();
         let mut clip = Animation::default();
         let mut joint = 0;
@@ -168,10 +178,46 @@ impl Motion {
         Ok(())
     }
 
-    /// Returns whether the pelvis's own Y axis is closer to Z than to Y on average.
-    fn is_z_up(&self) -> bool {
+    /// Returns whether Z is up: the pelvis's own Y axis is closer to Z than to Y on average, unless the body would then be in the
+    /// ground, and isn't with the other axis: a person may lie.
+    fn is_z_up(&self, warnings: &mut Warnings) -> bool {
         let up: DVec3 = (0..self.frames).map(|frame| rotation(&self.groups[0], frame, 0) * DVec3::Y).sum();
-        up.z > up.y
+        let is_z = up.z > up.y;
+        let Some(trans) = &self.trans else { return is_z };
+        let lowest = self.lowest(trans);
+        let [own, other] = if is_z { [lowest.z, lowest.y] } else { [lowest.y, lowest.z] };
+        let is_in_the_ground = own < -MAX_DEPTH;
+        let is_other = is_in_the_ground && other.abs() < MAX_DEPTH;
+        let is_z = is_z != is_other;
+        if is_in_the_ground && !is_other || (up.z - up.y).abs() < MIN_LEAN * self.frames as f64 {
+            let axis = if is_z { "Z" } else { "Y" };
+            warnings.add(format!(
+                "The file doesn't say which axis is up, and the body doesn't show it clearly: {axis} is assumed."
+            ));
+        }
+        is_z
+    }
+
+    /// The least coordinates of any joint at some moments. The ground is at 0 in nearly all files.
+    fn lowest(&self, trans: &[DVec3]) -> DVec3 {
+        let mut lowest = DVec3::INFINITY;
+        for frame in (0..self.frames).step_by(self.frames.div_ceil(MAX_LOOKS).max(1)) {
+            let rotations: Vec<DQuat> = self
+                .groups
+                .iter()
+                .flat_map(|group| (0..group.joints).map(move |place| rotation(group, frame, place)))
+                .collect();
+            let mut placed: Vec<(DQuat, DVec3)> = Vec::new();
+            for (joint, (parent, offset)) in bones().enumerate() {
+                let (turn, at) = match placed.get(parent) {
+                    Some(&(turn, at)) => (turn, at + turn * offset),
+                    None => (DQuat::IDENTITY, trans[frame] + PELVIS),
+                };
+                lowest = lowest.min(at);
+                placed.push((turn * rotations[joint], at));
+            }
+        }
+        lowest
     }
 }
 

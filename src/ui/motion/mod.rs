@@ -20,7 +20,7 @@ use std::sync::{Arc, LazyLock};
 use egui::{RichText, Ui};
 use gaitway_character::anim::{JointIndex, find_clip};
 use gaitway_character::asset::Asset;
-use gaitway_retarget::{ClipRef, Contradiction, JointMap, Proposal, Reason, Unmapped};
+use gaitway_retarget::{ClipRef, Contradiction, FoundRest, JointMap, Proposal, Reason, Unmapped};
 use gaitway_scene::library::{ClipId, Model, ModelClip, ModelId, Motion, MotionId};
 use gaitway_scene::state::{ClipChoice, Command, MapEdit, ViewerState, title};
 
@@ -453,9 +453,13 @@ fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
 fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
     const MAX_REMARKS: usize = 4;
     let mut remarks = Vec::new();
-    let mut borrowed = pairing.model.clips().borrowed().filter(|(_, borrowed)| borrowed.motion == *pairing.motion.id());
-    if borrowed.any(|(_, borrowed)| borrowed.motion_rest.is_doubtful()) {
+    let borrowed = pairing.model.clips().borrowed().filter(|(_, borrowed)| borrowed.motion == *pairing.motion.id());
+    let rests: Vec<FoundRest> = borrowed.map(|(_, borrowed)| borrowed.motion_rest).collect();
+    if rests.iter().any(FoundRest::is_doubtful) {
         remarks.push(text::DOUBTFUL_REST.to_owned());
+    }
+    if rests.iter().any(|rest| rest.is_up_doubtful) {
+        remarks.push(text::DOUBTFUL_UP.to_owned());
     }
     let Some(proposal) = pairing.proposal else { return remarks };
     let is_swapped = follows_names(pairing, proposal);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use egui::{RichText, Ui};
 use gaitway_retarget::{
     ClipRef, Contacts, Feet, JointMap, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
+    UpChoice,
 };
 use gaitway_scene::editor::{ClipFormat, Export, derived_clip};
 use gaitway_scene::state::{Command, Inspect, MapEdit, Show, active_clip};
@@ -19,6 +20,8 @@ const PARTS: [(RootPart, &str); 3] =
 const ORIGINS: [(PathOrigin, &str); 2] = [(PathOrigin::Feet, text::FEET), (PathOrigin::Rest, text::REST)];
 
 const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, text::AUTOMATIC), (Keep::Keep, text::KEEP), (Keep::Drop, text::DROP)];
+
+const UPS: [(UpChoice, &str); 3] = [(UpChoice::Auto, text::AUTOMATIC), (UpChoice::Y, "Y"), (UpChoice::Z, "Z")];
 
 pub(super) fn show(
     ui: &mut Ui,
@@ -66,6 +69,11 @@ pub(super) fn show(
         out.commands.push(Command::SetInspect(Inspect { rests, split: inspect.split && !rests, ..inspect }));
     }
     controls::hint(ui, "The clip from each rest pose of the motion, side by side.");
+
+    controls::section(ui, capitals!(text::UP_OF_MOTION));
+    if let Some(up) = controls::segmented_about(ui, text::UP_OF_MOTION, Some(rest.up), &UPS) {
+        out.commands.push(edit(MapEdit::Rest(RestChoices { up, ..rest })));
+    }
 
     controls::section(ui, capitals!(text::TRANSLATIONS));
     if let Some(translations) = controls::segmented_about(ui, text::TRANSLATIONS, Some(map.translations), &KEEPS) {

@@ -152,6 +152,9 @@ pub const DONE_PICKING: &str = "Done";
 /// Shown if the motion's rest pose may not be one.
 pub const DOUBTFUL_REST: &str = "The motion's rest pose looks like a frame of the animation. If feet, hands or hips are \
     rotated, compare the rest poses in Options and choose another.";
+/// Warning about a body that may lie or stand.
+pub const DOUBTFUL_UP: &str = "The body lies throughout the clip, but would stand on the ground if another axis were up. If it \
+    should, choose the up axis of the motion among the options.";
 /// Button that returns to the proposed map.
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.
@@ -247,6 +250,8 @@ pub const REST_POSE_ALIGNMENT: &str = "Rest-pose alignment";
 pub const REST_OF_MODEL: &str = "Rest pose of the model";
 /// Accessible name of the choice of the motion's rest pose.
 pub const REST_OF_MOTION: &str = "Rest pose of the motion";
+/// Choice of the axis that is up in the motion's data.
+pub const UP_OF_MOTION: &str = "Up axis of the motion";
 /// Choice of what happens to translations of joints other than the hips.
 pub const TRANSLATIONS: &str = "Joint translations";
 /// Choice of what happens to scales of all mapped joints, the hips included.

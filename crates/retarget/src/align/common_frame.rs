@@ -38,6 +38,12 @@ pub fn common_from_model(rest: &WorldPose, slots: &Humanoid) -> Option<DQuat> {
 
 /// Turns the coordinate axis nearest to a direction onto +Y.
 fn nearest_axis_to_y(up: DVec3) -> DQuat {
+    let nearest = nearest_axis(up);
+    if nearest == DVec3::Y { DQuat::IDENTITY } else { DQuat::from_rotation_arc(nearest, DVec3::Y) }
+}
+
+/// The coordinate axis nearest to a direction, of two equally near ones the first as here: up is usually +Y, else +Z.
+pub fn nearest_axis(up: DVec3) -> DVec3 {
     let axes = [DVec3::Y, DVec3::Z, DVec3::X, -DVec3::Y, -DVec3::Z, -DVec3::X];
     let mut nearest = DVec3::Y;
     for axis in axes {
@@ -45,5 +51,5 @@ fn nearest_axis_to_y(up: DVec3) -> DQuat {
             nearest = axis;
         }
     }
-    if nearest == DVec3::Y { DQuat::IDENTITY } else { DQuat::from_rotation_arc(nearest, DVec3::Y) }
+    nearest
 }

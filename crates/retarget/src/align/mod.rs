@@ -6,6 +6,7 @@ pub mod rest;
 mod same_rig;
 mod stance;
 pub mod swing;
+mod up;
 
 use std::collections::BTreeMap;
 

@@ -7,6 +7,7 @@ use glam::DQuat;
 
 use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
 use super::stance::{Stance, Standing, best_standing};
+use super::up::find_up;
 use crate::map::{ResolvedMap, RestChoice};
 use crate::pose::{Local, Scratch, WorldPose, clip_locals, node_locals};
 
@@ -32,6 +33,8 @@ pub struct FoundRest {
     pub origin: RestOrigin,
     /// 0 (a mid-motion pose) to 1 (the map says so, the rig is the same, or the body is upright and symmetric).
     pub confidence: f64,
+    /// Whether the body lies throughout the clip, and would stand on the ground if another axis were up.
+    pub is_up_doubtful: bool,
 }
 
 impl FoundRest {
@@ -69,9 +72,20 @@ pub struct RestInput<'a> {
     pub map: &'a ResolvedMap,
 }
 
-/// Returns the source's rest pose. `Auto` uses the model's if the rig is the same, and a pose of the clip if the body
-/// does not stand in its own.
+/// Returns the source's rest pose, standing as its clip stands.
 pub fn source_rest(input: RestInput) -> SourceRest {
+    let RestInput { source, source_slots, clip, map, .. } = input;
+    let mut rest = chosen_rest(input);
+    let up = find_up(&source.skeleton, source_slots, clip, &rest.locals, map.rest.up);
+    up.apply(&source.skeleton, &mut rest.locals);
+    rest.target_from_source = rest.target_from_source.map(|turn| turn * up.turn.conjugate());
+    rest.found.is_up_doubtful = up.is_doubtful;
+    rest
+}
+
+/// Returns the source's rest pose, whichever way is up in it. `Auto` uses the model's if the rig is the same, and a pose of the clip
+/// if the body does not stand in its own.
+fn chosen_rest(input: RestInput) -> SourceRest {
     let RestInput { source, source_slots: slots, clip, map, .. } = input;
     let skeleton = &source.skeleton;
     let choice = map.rest.motion;
@@ -81,7 +95,7 @@ pub fn source_rest(input: RestInput) -> SourceRest {
         unmoved: node_locals(skeleton),
         target_from_source: None,
         is_in_place: true,
-        found: FoundRest { origin, confidence },
+        found: FoundRest { origin, confidence, is_up_doubtful: false },
     };
     if choice != RestChoice::Auto {
         return rest(locals, RestOrigin::Map, 1.0);

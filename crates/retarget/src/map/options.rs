@@ -10,6 +10,32 @@ pub struct RestChoices {
     pub model: RestChoice,
     /// The motion's.
     pub motion: RestChoice,
+    /// Which way is up in the motion.
+    #[serde(skip_serializing_if = "UpChoice::is_auto")]
+    pub up: UpChoice,
+}
+
+/// Which axis is up in a motion's data.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpChoice {
+    /// The one that the motion's rest stands along; another one if the clip stands along that, with its feet on the ground.
+    #[default]
+    Auto,
+    /// Y, as in glTF.
+    Y,
+    /// Z, as in AMASS and Blender.
+    Z,
+}
+
+impl UpChoice {
+    /// All choices in display order.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::Y, Self::Z];
+
+    /// Whether maps may leave the option out.
+    pub fn is_auto(&self) -> bool {
+        *self == Self::Auto
+    }
 }
 
 /// Which pose counts as a skeleton's rest.

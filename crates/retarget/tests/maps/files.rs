@@ -2,7 +2,7 @@
 
 use gaitway_retarget::{
     ClipRef, Feet, JointMapFile, Keep, MapEntry, MutedChannel, MutedProperty, PathOrigin, RestChoice, RestChoices,
-    RootOptions, RootPart, SourceRef, Unmapped,
+    RootOptions, RootPart, SourceRef, Unmapped, UpChoice,
 };
 use glam::Quat;
 
@@ -118,7 +118,7 @@ fn written_maps_read_back_the_same() {
         ]
         .into(),
         unmapped: playing(ClipRef::Index(2), true),
-        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame, up: UpChoice::Z },
         root: RootOptions {
             horizontal: RootPart::InPlace,
             vertical: RootPart::Freeze,

@@ -34,6 +34,7 @@ mod soles;
 mod stack;
 mod surface;
 mod travel;
+mod up;
 mod verdicts;
 mod whole_rests;
 mod written;

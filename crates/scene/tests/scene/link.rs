@@ -8,7 +8,7 @@ use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{
     BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
     MutedChannel, PathOrigin, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
-    Unmapped,
+    Unmapped, UpChoice,
 };
 use gaitway_scene::state::{
     Background, CameraChoice, Channel, CharacterView, ClipChoice, Display, Embed, EnvironmentChoice, Fade, Hidden,
@@ -56,7 +56,7 @@ fn some_maps() -> Vec<MotionMap> {
             (8, MapEntry { correction: glam::Quat::from_rotation_x(0.3), unmapped: Some(frozen), ..entry(None) }),
         ]),
         unmapped: Unmapped::Clip { clip: ClipRef::Name("Idle & more".to_owned()), frozen: false },
-        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame, up: UpChoice::Z },
         root: RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() },
         muted_channels: vec![MutedChannel { source: 4, property: None }],
         feet: Feet::Plant,

@@ -7,7 +7,7 @@ use gaitway_character::anim::Transform;
 use gaitway_character::asset::Asset;
 use gaitway_retarget::{
     ClipRef, Contacts, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices,
-    RootOptions, RootPart, Unmapped,
+    RootOptions, RootPart, Unmapped, UpChoice,
 };
 use gaitway_scene::editor::reconciled_maps;
 use gaitway_scene::frame::pose_document;
@@ -85,7 +85,7 @@ fn all_edits(library: &Library) -> Vec<MapEdit> {
         MapEdit::Correction { target: neck, correction: turn() },
         MapEdit::Mute { source: head, property: MutedProperty::Rotation, muted: true },
         MapEdit::Unmapped { target: head, unmapped: Some(frozen) },
-        MapEdit::Rest(RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame }),
+        MapEdit::Rest(RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame, up: UpChoice::Z }),
         MapEdit::Translations(Keep::Drop),
         MapEdit::Scales(Keep::Keep),
         MapEdit::CrossfadeSecs(0.4),
@@ -409,7 +409,7 @@ fn the_map_key_holds_every_member() {
 #[test]
 fn a_large_map_stays_short() {
     let mut map = JointMap {
-        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame, up: UpChoice::Z },
         root: RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() },
         translations: Keep::Drop,
         scales: Keep::Drop,

@@ -101,6 +101,20 @@ fn z_may_be_up() {
     near(position(&glb, "head", Some(0.0)), [0.0, rest, position(&glb, "head", None)[2]]);
 }
 
+/// A body that lies on its back: its pelvis isn't turned, and would stand 1.2 m in the ground if Y were up.
+#[test]
+fn a_person_may_lie() {
+    let lying = with(person(22), "poses", floats("(2, 66)", &[0.0; 132]));
+    let at = |[x, y, z]: [f64; 3]| floats("(2, 3)", &[x, y, z, x, y, z]);
+    let glb = clean(&npz(&with(lying.clone(), "trans", at([2.0, 0.0, 0.15]))));
+    near(position(&glb, "pelvis", Some(0.0)), [2.0, 0.18, 0.22]);
+    let [_, head, _] = position(&glb, "head", Some(0.0));
+    assert!(head < 0.3, "{head}");
+    // The same far from the origin shows neither.
+    let (_, warnings) = convert(&npz(&with(lying, "trans", at([0.0, -3.0, 4.0]))));
+    assert!(warnings.len() == 1 && warnings[0].contains("Y is assumed"), "{warnings:?}");
+}
+
 #[test]
 fn groups_are_joined_in_the_order_of_the_joints() {
     let mut joints = [0.0; 2 * 66];
@@ -215,7 +229,8 @@ fn rotation_matrices_are_read_row_by_row() {
 #[test]
 fn negative_integers_are_read() {
     let data = [-1_i8, 2, -128, 127, 0, 1].map(|value| value as u8);
-    let glb = clean(&npz(&with(person(22), "trans", array("|i1", "(2, 3)", &data))));
+    // That body is in the ground, which is said.
+    let (glb, _) = convert(&npz(&with(person(22), "trans", array("|i1", "(2, 3)", &data))));
     near(position(&glb, "pelvis", Some(0.1)), [127.0, -0.22, 1.03]);
 }
 
