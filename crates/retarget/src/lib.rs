@@ -51,6 +51,7 @@ mod pins;
 mod pose;
 mod recognize;
 mod retargeting;
+mod side;
 mod skin;
 mod stack;
 mod times;
@@ -70,6 +71,7 @@ pub use map::{
 pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize, words};
-pub use retargeting::{Body, Retargeting};
+pub use retargeting::Retargeting;
+pub use side::Body;
 pub use stack::{BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use gaitway_character::anim::Clip;
-use gaitway_character::asset::{Asset, Humanoid};
 use glam::Affine3A;
 
 use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
@@ -15,16 +14,8 @@ use super::keys::tracks::SourceTracks;
 use super::map::{ResolvedMap, has_expressions_alone};
 use super::measure::{Figures, FootTrack, MeasuredClip, StagePair, measure, model_from_source, stage_pairs};
 use super::pose::node_locals;
+use super::side::Body;
 use super::transfer::{Hips, HipsInput, Transfer, match_hips};
-
-/// An asset and its joints by humanoid slot: one side of a retarget.
-#[derive(Debug, Clone, Copy)]
-pub struct Body<'a> {
-    /// The file, with skeleton, skins and clips.
-    pub asset: &'a Asset,
-    /// Joints of `asset` by humanoid slot; empty if it is not a human body.
-    pub slots: &'a Humanoid,
-}
 
 /// A clip and a model, aligned by a joint map.
 #[derive(Debug)]

@@ -448,45 +448,52 @@ mod tests {
     /// However the last bits of the keys fall.
     #[test]
     fn no_rotation_turns_back() {
-        let ease = |t: f64| t * t * (3.0 - 2.0 * t);
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.36, 0.48, 0.8], [-0.6, 0.0, 0.8]];
+        let speeds = [(1.0, false), (2.0, false), (0.7, false), (1.0, true), (2.0, true)];
         for degrees in [-1440, -1080, -720, -540, -360, -180, 180, 360, 540, 720, 1080, 1440] {
-            for (duration, eased) in [(1.0, false), (2.0, false), (0.7, false), (1.0, true), (2.0, true)] {
-                for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.36, 0.48, 0.8], [-0.6, 0.0, 0.8]] {
-                    let angle = |time: f64| {
-                        let t = time / duration;
-                        f64::from(degrees).to_radians() * if eased { ease(t) } else { t }
-                    };
-                    let turn = |time: f64, out: &mut [f64]| {
-                        let (sin, cos) = (0.5 * angle(time)).sin_cos();
-                        out.copy_from_slice(&[axis[0] * sin, axis[1] * sin, axis[2] * sin, cos]);
-                    };
-                    let keys = fitted(Space::Rotation, 4, &corners(&[0.0, duration as f32]), turn);
-                    // A piece by itself, as a reader of the file sees it.
-                    let is_cubic = keys.interpolation == Interpolation::CubicSpline;
-                    let parts = if is_cubic { 3 } else { 1 };
-                    let key = |at: usize, part: usize| -> Vec<f64> {
-                        let start = 4 * (parts * at + if is_cubic { part } else { 0 });
-                        keys.values[start..start + 4].iter().map(|&component| component.into()).collect()
-                    };
-                    for at in 0..keys.times.len() - 1 {
-                        let ends = [key(at, 1), key(at, 2), key(at + 1, 0), key(at + 1, 1)];
-                        let times = [at, at + 1].map(|at| f64::from(keys.times[at]));
-                        let span = Span { times, ends: [&ends[0], &ends[1], &ends[2], &ends[3]] };
-                        for step in 0..=8 {
-                            let time = times[0] + f64::from(step) / 8.0 * (times[1] - times[0]);
-                            let (mut found, mut expected) = ([0.0; 4], [0.0; 4]);
-                            span.value(time, keys.interpolation, Space::Rotation, &mut found);
-                            turn(time, &mut expected);
-                            let error = dot(&found, &expected).abs();
-                            assert!(
-                                error > 1.0 - 1e-6,
-                                "{degrees}° in {duration} s about {axis:?}, at {time}: {error}"
-                            );
-                        }
-                    }
-                }
+            for (duration, is_eased) in speeds {
+                axes.iter().for_each(|&axis| turns_as_it_should(degrees.into(), duration, is_eased, axis));
             }
         }
+    }
+
+    fn turns_as_it_should(degrees: f64, duration: f64, is_eased: bool, axis: [f64; 3]) {
+        let angle = |time: f64| {
+            let t = time / duration;
+            degrees.to_radians() * if is_eased { t * t * (3.0 - 2.0 * t) } else { t }
+        };
+        let turn = |time: f64, out: &mut [f64]| {
+            let (sin, cos) = (0.5 * angle(time)).sin_cos();
+            out.copy_from_slice(&[axis[0] * sin, axis[1] * sin, axis[2] * sin, cos]);
+        };
+        let keys = fitted(Space::Rotation, 4, &corners(&[0.0, duration as f32]), turn);
+        for at in 0..keys.times.len() - 1 {
+            for (time, found) in within_piece(&keys, at) {
+                let mut expected = [0.0; 4];
+                turn(time, &mut expected);
+                let error = dot(&found, &expected).abs();
+                assert!(error > 1.0 - 1e-6, "{degrees}° in {duration} s about {axis:?}, at {time}: {error}");
+            }
+        }
+    }
+
+    /// Rotations over one piece by itself, as a reader of the file sees it.
+    fn within_piece(keys: &Keys, at: usize) -> [(f64, [f64; 4]); 9] {
+        let is_cubic = keys.interpolation == Interpolation::CubicSpline;
+        let parts = if is_cubic { 3 } else { 1 };
+        let key = |at: usize, part: usize| -> Vec<f64> {
+            let start = 4 * (parts * at + if is_cubic { part } else { 0 });
+            keys.values[start..start + 4].iter().map(|&component| component.into()).collect()
+        };
+        let ends = [key(at, 1), key(at, 2), key(at + 1, 0), key(at + 1, 1)];
+        let times = [at, at + 1].map(|at| f64::from(keys.times[at]));
+        let span = Span { times, ends: [&ends[0], &ends[1], &ends[2], &ends[3]] };
+        std::array::from_fn(|step| {
+            let time = times[0] + step as f64 / 8.0 * (times[1] - times[0]);
+            let mut found = [0.0; 4];
+            span.value(time, keys.interpolation, Space::Rotation, &mut found);
+            (time, found)
+        })
     }
 
     #[test]

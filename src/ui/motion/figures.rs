@@ -136,22 +136,32 @@ fn lines(figures: &Figures, verdicts: &Verdicts, planting: Option<Planting>, con
     ]);
     lines.extend(contact_lines(figures, verdicts));
     lines.extend(planting.map(|planting| Line::Note(text::labelled(text::PLANTING, &format!("{planting}.")))));
+    lines.extend(skin_lines(figures, verdicts));
+    lines.extend(coverage_lines(figures, verdicts));
+    lines
+}
+
+fn skin_lines(figures: &Figures, verdicts: &Verdicts) -> [Line; 3] {
     let times = |value: Option<f64>| value.map(|value| format!("× {value:.2}"));
-    lines.push(group("SKIN STRETCH", "Lengths of the mesh's edges against those as it was bound, where joints meet."));
-    lines.extend([
+    let hint = "Lengths of the mesh's edges against those as it was bound, where joints meet.";
+    [
+        Line::Group { title: "SKIN STRETCH", hint },
         figure(text::MEAN, times(figures.skin_stretch_mean), verdicts.skin_stretch_mean),
         figure("Largest", times(figures.skin_stretch_max), verdicts.skin_stretch_max),
-    ]);
+    ]
+}
+
+fn coverage_lines(figures: &Figures, verdicts: &Verdicts) -> [Line; 3] {
     let idle = match figures.idle_chains.as_slice() {
         [] => "none".to_owned(),
         chains => chains.join(", "),
     };
-    lines.extend([
-        group("COVERAGE", "Mapped joints of limbs, trunk and head, as far as both files have them."),
+    let hint = "Mapped joints of limbs, trunk and head, as far as both files have them.";
+    [
+        Line::Group { title: "COVERAGE", hint },
         figure(text::COVERAGE, figures.coverage.map(text::percent), verdicts.coverage),
         figure("Idle limbs", figures.coverage.map(|_| idle), verdicts.idle_chains),
-    ]);
-    lines
+    ]
 }
 
 fn contact_lines(figures: &Figures, verdicts: &Verdicts) -> [Line; 3] {

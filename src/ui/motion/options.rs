@@ -32,7 +32,6 @@ pub(super) fn show(
     out: &mut Output,
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.id(), edit };
-    let inspect = shown.state.inspect;
     controls::section(ui, "FEET AND CONTACTS");
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, text::PLANT_FEET, planted) {
@@ -56,24 +55,7 @@ pub(super) fn show(
     controls::section(ui, capitals!(text::UNMAPPED_JOINTS));
     unmapped(ui, pairing, map, out);
 
-    controls::section(ui, capitals!(text::REST_POSE_ALIGNMENT));
-    let rest = map.rest;
-    if let Some(model) = rest_choice(ui, "Model", text::REST_OF_MODEL, rest.model) {
-        out.commands.push(edit(MapEdit::Rest(RestChoices { model, ..rest })));
-    }
-    if let Some(motion) = rest_choice(ui, "Motion", text::REST_OF_MOTION, rest.motion) {
-        out.commands.push(edit(MapEdit::Rest(RestChoices { motion, ..rest })));
-    }
-    if controls::switch(ui, text::COMPARE_RESTS, inspect.rests) {
-        let rests = !inspect.rests;
-        out.commands.push(Command::SetInspect(Inspect { rests, split: inspect.split && !rests, ..inspect }));
-    }
-    controls::hint(ui, "The clip from each rest pose of the motion, side by side.");
-
-    controls::section(ui, capitals!(text::UP_OF_MOTION));
-    if let Some(up) = controls::segmented_about(ui, text::UP_OF_MOTION, Some(rest.up), &UPS) {
-        out.commands.push(edit(MapEdit::Rest(RestChoices { up, ..rest })));
-    }
+    rests(ui, pairing, map.rest, shown.state.inspect, out);
 
     controls::section(ui, capitals!(text::TRANSLATIONS));
     if let Some(translations) = controls::segmented_about(ui, text::TRANSLATIONS, Some(map.translations), &KEEPS) {
@@ -101,6 +83,28 @@ pub(super) fn show(
                 out.commands.push(edit(MapEdit::UnmuteAll));
             }
         }
+    }
+}
+
+/// Which rest poses the joints' rotations are measured from, and which way is up in the motion.
+fn rests(ui: &mut Ui, pairing: &Pairing<'_>, rest: RestChoices, inspect: Inspect, out: &mut Output) {
+    let edit = |rest| Command::EditMap { motion: pairing.id(), edit: MapEdit::Rest(rest) };
+    controls::section(ui, capitals!(text::REST_POSE_ALIGNMENT));
+    if let Some(model) = rest_choice(ui, "Model", text::REST_OF_MODEL, rest.model) {
+        out.commands.push(edit(RestChoices { model, ..rest }));
+    }
+    if let Some(motion) = rest_choice(ui, "Motion", text::REST_OF_MOTION, rest.motion) {
+        out.commands.push(edit(RestChoices { motion, ..rest }));
+    }
+    if controls::switch(ui, text::COMPARE_RESTS, inspect.rests) {
+        let rests = !inspect.rests;
+        out.commands.push(Command::SetInspect(Inspect { rests, split: inspect.split && !rests, ..inspect }));
+    }
+    controls::hint(ui, "The clip from each rest pose of the motion, side by side.");
+
+    controls::section(ui, capitals!(text::UP_OF_MOTION));
+    if let Some(up) = controls::segmented_about(ui, text::UP_OF_MOTION, Some(rest.up), &UPS) {
+        out.commands.push(edit(RestChoices { up, ..rest }));
     }
 }
 

@@ -23,9 +23,12 @@ const MIN_KNEE: f64 = 0.08;
 const WINDOW: usize = 4;
 const MIN_TRAVEL: f64 = 0.3;
 
+/// The joints of a leg from the thigh to the foot, and the foot's sole.
+type Leg = ([JointIndex; 3], Option<Sole>);
+
 /// The legs of one side, source or target.
 pub struct Legs {
-    legs: Vec<([JointIndex; 3], Option<Sole>)>,
+    legs: Vec<Leg>,
     hips: Option<JointIndex>,
     length: f64,
 }
@@ -66,15 +69,15 @@ impl Legs {
 
     /// The horizontal direction that the feet or else the knees point in, if they point anywhere.
     fn forward(&self, pose: &WorldPose) -> Option<DVec2> {
-        let points = |min: f64, direction: &dyn Fn(&([JointIndex; 3], Option<Sole>)) -> Option<DVec3>| {
+        let points = |min: f64, direction: &dyn Fn(&Leg) -> Option<DVec3>| {
             let mean = self.legs.iter().filter_map(direction).sum::<DVec3>() / self.legs.len().max(1) as f64;
             let level = DVec2::new(mean.x, mean.z);
             // Feet that hang down point anywhere.
             let is_level = level.length() > mean.y.abs();
             (is_level && level.length() > min * self.length).then(|| level.normalize())
         };
-        let foot = |([_, _, foot], sole): &([JointIndex; 3], Option<Sole>)| Some(sole.as_ref()?.ahead(pose, *foot));
-        let knee = |([upper, lower, foot], _): &([JointIndex; 3], Option<Sole>)| {
+        let foot = |([_, _, foot], sole): &Leg| Some(sole.as_ref()?.ahead(pose, *foot));
+        let knee = |([upper, lower, foot], _): &Leg| {
             let [hip, knee, ankle] = [upper, lower, foot].map(|joint| pose.position(*joint));
             let line = (ankle - hip).try_normalize()?;
             Some(knee - hip - line * line.dot(knee - hip))

@@ -1,13 +1,14 @@
 //! The quality of a retargeted clip in numbers: measured on the finished clip as the player plays it, at the source's keys
 //! and halfway between them, in the common frame.
 
-use gaitway_character::anim::{Clip, JointIndex, Skeleton};
+use gaitway_character::anim::{Clip, JointIndex};
 use gaitway_character::asset::{Humanoid, Slot};
 use glam::DQuat;
 use serde::Serialize;
 
-use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use super::foot_track::{FootPositions, FootTrack, foot_tracks, mapped_feet};
 use super::moments::moments;
+use super::played::PlayedClip;
 use super::smoothness::smoothness;
 use crate::align::swing::compared_segments;
 use crate::budget::{MAX_TOUCH_STEPS, measured_steps};
@@ -16,7 +17,7 @@ use crate::feet::Soles;
 use crate::keys::resample::union;
 use crate::map::Pair;
 use crate::math::{angle_between, degrees_between};
-use crate::pose::{Local, PartialPose, Scratch, WorldPose};
+use crate::pose::{PartialPose, WorldPose};
 use crate::transfer::{Transfer, lowest_leg_joint, removed_travel};
 
 /// Quality figures; `None` for what cannot be measured.
@@ -142,12 +143,8 @@ pub fn measure(
     let mut penetration: Option<f64> = None;
     let soles = Soles::new(transfer);
     let mut feet = mapped_feet(transfer, soles.feet.clone());
-    let pairs = &transfer.map.pairs;
     let mut source_pose = mapped_source(transfer);
-    // The feet themselves are mapped; joints of their soles may not be.
-    let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
-    let targets: Vec<JointIndex> =
-        pairs.iter().map(|pair| pair.target).chain(ground_joints.iter().copied()).chain(of_soles).collect();
+    let targets = measured_joints(transfer, &feet, &ground_joints);
     let [mut target_clip, mut unplanted_clip] = [(); 2].map(|()| PlayedClip::new(transfer, &targets));
     let touches = touches(transfer, bodies, measured.clip);
     for (index, &time) in times.iter().enumerate() {
@@ -169,9 +166,8 @@ pub fn measure(
             foot.heights.push(foot.sole.lowest(target) - soles.ground);
         }
     }
-    let depths = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0));
-    let sole_penetration = depths.reduce(f64::max);
-    let smoothness = smoothness(transfer.target_skeleton, pairs, measured.clip);
+    let sole_penetration = feet.iter().flat_map(|foot| &foot.heights).map(|height| (-height).max(0.0)).reduce(f64::max);
+    let smoothness = smoothness(transfer.target_skeleton, &transfer.map.pairs, measured.clip);
     let (contacts, tracks) = foot_tracks(transfer, &times, feet);
     let moments = moments(transfer, slots, measured.clip, soles);
     let figures = Figures {
@@ -200,6 +196,14 @@ pub fn measure(
     (figures, tracks)
 }
 
+/// The joints of the target whose positions are measured.
+fn measured_joints(transfer: &Transfer, feet: &[FootPositions], ground_joints: &[JointIndex]) -> Vec<JointIndex> {
+    // The feet themselves are mapped; joints of their soles may not be.
+    let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
+    let mapped = transfer.map.pairs.iter().map(|pair| pair.target);
+    mapped.chain(ground_joints.iter().copied()).chain(of_soles).collect()
+}
+
 /// Returns the segments whose ends are both mapped.
 fn mapped_segments<'a>(
     transfer: &Transfer<'a>,
@@ -212,27 +216,6 @@ fn mapped_segments<'a>(
 fn mapped_source<'a>(transfer: &Transfer<'a>) -> PartialPose<'a> {
     let joints = transfer.map.pairs.iter().map(|pair| pair.source);
     PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, joints)
-}
-
-/// The measured joints of the target, in the common frame.
-pub(super) struct PlayedClip<'a> {
-    skeleton: &'a Skeleton,
-    scratch: Scratch,
-    pose: PartialPose<'a>,
-}
-
-impl<'a> PlayedClip<'a> {
-    pub fn new(transfer: &Transfer<'a>, joints: &[JointIndex]) -> Self {
-        let skeleton = transfer.target_skeleton;
-        let pose = PartialPose::new(skeleton, transfer.alignment.target.world_from_model, joints.iter().copied());
-        Self { skeleton, scratch: Scratch::default(), pose }
-    }
-
-    /// Poses the joints as the player would play a clip.
-    pub fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
-        let sampled = self.scratch.sample(self.skeleton, clip, time_secs);
-        self.pose.update(|joint| Local::from(&sampled.local(joint)))
-    }
 }
 
 /// The source's keys, and halfway between them.

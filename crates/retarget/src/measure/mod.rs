@@ -5,6 +5,7 @@ mod figures;
 mod foot_track;
 mod limbs;
 mod moments;
+mod played;
 mod smoothness;
 mod stage;
 mod stretch;

@@ -5,8 +5,8 @@ use gaitway_character::asset::Humanoid;
 use glam::Affine3A;
 
 use super::facing::{Heading, Legs, facing_path_error};
-use super::figures::PlayedClip;
 use super::limbs::{coverage, limbs};
+use super::played::PlayedClip;
 use super::stretch::SkinEdges;
 use crate::feet::Soles;
 use crate::pose::PartialPose;
