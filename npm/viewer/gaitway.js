@@ -21,11 +21,17 @@ const FLAGS = ["autoplay", "springs", "follow"];
  * Keys whose values are URLs, and which of their values aren't: joint maps and their compact form, set-ups of lights.
  * @type {Record<string, RegExp>}
  */
-const SOURCES = { model: /^$/, motion: /^$/, map: /^(\{|[12]\.[\da-f]{8}\.)/i, light: /^[^./:]*$/ };
+const URLS = { model: /^$/, motion: /^$/, map: /^(\{|[12]\.[\da-f]{8}\.)/i, light: /^[^./:]*$/ };
 
 /** What else the frame depends on: with another value, it is made again. */
 const OF_FRAME = ["base", "renderer", "drop"];
 const OTHERS = [...OF_FRAME, "controls", "poster", "alt", "loading", "reveal"];
+/** The attributes that say what the frame shows. */
+const ALL = [...Object.keys(KEY_OF), "controls"];
+/** Attributes whose files the others are about. */
+const SOURCES = ["model", "motion"];
+/** What is shown of a model before its attributes are: nothing moves, so that a clip begins where it should. */
+const BARE = { ...Object.fromEntries(Object.values(KEY_OF).map((key) => [key, null])), embed: "viewport", play: false };
 
 /** @param {string} name */
 const camelCase = (name) => name.replace(/-(.)/g, (_, letter) => letter.toUpperCase());
@@ -70,7 +76,7 @@ const coded = (code, message) => Object.assign(new Error(message), { code });
  * @param {string} value
  */
 function resolved(key, value) {
-  const isOther = /^(sample|file):/.test(value) || (SOURCES[key]?.test(value) ?? true);
+  const isOther = /^(sample|file):/.test(value) || (URLS[key]?.test(value) ?? true);
   return isOther || !URL.canParse(value, document.baseURI) ? value : new URL(value, document.baseURI).href;
 }
 
@@ -275,15 +281,15 @@ class Viewer extends Base {
     const changed = this.#changed;
     this.#changed = new Set();
     this.#showTexts();
-    const keys = [...changed].filter((name) => name in KEY_OF || name === "controls");
-    const isOther = keys.includes("model") || keys.includes("motion");
+    const keys = ALL.filter((name) => changed.has(name));
+    const isOther = SOURCES.some((name) => changed.has(name));
     if (this.#frame === null) return this.#start();
     if (OF_FRAME.some((name) => changed.has(name)) || (isOther && !this.#hasSources()) || (keys.length > 0 && !this.#frame.isReady)) {
       this.#stop();
       return this.#start();
     }
     // Another model is shown as the attributes say, not as the user has left the one before.
-    if (keys.length > 0) this.#show(isOther ? this.#values() : this.#values(keys), isOther);
+    if (keys.length > 0) this.#show(isOther ? ALL : keys, isOther);
   }
 
   #showTexts() {
@@ -297,14 +303,14 @@ class Viewer extends Base {
   }
 
   #hasSources() {
-    return this.hasAttribute("model") || this.hasAttribute("motion");
+    return SOURCES.some((name) => this.hasAttribute(name));
   }
 
   /**
    * Returns the values of attributes by their keys of the link; null for those that are absent.
    * @param {string[]} names
    */
-  #values(names = [...Object.keys(KEY_OF), "controls"]) {
+  #values(names = ALL) {
     return Object.fromEntries(names.map((name) => {
       const text = this.getAttribute(name);
       if (name === "controls") return ["embed", text === null ? "viewport" : "transport"];
@@ -427,19 +433,28 @@ class Viewer extends Base {
   }
 
   /**
-   * Shows values of the attributes.
-   * @param {object} values
+   * Shows the values of these attributes.
+   * @param {string[]} names
    * @param {boolean} isOther They name another model or motion.
    */
-  async #show(values, isOther) {
+  async #show(names, isOther) {
     const frame = this.#frame;
-    try {
-      await frame?.call("apply", [values]);
-      if (isOther && frame === this.#frame) this.#reveal();
-    } catch (error) {
-      const { message, code } = /** @type {Error & { code: ErrorCode }} */ (error);
+    const apply = async (/** @type {object} */ values) => void (await frame?.call("apply", [values]));
+    const refuse = (/** @type {Error & { code: ErrorCode }} */ { message, code }) => {
       // What was set since is on its way.
       if (frame === this.#frame && code !== "cancelled") this.#report(message, code);
+    };
+    try {
+      await apply(this.#values(names)).catch(async (error) => {
+        if (error.code !== "malformed" || names.length === 1) throw error;
+        // The frame applies all values or none. One by one, as they are by then, only the malformed ones are refused.
+        if (isOther) await apply({ ...BARE, ...this.#values(SOURCES) });
+        const rest = isOther ? names.filter((name) => name === "autoplay" || (this.hasAttribute(name) && !SOURCES.includes(name))) : names;
+        for (const name of rest) if (frame === this.#frame) await apply(this.#values([name])).catch(refuse);
+      });
+      if (isOther && frame === this.#frame) this.#reveal();
+    } catch (error) {
+      refuse(/** @type {Error & { code: ErrorCode }} */ (error));
     }
   }
 

@@ -315,6 +315,23 @@ describe("viewers", () => {
     await page.finish();
   });
 
+  test("leave out only the malformed ones of attributes that are set together", async () => {
+    const page = await opened('<gaitway-viewer id="viewer" renderer="webgl2" model="pilot.glb" clip="run" autoplay="0"></gaitway-viewer>');
+    await loaded(page);
+    /** @param {Record<string, string | null>} values */
+    const setAll = (values) => page.evaluate((values) => void Object.assign(document.getElementById("viewer") ?? {}, values), values);
+    await setAll({ clip: "idle", background: "purple" });
+    await eventually(async () => (await call(page, "state")).clip === "idle", "the clip should change");
+    await setAll({ t: "soon", background: "blue", clip: "expressions", fov: "20", model: "morphs.glb" });
+    await loaded(page, "viewer", 2);
+    const { model, clip, fov, background, t } = await call(page, "state");
+    assert.deepEqual({ model, clip, fov, background, t }, { model: [`${site.origin}/morphs.glb`], clip: "expressions", fov: 20, background: "studio", t: 0 });
+    const errors = await heard(page, "error");
+    assert.deepEqual(errors.map(({ code }) => code), ["malformed", "malformed", "malformed"]);
+    assert.deepEqual(errors.map(({ message }) => message.split(":")[0]).sort(), ["background=blue", "background=purple", "t=soon"]);
+    await page.finish();
+  });
+
   test("say what is wrong", async () => {
     const page = await opened('<gaitway-viewer id="viewer" renderer="webgl2" model="none.glb" poster="poster.webp"></gaitway-viewer><gaitway-viewer id="lost" base="nowhere" model="pilot.glb"></gaitway-viewer>');
     await eventually(async () => (await heard(page, "error")).length > 0 && (await heard(page, "error", "lost")).length > 0, "both should report an error");
