@@ -284,7 +284,9 @@ class Viewer extends Base {
     const keys = ALL.filter((name) => changed.has(name));
     const isOther = SOURCES.some((name) => changed.has(name));
     if (this.#frame === null) return this.#start();
-    if (OF_FRAME.some((name) => changed.has(name)) || (isOther && !this.#hasSources()) || (keys.length > 0 && !this.#frame.isReady)) {
+    // A frame that has nothing to show would take the same model again for the one that it has.
+    const startsAgain = isOther && (!this.#hasSources() || this.#body.className === "failed");
+    if (startsAgain || OF_FRAME.some((name) => changed.has(name)) || (keys.length > 0 && !this.#frame.isReady)) {
       this.#stop();
       return this.#start();
     }
@@ -368,6 +370,7 @@ class Viewer extends Base {
 
   /** @param {"waiting" | "loading" | "shown" | "failed"} state */
   #setState(state) {
+    if (state !== "failed") this.#error.textContent = "";
     this.#body.className = state;
   }
 

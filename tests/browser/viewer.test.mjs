@@ -339,10 +339,17 @@ describe("viewers", () => {
     assert.deepEqual([code, lost.code], ["not-found", "not-found"]);
     assert.match(message, /none\.glb/);
     await page.locator("#viewer [role=alert]").getByText("none.glb").waitFor();
+    // Another one that isn't there, and the first one again.
+    for (const name of ["gone.glb", "none.glb"]) {
+      await set(page, "model", name);
+      await page.locator("#viewer [role=alert]").getByText(name).waitFor();
+    }
+    assert.deepEqual((await heard(page, "error")).map(({ code }) => code), ["not-found", "not-found", "not-found"]);
     assert.deepEqual(await heard(page, "load"), []);
     await set(page, "model", "pilot.glb");
     await loaded(page);
     await page.locator("#viewer [role=alert]").waitFor({ state: "hidden" });
+    assert.equal(await page.locator("#viewer [role=alert]").textContent(), "");
     await page.finish();
   });
 
