@@ -405,6 +405,12 @@ test("the live examples run under their policy", async () => {
   assert.equal(code.length, await page.locator("gaitway-viewer").count());
   assert.ok(code.every((text) => /gaitway-viewer|viewer\./.test(text)), code.join("\n"));
   await whenReady(frameOf(page));
+  const scripted = page.locator("#scripted");
+  await scripted.scrollIntoViewIfNeeded();
+  for (const clip of ["idle", "expressions", "idle"]) {
+    await eventually(() => scripted.evaluate(async (viewer) => (await /** @type {GaitwayViewer} */ (viewer).state()).clip).then((shown) => shown === clip), `${clip} should be shown`);
+    await page.locator("#other").click();
+  }
   // One of them shows a model that isn't there.
   assert.deepEqual(page.troubles.filter((text) => !text.includes("404")), []);
   await page.finish();

@@ -13,5 +13,7 @@ viewer.addEventListener("error", ({ detail }) => log(`${detail.code}: ${detail.m
 
 byId("pause").onclick = () => viewer.pause();
 byId("weights").onclick = () => viewer.apply({ show: "weights", joint: 9 });
-byId("other").onclick = () => (viewer.model = viewer.model === "sample:pilot" ? "sample:morphs" : "sample:pilot");
+const pilot = { model: "sample:pilot", clip: "idle", alt: "A pilot" };
+const goblin = { model: "sample:morphs", clip: "expressions", alt: "A goblin" };
+byId("other").onclick = () => Object.assign(viewer, viewer.model === pilot.model ? goblin : pilot);
 byId("link").onclick = async () => log(await viewer.toLink());
