@@ -353,6 +353,18 @@ describe("viewers", () => {
     await page.finish();
   });
 
+  test("name only ways out that visitors have", async () => {
+    // The page's own server lets no other origin read its models.
+    const one = (/** @type {string} */ id, /** @type {string} */ more) => `<gaitway-viewer id="${id}" renderer="webgl2" base="${elsewhere.origin}/gaitway/" model="pilot.glb" ${more}></gaitway-viewer>`;
+    const page = await opened(`${one("viewer", "")}${one("second", "drop")}`);
+    await eventually(async () => (await heard(page, "error")).length > 0 && (await heard(page, "error", "second")).length > 0, "both should report an error");
+    const [[still], [dropping]] = [await heard(page, "error"), await heard(page, "error", "second")];
+    assert.deepEqual([still.code, dropping.code], ["cross-origin", "cross-origin"]);
+    assert.match(still.message, /pilot\.glb.*CORS.*no such file$/);
+    assert.match(dropping.message, /download the file and drop it here/);
+    await page.finish();
+  });
+
   test("keep the poster without graphics", async () => {
     const page = await opened('<gaitway-viewer id="viewer" model="pilot.glb" poster="poster.webp"></gaitway-viewer>', () => {
       Object.defineProperty(navigator, "gpu", { value: undefined });
