@@ -31,6 +31,17 @@ async function still(name) {
   return { width, height, rgba };
 }
 
+/** Chooses the third card, as Enter does, once the program has said what it shows and before the page shows its first picture. */
+function withEarlyChoice() {
+  const choose = () => {
+    if (document.getElementById("loading")?.hidden !== false) throw new Error("it is too late");
+    const card = /** @type {NodeListOf<HTMLAnchorElement>} */ (document.querySelectorAll("#gallery-scenes a"))[2];
+    card.focus();
+    card.click();
+  };
+  addEventListener("gaitway:change", choose, { once: true });
+}
+
 for (const renderer of BACK_ENDS)
   describe(`scenes on ${renderer}`, () => {
     /** @type {import("./browser.mjs").Site} */
@@ -97,6 +108,9 @@ for (const renderer of BACK_ENDS)
     /** @type {(page: TestPage, name: string) => import("playwright-core").Locator} */
     const card = (page, name) => page.locator(`#gallery-scenes a >> nth=${scenes.findIndex((scene) => scene.name === name)}`);
 
+    /** @type {(page: TestPage, wanted: boolean) => Promise<void>} */
+    const whenInert = (page, wanted) => until(page, (wanted) => document.querySelector("#gallery")?.matches("[inert]") === wanted, wanted);
+
     test("fetches the program and the sample once, side by side", async () => {
       const context = await site.browser.newContext({ viewport: DESKTOP, deviceScaleFactor: PIXEL_RATIO, serviceWorkers: "block", reducedMotion: "reduce" });
       const page = watched(await context.newPage());
@@ -155,6 +169,22 @@ for (const renderer of BACK_ENDS)
       await whenModel(page, scenes[0].model);
     });
 
+    onFirstScreen("after Enter on a card, keys act on the viewport", { viewport: DESKTOP }, async (page) => {
+      for (const { name, model } of [scenes[2], scenes[3]]) {
+        await card(page, name).press("Enter");
+        await whenModel(page, model);
+        assert.equal(await page.evaluate(() => document.activeElement?.localName), "canvas");
+        await page.keyboard.press("?");
+        await whenInert(page, true);
+        await page.keyboard.press("Escape");
+        await whenInert(page, false);
+      }
+    });
+
+    onFirstScreen("after Enter on a card while the page starts, keys act on the viewport", { before: withEarlyChoice }, async (page) => {
+      await until(page, () => document.activeElement?.localName === "canvas");
+    });
+
     onFirstScreen("a card can be dragged onto the viewport, and its address pasted", { viewport: DESKTOP }, async (page) => {
       const address = await card(page, scenes[1].name).evaluate((card) => (card instanceof HTMLAnchorElement ? card.href : ""));
       await drop(page, [{ link: address }]);
@@ -197,8 +227,6 @@ for (const renderer of BACK_ENDS)
       await until(page, (width) => innerWidth === width, PHONE.width);
       assert.equal(await gallery(page).isVisible(), false);
     });
-
-    const whenInert = (/** @type {TestPage} */ page, /** @type {boolean} */ wanted) => until(page, (wanted) => /** @type {HTMLElement} */ (document.querySelector("#gallery")).inert === wanted, wanted);
 
     onFirstScreen("the samples are inert while a modal dialog is open", { viewport: DESKTOP }, async (page) => {
       await page.locator("canvas").focus();

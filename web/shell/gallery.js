@@ -82,10 +82,11 @@ addEventListener("keydown", (event) => {
 });
 // The canvas doesn't see it.
 gallery.addEventListener("pointerdown", () => program.app?.close_menu());
-// After a click the keyboard controls the viewport; after a key press the focus stays here, unless a low screen closes the samples.
+// Then the keyboard controls the viewport, whether a card was clicked or Enter was pressed on it: here its keys would do nothing. Before
+// the first image there is nothing to control.
 for (const card of cards)
-  card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => {
+  card.addEventListener("click", ({ ctrlKey, metaKey, shiftKey }) => {
     if (ctrlKey || metaKey || shiftKey) return;
     if (lowScreen.matches) setShown(false);
-    else if (detail > 0) focusCanvas();
+    else program.started.then(() => document.activeElement === card && focusCanvas(), () => {});
   });
