@@ -75,6 +75,12 @@ pub trait Host {
         Err("Couldn't record a video: only the page can. Open this link there, or save images instead.".to_owned())
     }
 
+    /// Reports what can't be used of an embedded view to the page around it. Returns false if the app has to show it.
+    fn report(&self, problem: &str) -> bool {
+        let _ = problem;
+        false
+    }
+
     /// Ends the recording without saving it.
     fn cancel_recording(&self) {}
 

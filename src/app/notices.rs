@@ -53,7 +53,11 @@ impl App {
                 Event::Notice { text, undoable } => self.show_toast(text, undoable),
                 Event::Problem(problem) => self.add_error(&problem),
                 // Nothing stays over an embedded view.
-                Event::AboutView(text) if self.state().page.embed.is_on() => self.toast(text),
+                Event::AboutView(text) if self.state().page.embed.is_on() => {
+                    if !self.host.report(&text) {
+                        self.toast(text);
+                    }
+                }
                 Event::AboutView(text) => {
                     self.panels.messages.about_view = Some(text);
                     self.announcement = None;

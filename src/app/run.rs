@@ -214,6 +214,7 @@ impl App {
             ScriptCall::Apply(partial, reply) => match self.editor.apply_partial(&partial) {
                 Ok(()) => {
                     self.panels.messages.about_view = None;
+                    self.show_events();
                     self.after_draw.push(Box::new(move || reply(Ok(()))));
                 }
                 Err(error) => reply(Err(error)),

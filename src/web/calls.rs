@@ -370,6 +370,9 @@ async fn load_and_show(page: &Rc<Page>, request: Request) -> Result<Opened, Refu
         }
     };
     let shell_reports = matches!(request, Request::View { about_link: Some(_), .. });
+    // Over an embedded view only what its user opened: scripts get the error.
+    let is_embedded = with_app(page, |app| app.state().page.embed.is_on())?;
+    let is_silent = is_embedded && !matches!(request, Request::Items { is_by_hand: true, .. });
     let read = async {
         match request {
             Request::Items { items, role, is_private, is_by_hand } => {
@@ -401,12 +404,13 @@ async fn load_and_show(page: &Rc<Page>, request: Request) -> Result<Opened, Refu
     page.inbox.send(Message::OpenProgress(latest.into_inner()));
     match opened {
         Ok((contents, state)) => {
-            let shown = show(page, contents, state, shell_reports).await;
+            let shown = show(page, contents, state, shell_reports, is_silent).await;
             shown.map_err(|message| Refusal { code: ErrorCode::Unsupported, message })
         }
         Err(problem) => {
             let (code, message) = (problem.code(), problem.to_string());
-            let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(message.clone()) };
+            let is_silent = shell_reports || is_silent;
+            let failed = if is_silent { Message::OpenFailedSilently } else { Message::OpenFailed(message.clone()) };
             page.inbox.send(failed);
             Err(Refusal { code, message })
         }
@@ -446,9 +450,10 @@ pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> 
 /// of links, so a `state` whose problems it doesn't report is a change of the current one.
 async fn show(
     page: &Rc<Page>,
-    contents: Contents,
+    mut contents: Contents,
     state: Option<Box<ViewerState>>,
     shell_reports: bool,
+    is_silent: bool,
 ) -> Result<Opened, String> {
     let kind = match &contents {
         Contents { models, .. } if !models.is_empty() => Kind::Model,
@@ -458,6 +463,9 @@ async fn show(
     };
     if !shell_reports && !contents.problems.is_empty() {
         page.shell.warn(&contents.problems.join("\n"), contents.failure.map(code_text));
+        if is_silent {
+            contents.problems.clear();
+        }
     }
     let (promise, reply) =
         promise::<Vec<String>>(|problems| problems.into_iter().map(JsValue::from).collect::<Array>().into());

@@ -339,6 +339,10 @@ impl Host for PageHost {
         self.shell.has_gallery()
     }
 
+    fn report(&self, problem: &str) -> bool {
+        self.shell.report(problem)
+    }
+
     fn show_gallery(&self) {
         self.shell.gallery();
     }

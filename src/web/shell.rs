@@ -98,6 +98,10 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str, code: Option<String>);
 
+    /// Reports a problem of an embedded view to the page around it; returns false if the page itself has to show it.
+    #[wasm_bindgen(method)]
+    pub fn report(this: &Shell, problem: &str) -> bool;
+
     /// Shows the panels' accessibility tree; see [`crate::app::mirror`].
     #[wasm_bindgen(method)]
     pub fn mirror(this: &Shell, tree: &str);

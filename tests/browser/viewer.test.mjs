@@ -353,6 +353,26 @@ describe("viewers", () => {
     await page.finish();
   });
 
+  test("report what can't be used by events, and not over the picture", async () => {
+    const page = await opened('<gaitway-viewer id="viewer" renderer="webgl2" model="pilot.glb" clip="Nope" background="purple" autoplay="0"></gaitway-viewer>');
+    await loaded(page);
+    await set(page, "clip", "Nada");
+    await eventually(async () => (await heard(page, "error")).length === 2, "the clip should be reported");
+    await set(page, "motion", "gone.bvh");
+    await loaded(page, "viewer", 2);
+    await set(page, "model", "gone.glb");
+    await eventually(async () => (await heard(page, "error")).some(({ message }) => message.includes("gone.glb")), "the model should be reported");
+    const errors = await heard(page, "error");
+    assert.match(errors[0].message, /background=purple[^]*Nope/);
+    assert.match(errors[1].message, /Nada/);
+    assert.ok(errors.every(({ code }) => ["malformed", "not-found"].includes(code)), JSON.stringify(errors));
+    // What the program shows is read out.
+    await new Promise((resolve) => setTimeout(resolve, 500));
+    assert.equal(await frameOf(page).locator("#news").textContent(), "");
+    assert.doesNotMatch(String(await frameOf(page).locator("#problem").textContent()), /gone\.glb/);
+    await page.finish();
+  });
+
   test("name only ways out that visitors have", async () => {
     // The page's own server lets no other origin read its models.
     const one = (/** @type {string} */ id, /** @type {string} */ more) => `<gaitway-viewer id="${id}" renderer="webgl2" base="${elsewhere.origin}/gaitway/" model="pilot.glb" ${more}></gaitway-viewer>`;

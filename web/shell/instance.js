@@ -19,6 +19,7 @@ import { programs } from "./request.js";
 import { endWaiting, program, unlessEnded } from "./running.js";
 import { continueWith, facts, performs, send } from "./session.js";
 import { validate } from "./validation.js";
+import { isViewer } from "./viewer.js";
 import { savePage } from "./web-page.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
@@ -235,6 +236,10 @@ function callsFor(bindings, renderer) {
       console.warn(message);
       sayProblem(message);
       reportProblem(message, code ?? null);
+    },
+    report(problem) {
+      if (isViewer) reportProblem(problem, "malformed");
+      return isViewer;
     },
     // Deferred: the program borrows its side of the mirror during this call, and moving the focus would call it back.
     mirror: (tree) => queueMicrotask(() => isCurrent() && mirror?.show(tree)),

@@ -127,6 +127,8 @@ export interface ShellCalls {
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
   warn(message: string, code?: ErrorCode): void;
+  /** Returns whether the page around this one has it. */
+  report(problem: string): boolean;
   mirror(tree: string): void;
   stopped(message: string): void;
 }
