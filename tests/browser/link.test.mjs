@@ -10,7 +10,7 @@ import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { triangle } from "../three/triangle.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, PIXEL_RATIO, apply, drop, fragment, meanDifference, onOneBackEnd, open, toggleInspector, picture, pose, resize, share, startSite, state, until, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
+import { BACK_ENDS, PIXEL_RATIO, apply, drop, eventually, fragment, meanDifference, onOneBackEnd, open, toggleInspector, picture, pose, resize, share, startSite, state, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown, withLessPatience } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -295,6 +295,19 @@ for (const renderer of BACK_ENDS)
       // The camera would look at where nobody is without the motion.
       assert.equal((await state(page)).camera, "auto");
       for (const part of ["motion=file:walk.bvh", "clip=run", "fov=30", "camera=10,5,30,9,1,9"]) assert.ok(link.includes(part), `${part} in ${link}`);
+    });
+
+    onPage("says what a link needs after “Not now”, not whenever the dialog has closed", () => "model=sample:pilot&motion=file:walk.bvh&play=0", async (page) => {
+      const said = (/** @type {RegExp} */ text) => eventually(async () => text.test((await page.locator("#news").textContent()) ?? ""));
+      // As if it had been closed and asked again within a frame, and a file chooser were cancelled.
+      await page.evaluate(() => {
+        document.getElementById("bring")?.dispatchEvent(new Event("close"));
+        document.getElementById("bring-chosen")?.dispatchEvent(new Event("cancel", { bubbles: true }));
+      });
+      await untilStill(page);
+      assert.equal(await page.locator("#news").textContent(), "");
+      await page.locator("#bring-later").click();
+      await said(/^This link needs walk\.bvh\./);
     });
 
     onPage("goes back from a program that has stopped to files that the page holds", () => "model=sample:walker&play=0", async (page) => {

@@ -24,9 +24,7 @@ export const isDialogOpen = () => document.querySelector("dialog[open]") !== nul
 
 /** Closes what was asked or shown about the view so far, for one that the user opens. */
 export function closeDialogs() {
-  for (const id of ["open", "missing", "share"]) dialog(id).close();
-  // It isn't asked for later, as Escape would say.
-  if (dialog("bring").open) dialog("bring").close("opened");
+  for (const id of ["open", "missing", "share", "bring"]) dialog(id).close();
 }
 
 /** @param {string} id */

@@ -8,7 +8,6 @@ import { allowsFiles, isViewer } from "./viewer.js";
 performs({
   ask({ files, others, isOwn }) {
     if (panel() !== null || dialog("bring").open || !allowsFiles) return;
-    dialog("bring").returnValue = "";
     showList("bring-files", files);
     byId("bring-others").hidden = others === null;
     byId("bring-others").textContent = others === null ? "" : `${others} couldn't be opened.`;
@@ -16,7 +15,7 @@ performs({
     byId("bring-sender").hidden = isOwn;
     showDialog("bring", button("bring-choose"));
   },
-  closeAsk: () => dialog("bring").close("link"),
+  closeAsk: () => dialog("bring").close(),
   report({ problems, title, rest, without }) {
     dialog("missing").close();
     sayProblem(problems.join(" "));
@@ -35,15 +34,13 @@ field("bring-chosen").addEventListener("change", () => {
   const files = [...(field("bring-chosen").files ?? [])];
   // Choosing them again is a change, too.
   field("bring-chosen").value = "";
-  if (files.length === 0) return;
-  dialog("bring").close("chosen");
   openByHand(files);
 });
-dialog("bring").addEventListener("close", () => {
-  // Escape leaves it empty.
-  if (["later", ""].includes(dialog("bring").returnValue)) send({ event: "later" });
-  if (document.activeElement === document.body) focusCanvas();
-});
+// What the user does counts: Chromium says only in its next frame that a dialog was closed, when this one may be open again.
+button("bring-later").addEventListener("click", () => send({ event: "later" }));
+// Escape. A file chooser that is cancelled says so here, too.
+dialog("bring").addEventListener("cancel", ({ target, currentTarget }) => target === currentTarget && send({ event: "later" }));
+dialog("bring").addEventListener("close", () => document.activeElement === document.body && focusCanvas());
 button("missing-again").addEventListener("click", () => {
   dialog("missing").close();
   send({ event: "tryAgain" });
