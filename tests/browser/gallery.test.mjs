@@ -181,8 +181,9 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    onFirstScreen("after Enter on a card while the page starts, keys act on the viewport", { before: withEarlyChoice }, async (page) => {
+    onFirstScreen("after Enter on a card while the page starts, the scene is shown and keys act on the viewport", { before: withEarlyChoice }, async (page) => {
       await until(page, () => document.activeElement?.localName === "canvas");
+      await whenModel(page, scenes[2].model);
     });
 
     onFirstScreen("a card can be dragged onto the viewport, and its address pasted", { viewport: DESKTOP }, async (page) => {

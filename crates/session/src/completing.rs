@@ -60,7 +60,7 @@ impl Session {
         const NOTHING: Completion = Completion::Done(None);
         let Some(waiting) = self.completable().cloned() else { return NOTHING };
         let Some(arrivals) = waiting.arrivals(items) else {
-            if shown == Some(Kind::Model) {
+            if shown == Some(Kind::Model) || (shown == Some(Kind::Motion) && self.asks_for_motion_alone()) {
                 return Completion::Done(self.pass_over());
             }
             self.ask(shown.is_none().then(|| names_of(items)));
@@ -81,8 +81,15 @@ impl Session {
         Completion::Follow(Box::new(Followed { files, is_own, ..Followed::of(arrivals.link) }))
     }
 
-    /// Stops asking, since another model was opened. Returns what to tell the user: it may have been the wrong file.
+    /// Whether the link's model is there, and the page asks for its motion.
+    fn asks_for_motion_alone(&self) -> bool {
+        let asking = self.awaited.as_ref().filter(|awaited| !awaited.lacks_model());
+        asking.is_some_and(|awaited| awaited.missing.iter().any(|file| file.role == LinkRole::Motion))
+    }
+
+    /// Stops asking, since another model or motion was opened. Returns what to tell the user: it may have been the wrong file.
     fn pass_over(&mut self) -> Option<String> {
+        self.effects.push(Effect::CloseAsk);
         // Copies of files that couldn't be loaded are accepted, not asked for.
         self.passed_over = self.awaited.take().filter(|awaited| !awaited.missing.is_empty());
         self.passed_over.as_ref().map(Awaited::need)

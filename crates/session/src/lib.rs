@@ -79,8 +79,8 @@ pub struct Session {
     companions: Companions,
     /// The link whose files the page asks for.
     awaited: Option<Awaited>,
-    /// A link that is no longer asked for, since another model was opened instead. Its files complete it until the next model is
-    /// opened.
+    /// A link that is no longer asked for, since another model or motion was opened instead. Its files complete it until the next
+    /// model is opened.
     passed_over: Option<Awaited>,
     /// The files that the page keeps, and whether they are the user's own.
     files: BTreeMap<FileId, bool>,
@@ -210,9 +210,11 @@ impl Session {
     /// Returns what the page reads at any time.
     pub fn facts(&self) -> Facts {
         let asking = self.awaited.as_ref().filter(|awaited| !awaited.missing.is_empty());
+        // Where the user has gone is shown next.
+        let link = self.asked.as_ref().map_or(&self.view, Asked::shown_link);
         Facts {
-            link: self.view.clone(),
-            is_local: self.held.local_files(&self.view).next().is_some(),
+            link: link.clone(),
+            is_local: self.held.local_files(link).next().is_some(),
             need: asking.map(Awaited::need),
             is_private: self.is_private(),
             seen_private: self.privacy.seen,
@@ -319,10 +321,7 @@ impl Session {
         }
         let visit = self.move_to_entry(link.clone(), state);
         let ask = self.next_ask();
-        if self.program != Program::Running {
-            // An instance that is starting, or the next one, shows it instead.
-            self.view = visit.as_ref().map_or_else(|| link.clone(), |visit| visit.link.clone());
-        }
+        // An instance that is starting shows something else until it has started: the view stays what it is.
         self.asked = Some(Asked { ask, link, visit, was_private: state.own });
         if self.program == Program::Running {
             self.follow_asked();
@@ -387,6 +386,11 @@ impl Session {
 }
 
 impl Asked {
+    /// Returns the link of what its entry shows, with the names of local files.
+    fn shown_link(&self) -> &Link {
+        self.visit.as_ref().map_or(&self.link, |visit| &visit.link)
+    }
+
     /// Returns the link to follow, with the files that its entry showed.
     fn followed(self, held: &Held) -> Followed {
         let Self { link, visit, was_private, .. } = self;

@@ -2,7 +2,7 @@
 
 use gaitway_session::{Effect, Event};
 
-use crate::cases::{FOX, MAN};
+use crate::cases::{DANCE, FOX, MAN};
 use crate::orders::{assert_address_shows_view, in_every_order};
 use crate::program::Content;
 use crate::world::{Act, World};
@@ -121,6 +121,17 @@ fn another_model_is_shown_instead_until_the_file_arrives() {
         let mut world = world.clone();
         world.then(FOX);
         assert_eq!(world.view().link().text(), "model=Fox.glb&fov=20");
+    });
+}
+
+#[test]
+fn another_motion_is_borrowed_instead_until_the_file_arrives() {
+    in_every_order(&World::at_rest(LACKS_MOTION, SERVER), &[DANCE], |world| {
+        assert_eq!(world.view().motions, ["dance.bvh"]);
+        assert_eq!((&world.asks, world.session.facts().need), (&None, None), "it is no longer asked for");
+        let mut world = world.clone();
+        world.then(WALK);
+        assert_eq!(world.view().link().text(), "model=a.glb&motion=walk.bvh&fov=20");
     });
 }
 

@@ -53,6 +53,20 @@ fn going_back_from_a_program_that_has_stopped_shows_the_files_that_the_page_hold
     });
 }
 
+/// It says what it shows before its first picture is drawn.
+#[test]
+fn what_is_gone_to_while_the_program_starts_is_shown() {
+    in_every_order(&World::new("model=walker", SERVER), &[Act::Type("model=a.glb")], |world| {
+        assert_eq!(world.models(), ["a.glb"]);
+        assert_address_shows_view(world);
+    });
+    let mut start = start();
+    start.then(FOX).then(MAN);
+    in_every_order(&start, &[Act::Crash, Act::Launch, Act::Back], |world| {
+        assert_eq!((world.models(), &world.asks), (vec!["Fox.glb".to_owned()], &None));
+    });
+}
+
 #[test]
 fn a_link_that_is_typed_while_the_program_starts_does_not_come_back_later() {
     let mut world = World::new("model=walker", SERVER);

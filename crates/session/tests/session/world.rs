@@ -43,8 +43,10 @@ pub enum Act {
 pub enum Due {
     /// A program has been downloaded.
     Loaded,
-    /// It shows its first image.
+    /// It has what it shows first.
     Started { link: Link, model: Vec<Item>, motion: Vec<Item>, is_private: bool },
+    /// It shows its first image.
+    Drawn { problems: Vec<String> },
     /// Files have been read.
     Read(TaskId),
     /// The program has what it loads.
@@ -280,8 +282,9 @@ impl World {
                 let link = program.view.link();
                 self.program = Some(program);
                 self.tell(Event::Changed { link });
-                self.tell(Event::Started { problems });
+                self.due.push(Due::Drawn { problems });
             }
+            Due::Drawn { problems } => self.tell(Event::Started { problems }),
             Due::Read(task) => {
                 let gone = |(item, _): &(Item, Option<Content>)| self.moved_files.contains(&item.name());
                 match self.read[&task].iter().find(|item| gone(item)) {
