@@ -24,7 +24,11 @@ function early(link) {
   const listeners = {};
   /** @type {string[]} */
   const files = [];
+  // A page of its own, not a frame.
+  const window = {};
   vm.runInNewContext(script, {
+    window,
+    parent: window,
     document: {
       getElementById: () => still,
       querySelector: () => ({ content: JSON.stringify(Object.fromEntries(names.map((name) => [name, [name]]))) }),
