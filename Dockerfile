@@ -12,7 +12,7 @@ COPY --from=unpacked /gaitway/gaitway /usr/local/bin/
 COPY --from=unpacked /gaitway/share /usr/local/share
 COPY --from=unpacked /gaitway/LICEN* /usr/share/doc/gaitway/
 WORKDIR /work
-# Nobody in particular. Files that are written belong to the user that `docker run --user` names.
+# An unprivileged user. With `docker run --user`, written files belong to the user it names.
 USER 65534:65534
 ENTRYPOINT ["gaitway"]
 CMD ["--help"]

@@ -17,7 +17,7 @@
 const PICTURE_WIDTH = 800;
 /** JPEG has no transparency. */
 const STUDIO = "#a3a6ab";
-/** Base64 of as many bytes at once: a whole number of groups of three. */
+/** Bytes that are encoded in base64 at once: a multiple of three, so that the parts can be joined. */
 const CHUNK = 3 * 8192;
 
 /** @param {string} text */
@@ -41,8 +41,10 @@ async function deflated(bytes) {
  * @param {PageScene} scene
  */
 async function blocksOf({ model, motion }) {
-  const block = (/** @type {string} */ role) => async (/** @type {PageFile} */ [name, bytes]) =>
-    `<script type="application/octet-stream" data-name="${escaped(name)}" data-role="${role}" data-coding="deflate">${base64(await deflated(bytes))}</script>\n`;
+  const block = (/** @type {string} */ role) => async (/** @type {PageFile} */ [name, bytes]) => {
+    const content = base64(await deflated(bytes));
+    return `<script type="application/octet-stream" data-name="${escaped(name)}" data-role="${role}" data-coding="deflate">${content}</script>\n`;
+  };
   return await Promise.all([...model.map(block("model")), ...motion.map(block("motion"))]);
 }
 
@@ -53,11 +55,12 @@ async function blocksOf({ model, motion }) {
 async function pictureOf(png) {
   const image = await createImageBitmap(new Blob([png], { type: "image/png" }));
   const scale = Math.min(1, PICTURE_WIDTH / image.width);
-  const canvas = Object.assign(document.createElement("canvas"), { width: Math.round(image.width * scale), height: Math.round(image.height * scale) });
+  const [width, height] = [image.width, image.height].map((pixels) => Math.round(pixels * scale));
+  const canvas = Object.assign(document.createElement("canvas"), { width, height });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   context.fillStyle = STUDIO;
-  context.fillRect(0, 0, canvas.width, canvas.height);
-  context.drawImage(image, 0, 0, canvas.width, canvas.height);
+  context.fillRect(0, 0, width, height);
+  context.drawImage(image, 0, 0, width, height);
   return canvas.toDataURL("image/jpeg", 0.8);
 }
 
@@ -69,7 +72,12 @@ async function pictureOf(png) {
 export function pageOf(template, { title, picture, link, blocks, hasKtx2 }) {
   const whole = hasKtx2 ? template : template.replace(/<!-- ktx2 -->[^]*<!-- \/ktx2 -->/, "");
   const [before, middle, after] = whole.split(/<!-- scene -->|<!-- files -->/);
-  const head = [`<title>${escaped(title)}</title>`, `<meta name="gaitway-link" content="${escaped(link)}">`, `<meta property="og:title" content="${escaped(title)}">`, `<meta property="og:image" content="${picture}">`];
+  const head = [
+    `<title>${escaped(title)}</title>`,
+    `<meta name="gaitway-link" content="${escaped(link)}">`,
+    `<meta property="og:title" content="${escaped(title)}">`,
+    `<meta property="og:image" content="${picture}">`,
+  ];
   return new Blob([before, head.join("\n    "), middle, ...blocks, after], { type: "text/html" });
 }
 
@@ -118,9 +126,8 @@ export async function showDialog(scene, host) {
   const measure = async () => {
     save.disabled = true;
     size.textContent = "Preparing…";
-    const measured = page();
     try {
-      const { size: bytes } = await measured;
+      const { size: bytes } = await page();
       size.textContent = `Size: ${(bytes / 1e6).toFixed(1)} MB`;
       save.disabled = false;
     } catch (error) {

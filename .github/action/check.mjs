@@ -41,14 +41,14 @@ async function forEach(values, f) {
   await Promise.all(Array.from({ length: os.availableParallelism() }, worker));
 }
 
-/** The tracked files that the patterns choose. */
+/** Returns the tracked files that the patterns match. */
 async function models() {
   const patterns = (env.FILES ?? "").split("\n").map((line) => line.trim()).filter(Boolean);
   if (patterns.length === 0) throw new Error("files: expected at least one pattern");
   return (await git(["--icase-pathspecs", "ls-files", "-z", "--", ...patterns])).split("\0").filter(Boolean);
 }
 
-/** The files that the push or pull request has changed; undefined if that can't be found out, as for a new branch. */
+/** Returns the files that the push or pull request has changed; undefined if that is unknown, as for a new branch. */
 async function changedFiles() {
   const base = env.BASE ?? "";
   if (/^0*$/.test(base)) return undefined;
@@ -61,7 +61,7 @@ async function changedFiles() {
   }
 }
 
-/** As an argument: a name such as `sample:fox.glb` is a file here. @param {string} file */
+/** Returns a file as an argument: here, a name such as `sample:fox.glb` is a file. @param {string} file */
 const local = (file) => `./${file}`;
 
 /** @param {string} file @returns {Promise<Model>} */
@@ -81,13 +81,13 @@ async function inspect(file) {
   }
 }
 
-/** Whether one of the files that a model consists of has changed. @param {Model} model @param {Set<string> | undefined} changed */
+/** Returns whether one of the files that a model consists of has changed. @param {Model} model @param {Set<string> | undefined} changed */
 function hasChanged({ file, report }, changed) {
   const files = (report?.files ?? []).map((name) => path.posix.join(path.posix.dirname(file), name));
   return changed === undefined || [file, ...files].some((name) => changed.has(name));
 }
 
-/** Draws a model: in the middle of its first clip, or else as it rests. @param {Model} model */
+/** Draws a model in the middle of its first clip, or in its rest pose. @param {Model} model */
 async function draw(model) {
   const name = `${model.file}.png`;
   const out = path.join(FOLDER, name);
@@ -124,7 +124,7 @@ async function publish(drawn) {
   }
 }
 
-/** Other runs may push at the same time. @param {string} tree */
+/** Pushes a commit of a tree; again if another run has pushed at the same time. @param {string} tree */
 async function push(tree, attempts = 4) {
   const isNew = (await git(["ls-remote", "origin", `refs/heads/${BRANCH}`])) === "";
   if (!isNew) await git(["fetch", "--quiet", "--depth=1", "origin", `refs/heads/${BRANCH}`]);
@@ -152,7 +152,7 @@ function annotate(kind, properties, message) {
 }
 
 /**
- * Files of text have lines, and an annotation may point to one.
+ * Returns the properties of an annotation; those of text files have a line.
  * @param {string} file
  * @param {string} title
  * @param {Omit<Finding, "code">} finding
@@ -163,7 +163,7 @@ function properties(file, title, { where }) {
   return line === undefined ? { file, title } : { file, line, title };
 }
 
-/** File names and messages are anyone's text. @param {string} text */
+/** Escapes a text, since file names and messages may contain anything. @param {string} text */
 const html = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;").replaceAll('"', "&quot;").replaceAll("\n", " ");
 
 /** @param {Model} model */

@@ -84,9 +84,9 @@ export interface ViewerAttributes {
   drop: boolean;
   /** Shows the transport. */
   controls: boolean;
-  /** The URL of an image that is shown until the first one of the model. */
+  /** The URL of an image that is shown until the model is. */
   poster: Text;
-  /** What the viewer shows, for screen readers. */
+  /** Describes the view to screen readers. */
   alt: Text;
   loading: "eager" | "lazy" | null;
   reveal: "auto" | "interaction" | null;

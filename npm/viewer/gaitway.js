@@ -1,36 +1,37 @@
 // The element `<gaitway-viewer>`: Gaitway's page in a frame, described by attributes. The frame keeps its scripts, styles and keyboard
-// apart from those of the page around it, and has the files that users drop into it to itself where it comes from another origin. It is
-// called by messages (web/shell/embed.js). Before a viewer is to be seen there is nothing but this file and a poster. On a server,
-// importing it does nothing.
+// apart from those of the page around it and, on another origin, hides the files that users drop into it. Calls are messages
+// (web/shell/embed.js). Until a viewer is needed, this file and a poster are all that is loaded. Importing this on a server does nothing.
 
 /** @typedef {import("./gaitway.d.ts").ErrorCode} ErrorCode */
 /** @typedef {import("./gaitway.d.ts").Openable} Openable */
 
-/** Attributes that are called as their keys of the link are. */
+/** Attributes with the names of their link keys. */
 const KEYS =
   "model motion map unmapped root feet contacts scene clip t fade mirror copy rename change layers speed loop range skinning morph expression look springs pin names channel show joint vertex camera fov follow turntable variant up exposure tonemap environment light background".split(
     " ",
   );
 /**
- * The key of each attribute. HTML, a framework or a method has the names of the last four.
+ * The link key of each attribute. The names of the last four keys are taken by HTML, a framework or a method.
  * @type {Record<string, string>}
  */
 const KEY_OF = { ...Object.fromEntries(KEYS.map((key) => [key, key])), autoplay: "play", joints: "pose", hide: "hidden", "key-light": "key" };
 const FLAGS = ["autoplay", "springs", "follow"];
 /**
- * Keys whose values are URLs, and which of their values aren't: joint maps and their compact form, set-ups of lights.
+ * Keys whose values are URLs, with a pattern for values that aren't: joint maps and their compact form, light presets.
  * @type {Record<string, RegExp>}
  */
 const URLS = { model: /^$/, motion: /^$/, map: /^(\{|[12]\.[\da-f]{8}\.)/i, light: /^[^./:]*$/ };
 
-/** What else the frame depends on: with another value, it is made again. */
+/** Attributes that need a new frame when they change. */
 const OF_FRAME = ["base", "renderer", "drop"];
 const OTHERS = [...OF_FRAME, "controls", "poster", "alt", "loading", "reveal"];
+/** Attributes without a value, which are properties with a boolean. */
+const BOOLEANS = ["controls", "drop"];
 /** The attributes that say what the frame shows. */
 const ALL = [...Object.keys(KEY_OF), "controls"];
-/** Attributes whose files the others are about. */
+/** Attributes that name the files; the others are about these. */
 const SOURCES = ["model", "motion"];
-/** What is shown of a model before its attributes are: nothing moves, so that a clip begins where it should. */
+/** The view of a new model before its attributes are applied: paused, so that a clip begins where it should. */
 const BARE = { ...Object.fromEntries(Object.values(KEY_OF).map((key) => [key, null])), embed: "viewport", play: false };
 
 /** @param {string} name */
@@ -65,6 +66,12 @@ function make(tag, attributes = {}, ...children) {
 }
 
 /**
+ * @param {string} name
+ * @param {Node} content What is shown if the page puts nothing into the slot.
+ */
+const slot = (name, content) => make("slot", { name, class: name }, content);
+
+/**
  * @param {ErrorCode | undefined} code
  * @param {string} message
  */
@@ -95,7 +102,7 @@ function listed(text) {
   return [text];
 }
 
-/** How long after a frame has loaded its first message may take. */
+/** How long a frame's first message may take after the frame has loaded. */
 const PATIENCE_MS = 3000;
 
 /** A frame with the page in it. */
@@ -109,18 +116,18 @@ class Frame {
 
   /**
    * @param {string} url
-   * @param {(event: string, data: any) => void} announce Gets the frame's events. Besides those of the page: `missing`, if there is none.
+   * @param {(event: string, data: any) => void} announce Gets the page's events, and `missing` if there is no such page.
    */
   constructor(url, announce) {
     const { origin } = new URL(url);
     this.#origin = origin === "null" ? "*" : origin;
     this.announce = announce;
     this.element = make("iframe", { part: "frame", src: url, allow: "fullscreen; clipboard-write" });
-    /** @type {Promise<void>} Resolves once it answers; rejects if that will never be. */
+    /** @type {Promise<void>} Resolves once the page is ready; rejects if it can't start. */
     this.ready = new Promise((resolve, reject) => (this.#calls.set(0, { resolve, reject })));
     this.ready.catch(() => {});
     addEventListener("message", this.#hear);
-    // The page says something while it loads, which may be heard a little later.
+    // The page sends a message while it loads, which may arrive a little later.
     this.element.addEventListener("load", () => setTimeout(() => {
       if (this.#isAlive || !this.element.isConnected) return;
       announce("missing", {});
@@ -184,10 +191,10 @@ class Viewer extends Base {
 
   /** @type {Frame | null} */
   #frame = null;
-  /** Attributes that have changed that the frame has not received yet. @type {Set<string>} */
+  /** Changed attributes that the frame hasn't received yet. @type {Set<string>} */
   #changed = new Set();
   #isUpdating = false;
-  /** How many methods wait for an answer: they need a frame even if it wouldn't be seen. */
+  /** The number of pending method calls, which need a frame even if nobody sees it. */
   #calls = 0;
   /** Whether the user has asked for the view. */
   #isRevealed = false;
@@ -197,20 +204,17 @@ class Viewer extends Base {
   /** Those who wait for a frame. @type {(() => void)[]} */
   #waiting = [];
 
-  #poster = /** @type {HTMLImageElement} */ (this.#part("img", "poster", { alt: "", decoding: "async" }));
-  #button = this.#part("button", "reveal", { type: "button" });
-  #bar = this.#part("div", "progress", { role: "progressbar", "aria-label": "Loading", "aria-valuemin": "0", "aria-valuemax": "100" });
-  #error = this.#part("p", "error", { role: "alert" });
-  #body = /** @type {HTMLElement} */ (/** @type {unknown} */ (undefined));
+  #poster = make("img", { part: "poster", alt: "", decoding: "async" });
+  #button = make("button", { part: "reveal", type: "button" });
+  #bar = make("div", { part: "progress", role: "progressbar", "aria-label": "Loading", "aria-valuemin": "0", "aria-valuemax": "100" }, make("div"));
+  #error = make("p", { part: "error", role: "alert" });
+  #body = make("div", { class: "waiting" }, slot("poster", this.#poster), this.#button, slot("progress", this.#bar), slot("error", this.#error));
   /** @type {IntersectionObserver | undefined} */
   #observer;
 
   constructor() {
     super();
-    const slot = (/** @type {string} */ name, /** @type {Node} */ content) => make("slot", { name, class: name }, content);
-    this.#bar.append(make("div"));
-    this.#body = make("div", { class: "waiting" }, slot("poster", this.#poster), this.#button, slot("progress", this.#bar), slot("error", this.#error));
-    // Not an element, which a policy of the page's may forbid.
+    // Not a `<style>` element, which the page's Content-Security-Policy may forbid.
     const style = new CSSStyleSheet();
     style.replaceSync(STYLE);
     const shadow = this.attachShadow({ mode: "open", delegatesFocus: true });
@@ -222,17 +226,8 @@ class Viewer extends Base {
     });
   }
 
-  /**
-   * @param {"img" | "button" | "div" | "p"} tag
-   * @param {string} part
-   * @param {Record<string, string>} attributes
-   */
-  #part(tag, part, attributes) {
-    return make(tag, { part, ...attributes });
-  }
-
   connectedCallback() {
-    // Set before the element was defined, properties would hide those of the class.
+    // Properties that were set before the element was defined would hide those of the class.
     for (const name of Viewer.observedAttributes.map(camelCase)) {
       if (!Object.hasOwn(this, name)) continue;
       const self = /** @type {any} */ (this);
@@ -284,13 +279,13 @@ class Viewer extends Base {
     const keys = ALL.filter((name) => changed.has(name));
     const isOther = SOURCES.some((name) => changed.has(name));
     if (this.#frame === null) return this.#start();
-    // A frame that has nothing to show would take the same model again for the one that it has.
+    // A frame that shows nothing wouldn't load the same model again.
     const startsAgain = isOther && (!this.#hasSources() || this.#body.className === "failed");
     if (startsAgain || OF_FRAME.some((name) => changed.has(name)) || (keys.length > 0 && !this.#frame.isReady)) {
       this.#stop();
       return this.#start();
     }
-    // Another model is shown as the attributes say, not as the user has left the one before.
+    // Another model is shown as the attributes say, not as the user left the previous one.
     if (keys.length > 0) this.#show(isOther ? ALL : keys, isOther);
   }
 
@@ -327,25 +322,32 @@ class Viewer extends Base {
   /** The address of the page, without a link. */
   #page() {
     const folder = this.getAttribute("base") ?? Viewer.base;
-    // In a variable: bundlers would take it for a file that they have to find.
+    // In a variable, since bundlers look for a file where `import.meta.url` is an argument of `new URL`.
     const module = import.meta.url;
     const base = folder === "" ? new URL("../", module) : new URL(folder.replace(/\/?$/, "/"), document.baseURI);
     return new URL("index.html", base);
   }
 
   #link() {
-    const pairs = Object.entries(this.#values()).flatMap(([key, value]) => (value === null ? [] : [value].flat().map((text) => `${key}=${encodeURIComponent(typeof text === "boolean" ? Number(text) : text)}`)));
-    // The version fixes what is left out.
+    const pairs = Object.entries(this.#values()).flatMap(([key, value]) => {
+      const values = value === null ? [] : [value].flat();
+      return values.map((text) => `${key}=${encodeURIComponent(typeof text === "boolean" ? Number(text) : text)}`);
+    });
+    // The version fixes the defaults of keys that are left out.
     return ["v=2", ...pairs].join("&");
   }
 
   /** Makes the frame if it is needed by now. */
   #start() {
     if (this.#frame !== null || !this.isConnected) return;
-    const isWanted = this.#hasSources() && (this.#isRevealed || this.getAttribute("reveal") !== "interaction") && (this.#isNear || this.getAttribute("loading") !== "lazy");
+    const isRevealed = this.#isRevealed || this.getAttribute("reveal") !== "interaction";
+    const isNear = this.#isNear || this.getAttribute("loading") !== "lazy";
+    const isWanted = this.#hasSources() && isRevealed && isNear;
     if (!isWanted && this.#calls === 0) return;
     const page = this.#page();
-    if (page.protocol === "file:" && location.protocol !== "file:") return this.#fail("Gaitway's files aren't beside this module: set “base” to the URL of their folder", "not-found");
+    if (page.protocol === "file:" && location.protocol !== "file:") {
+      return this.#fail("Gaitway's files aren't beside this module: set “base” to the URL of their folder", "not-found");
+    }
     page.searchParams.set("viewer", "");
     if (this.hasAttribute("drop")) page.searchParams.set("drop", "");
     const renderer = this.getAttribute("renderer");
@@ -444,7 +446,7 @@ class Viewer extends Base {
     const frame = this.#frame;
     const apply = async (/** @type {object} */ values) => void (await frame?.call("apply", [values]));
     const refuse = (/** @type {Error & { code: ErrorCode }} */ { message, code }) => {
-      // What was set since is on its way.
+      // A cancelled call is followed by that of what was set since.
       if (frame === this.#frame && code !== "cancelled") this.#report(message, code);
     };
     try {
@@ -504,7 +506,8 @@ class Viewer extends Base {
   /** @param {Record<string, unknown>} partial */
   apply(partial) {
     const value = (/** @type {string} */ key, /** @type {unknown} */ given) => (typeof given === "string" ? resolved(key, given) : given);
-    return this.#call("apply", Object.fromEntries(Object.entries(partial).map(([key, given]) => [key, Array.isArray(given) ? given.map((one) => value(key, one)) : value(key, given)])));
+    const values = (/** @type {string} */ key, /** @type {unknown} */ given) => (Array.isArray(given) ? given.map((one) => value(key, one)) : value(key, given));
+    return this.#call("apply", Object.fromEntries(Object.entries(partial).map(([key, given]) => [key, values(key, given)])));
   }
 
   state() {
@@ -535,21 +538,21 @@ class Viewer extends Base {
 }
 
 for (const attribute of Viewer.observedAttributes) {
+  const isBoolean = BOOLEANS.includes(attribute);
   Object.defineProperty(Viewer.prototype, camelCase(attribute), {
     enumerable: true,
     configurable: true,
     /** @this {HTMLElement} */
     get() {
-      return ["controls", "drop"].includes(attribute) ? this.hasAttribute(attribute) : this.getAttribute(attribute);
+      return isBoolean ? this.hasAttribute(attribute) : this.getAttribute(attribute);
     },
     /**
      * @this {HTMLElement}
      * @param {unknown} value
      */
     set(value) {
-      const isBare = ["controls", "drop"].includes(attribute);
-      if (value === null || value === undefined || (isBare && value === false)) this.removeAttribute(attribute);
-      else if (isBare) this.setAttribute(attribute, "");
+      if (value === null || value === undefined || (isBoolean && value === false)) this.removeAttribute(attribute);
+      else if (isBoolean) this.setAttribute(attribute, "");
       else this.setAttribute(attribute, Array.isArray(value) ? JSON.stringify(value) : typeof value === "boolean" ? String(Number(value)) : String(value));
     },
   });

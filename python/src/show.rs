@@ -1,4 +1,4 @@
-//! Showing a scene in a notebook: a frame with a page that has everything inside.
+//! Showing a scene in a notebook: a frame with a self-contained page.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use crate::retarget::read_map;
 /// Notebook servers cut the output of a cell at 3 MB.
 const MAX_BYTES: usize = 2_900_000;
 
-/// A page that shows a scene by itself. The last value of a notebook's cell is displayed.
+/// A self-contained page that shows a scene. The last value of a notebook's cell is displayed.
 #[pyclass(frozen, module = "gaitway")]
 pub struct Scene {
     html: String,
@@ -56,7 +56,7 @@ impl Scene {
     }
 }
 
-/// Escapes a text between single quotation marks: pages have fewer of them.
+/// Escapes a text for HTML between single quotation marks, of which pages have fewer than double ones.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('\'', "&#39;")
 }
@@ -65,9 +65,9 @@ fn escaped(text: &str) -> String {
 ///
 /// Everything is inside the output, which works offline and can be shared with the notebook. `clip` is a name or an index, of the
 /// motion's clips first; `view` is a link of the page, or its part after `#`, with the camera and all else. `map` is a joint map: a
-/// dictionary or the path of a file. `renderer` is `"webgl2"`, for every current browser, or `"webgpu"`, which is smaller. With `file`,
-/// the page is written there and the frame shows it: for scenes that are larger than notebooks take. `page` is the folder with the
-/// page's program, if it isn't where the package was installed.
+/// dictionary or the path of a file. `renderer` is `"webgl2"`, for every current browser, or `"webgpu"`, which is smaller. With
+/// `file`, the page is written there and the frame shows it: for scenes that are larger than notebooks take. `page` is the folder
+/// with the page's program, if it isn't where the package was installed.
 #[pyfunction]
 #[pyo3(signature = (model, motion = None, *, clip = None, view = None, map = None, title = None, renderer = "webgl2", height = 480, file = None, page = None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
@@ -94,8 +94,8 @@ pub fn show(
     let prefix: PathBuf = py.import("sys")?.getattr("prefix")?.extract()?;
     let (model, motion) = (model.0.clone(), motion.map(|motion| motion.0.clone()));
     let title = title.unwrap_or_else(|| model.content.model.source.clone());
-    let files_read = [Some(&model.files_read), motion.as_ref().map(|motion| &motion.files_read)];
-    let files_read: Vec<PathBuf> = files_read.into_iter().flatten().flatten().cloned().collect();
+    let mut files_read = model.files_read.clone();
+    files_read.extend(motion.iter().flat_map(|motion| motion.files_read.iter().cloned()));
     let html = py.detach(|| {
         let options = PageOptions {
             clip: clip.as_deref(),
@@ -108,8 +108,8 @@ pub fn show(
         };
         functions::page(&model.content, motion.as_deref().map(|motion| &motion.content), map, options)
     });
-    let shown = file.as_ref().map(|file| file.display().to_string());
-    let scene = Scene { html: raised(html)?, title, height, file: shown, files_read };
+    let address = file.as_ref().map(|file| file.display().to_string());
+    let scene = Scene { html: raised(html)?, title, height, file: address, files_read };
     match file {
         Some(file) => scene.write(py, file)?,
         None => check_size(&scene, backend)?,

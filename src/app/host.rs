@@ -54,12 +54,12 @@ pub trait Host {
     /// Saves a file for the user. Sends [`Message::Saved`](super::Message::Saved), unless the user changes their mind.
     fn save_file(&self, file: ExportedFile, inbox: &Inbox);
 
-    /// Whether the host can save pages that show a scene by themselves.
+    /// Whether the host can save self-contained pages that show a scene.
     fn can_save_page(&self) -> bool {
         false
     }
 
-    /// Saves a page that shows a scene by itself, once the user has chosen how. `has_ktx2`: images of the model have to be
+    /// Saves a self-contained page that shows a scene, once the user has chosen how. `has_ktx2`: images of the model have to be
     /// transcoded. Called only if [`Host::can_save_page`] returns true.
     fn save_page(&self, scene: Scene, has_ktx2: bool) {
         let _ = (scene, has_ktx2);
@@ -75,7 +75,7 @@ pub trait Host {
         Err("Couldn't record a video: only the page can. Open this link there, or save images instead.".to_owned())
     }
 
-    /// Reports what can't be used of an embedded view to the page around it. Returns false if the app has to show it.
+    /// Reports a problem of an embedded view to the page around it. Returns false if the app has to show it.
     fn report(&self, problem: &str) -> bool {
         let _ = problem;
         false

@@ -31,7 +31,7 @@ impl App {
         }
     }
 
-    /// Saves a page that shows the scene by itself.
+    /// Saves a self-contained page that shows the scene.
     pub(super) fn save_page(&mut self) {
         let has_ktx2 = self.editor.library().active().is_some_and(|model| has_ktx2(&model.asset));
         match self.editor.scene() {

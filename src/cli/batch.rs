@@ -132,11 +132,11 @@ impl Batch<'_> {
     }
 }
 
-/// Does a job. One that shows a fault of the program, a panic, fails like any other and costs no other its result.
+/// Does a job. A panic, which is a bug in Gaitway, fails that job alone.
 fn guarded<T>(job: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
-    // What a job shares with others is only read.
+    // Jobs only read what they share.
     catch_unwind(AssertUnwindSafe(job)).unwrap_or_else(|_| {
-        Err(Failure::new("this motion shows a fault of Gaitway's").with_hint("please report it, with the file"))
+        Err(Failure::new("this motion triggers a bug in Gaitway").with_hint("please report it, with the file"))
     })
 }
 
@@ -206,7 +206,7 @@ fn model_folders(models: &[PathBuf], folder: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(folders)
 }
 
-/// A file's name without its extension, or with it if the rest would be `.` or `..`, which lead elsewhere.
+/// Returns a file's name without its extension, or with it if the rest would be `.` or `..`, which name other folders.
 fn stem(path: &Path) -> &OsStr {
     let named = path.file_stem().filter(|stem| ![".", ".."].map(OsStr::new).contains(stem));
     named.or(path.file_name()).unwrap_or_default()

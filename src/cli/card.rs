@@ -1,20 +1,44 @@
-//! `gaitway card`: a page with a title and a picture of its own, for previews, that leads to a link.
+//! `gaitway card`: a page that redirects to a link and has a title and a picture of its own, for previews.
 
 use std::path::PathBuf;
 
+use clap::Args;
 use gaitway_scene::editor::short_name;
 use gaitway_scene::state::{Sources, from_link};
 
 use super::failure::{Failure, Outcome};
-use super::motion::{Overrides, apply_link, open_editor};
+use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
+use super::open;
 use super::output::{check_output, is_standard_output, save_output, warn};
 use super::web_page::{EXTENSIONS, PICTURE_SIZE, picture_of};
-use super::{CardArguments, open};
 use crate::files::{Disk, escaped};
 
 /// xtask/site/cards.mjs fills it for the page's own scenes.
 const TEMPLATE: &str = include_str!("card.html");
 const TEXT: &str = "Watch it move in the browser.";
+
+#[derive(Debug, Args)]
+pub(super) struct CardArguments {
+    /// A link of the page.
+    link: String,
+    /// Copies of the link's model, for the picture [default: the link's own, if that is a sample].
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The page to write. Its picture goes beside it.
+    #[arg(long, value_name = "OUT.html")]
+    out: PathBuf,
+    #[command(flatten)]
+    motion: MotionArguments,
+    /// The title [default: the model's name].
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// The text below the title.
+    #[arg(long, value_name = "TEXT")]
+    text: Option<String>,
+    /// The URL that the card will have: many sites need it to show the picture.
+    #[arg(long, value_name = "URL")]
+    url: Option<String>,
+}
 
 pub(super) fn run(arguments: &CardArguments, disk: &Disk) -> Outcome {
     let CardArguments { link, out, .. } = arguments;
@@ -74,6 +98,7 @@ fn beside(url: Option<&str>, name: &str) -> String {
     folder.map_or_else(|| name.to_owned(), |folder| format!("{folder}/{name}"))
 }
 
+/// Returns the template with `{key}` replaced by the values. Without a picture, lines that mention it are left out.
 fn filled(values: &[(&str, String)], has_picture: bool) -> String {
     let mut page = String::new();
     for line in TEMPLATE.lines().filter(|line| has_picture || !line.contains("{picture")) {

@@ -1,4 +1,5 @@
-//! `gaitway convert`: converts any supported model to a single GLB, or one of its clips to BVH or a VRM animation.
+//! `gaitway convert`: converts any supported model to a single GLB, or one of its clips to BVH or a VRM animation. Pages are
+//! written by [`web_page`].
 
 use gaitway_character::asset::Asset;
 use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_renamed_model};

@@ -121,7 +121,8 @@ pub struct PageOptions<'a> {
     pub title: Option<&'a str>,
     /// What it draws with.
     pub backend: Backend,
-    /// The folder with the page's program; by default what a variable names, beside this program, or near `prefix`.
+    /// The folder with the page's program; by default what `GAITWAY_PAGE` names, beside this program, or near
+    /// `prefix`.
     pub folder: Option<&'a Path>,
     /// Where packages are installed.
     pub prefix: Option<&'a Path>,
@@ -129,7 +130,7 @@ pub struct PageOptions<'a> {
     pub files_read: &'a [PathBuf],
 }
 
-/// Returns a page that shows a model by itself, as `gaitway convert` writes it, without a picture for previews.
+/// Returns a self-contained page that shows a model, as `gaitway convert` writes it, without a picture for previews.
 ///
 /// # Errors
 /// If the motion, the map, the clip or the view doesn't fit, or the page's program is missing.
@@ -152,5 +153,5 @@ pub fn page(
     };
     let view = View { link: options.view, clip: options.clip };
     let editor = editor_of(opened, &MotionArguments::default(), view, &Disk::beside(options.files_read.to_vec()))?;
-    web_page::written(&editor, &template, options.title, None)
+    web_page::page_of(&editor, &template, options.title, None)
 }

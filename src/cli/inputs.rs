@@ -7,6 +7,7 @@ use gaitway_formats::limits::MAX_FOLDER_DEPTH;
 use gaitway_formats::{GLTF_EXTENSIONS, OTHER_MOTION_EXTENSIONS};
 
 use super::failure::{Failure, Outcome};
+use super::output::extension_of;
 use crate::files::is_below;
 
 /// A motion.
@@ -17,8 +18,8 @@ pub(super) struct Input {
 }
 
 /// Returns the motions in the order given, those in folders and of patterns sorted. A file given by its name may have any
-/// extension. Neither `out_dir`, which may hold the results of an earlier run, nor links to folders are searched, and links to
-/// files elsewhere are left out.
+/// extension. Neither `out_dir`, which may hold the results of an earlier run, nor symbolic links to folders are searched, and
+/// symbolic links to files outside the given folder are left out.
 pub(super) fn motions(paths: &[PathBuf], out_dir: &Path) -> Outcome<Vec<Input>> {
     let out_dir = fs::canonicalize(out_dir).ok();
     let mut inputs = Vec::new();
@@ -80,8 +81,7 @@ fn walk(folder: &Path, base: &Path, out_dir: Option<&Path>, depth: usize, inputs
 }
 
 fn is_motion(path: &Path) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase);
-    extension.is_some_and(|extension| {
+    extension_of(path).is_some_and(|extension| {
         GLTF_EXTENSIONS.iter().chain(&OTHER_MOTION_EXTENSIONS).any(|known| *known == extension)
     })
 }

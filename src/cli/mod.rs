@@ -11,6 +11,7 @@ mod inputs;
 mod inspect;
 mod layer;
 mod map;
+mod moment;
 mod motion;
 mod output;
 mod pin;
@@ -33,22 +34,19 @@ use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use gaitway_character::anim::{ClipQuery, LoopMode, find_clip};
 use gaitway_character::asset::Warnings;
-use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart, UpChoice};
-use gaitway_scene::editor::{ClipFormat, Editor};
-use gaitway_scene::library::Model;
-use gaitway_scene::state::{ClipChoice, Command, unknown_clip};
+use gaitway_scene::editor::ClipFormat;
 use serde_json::json;
 
-use crate::files::{Backend, Disk, Opened};
+use crate::files::{Disk, Opened};
+use card::CardArguments;
 use edit::EditOptions;
 use failure::{Failure, Outcome};
-use layer::LayerOptions;
-use motion::{MotionArguments, Overrides};
-use output::{is_standard_output, print_error, print_json, shown, warn};
-use pin::PinOptions;
+use moment::Moment;
+use motion::MotionArguments;
+use output::{is_standard_output, print_error, print_json, printable, warn};
+use web_page::PageArguments;
 
 /// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
@@ -95,39 +93,6 @@ struct InspectArguments {
     /// Prints a JSON document to standard output.
     #[arg(long)]
     json: bool,
-}
-
-/// The pose to evaluate.
-#[derive(Debug, Args)]
-struct Moment {
-    /// A clip's name or index [default: the rest pose]. With --motion, clips of the motion come first, and the default is its
-    /// first clip.
-    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
-    clip: Option<String>,
-    #[command(flatten)]
-    layers: LayerOptions,
-    /// Seconds into the clip, clamped to its end.
-    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = read_seconds)]
-    time: Option<f64>,
-    /// The skinning method.
-    #[arg(long, value_enum)]
-    skinning: Option<Skinning>,
-    #[command(flatten)]
-    pins: PinOptions,
-}
-
-impl Moment {
-    /// Returns what these options override in a link.
-    fn overrides(&self) -> Overrides {
-        Overrides { clip: self.clip.is_some(), layers: !self.layers.layers.is_empty(), variant: false }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Skinning {
-    Linear,
-    Rigid,
-    DualQuaternion,
 }
 
 #[derive(Debug, Args)]
@@ -274,8 +239,8 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip. An .html is a page that
-    /// shows the scene by itself, without a network.
+    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip. An .html is a
+    /// self-contained page that shows the scene, without a network.
     #[arg(long, value_name = "OUT.glb|.bvh|.vrma|.html")]
     out: PathBuf,
     /// The clip to change, to write as .bvh or .vrma, or to show in an .html, by name or index [default: the first].
@@ -292,68 +257,6 @@ struct ConvertArguments {
     view: Option<String>,
     #[command(flatten)]
     page: PageArguments,
-}
-
-/// What only a page has.
-#[derive(Debug, Args)]
-struct PageArguments {
-    #[command(flatten)]
-    motion: MotionArguments,
-    /// Of an .html: its title [default: the model's name].
-    #[arg(long, value_name = "TEXT")]
-    title: Option<String>,
-    /// Of an .html: what it draws with. With WebGPU it is smaller, but not every browser opens it [default: webgl2].
-    #[arg(long, value_enum)]
-    renderer: Option<RendererArgument>,
-    /// Of an .html: the folder with the page's program, such as dist of `cargo xtask build` [default: $GAITWAY_PAGE, or beside
-    /// this program].
-    #[arg(long, value_name = "FOLDER")]
-    page: Option<PathBuf>,
-}
-
-impl PageArguments {
-    fn is_none(&self) -> bool {
-        let MotionArguments { motion, map } = &self.motion;
-        motion.is_none() && map.is_none() && self.title.is_none() && self.renderer.is_none() && self.page.is_none()
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum RendererArgument {
-    Webgl2,
-    Webgpu,
-}
-
-impl From<RendererArgument> for Backend {
-    fn from(argument: RendererArgument) -> Self {
-        match argument {
-            RendererArgument::Webgl2 => Self::WebGl2,
-            RendererArgument::Webgpu => Self::WebGpu,
-        }
-    }
-}
-
-#[derive(Debug, Args)]
-struct CardArguments {
-    /// A link of the page.
-    link: String,
-    /// Copies of the link's model, for the picture [default: the link's own, if that is a sample].
-    #[arg(value_name = "FILE")]
-    files: Vec<PathBuf>,
-    /// The page to write. Its picture goes beside it.
-    #[arg(long, value_name = "OUT.html")]
-    out: PathBuf,
-    #[command(flatten)]
-    motion: MotionArguments,
-    /// The title [default: the model's name].
-    #[arg(long, value_name = "TEXT")]
-    title: Option<String>,
-    /// The text below the title.
-    #[arg(long, value_name = "TEXT")]
-    text: Option<String>,
-    /// The URL that the card will have: many sites need it to show the picture.
-    #[arg(long, value_name = "URL")]
-    url: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -451,11 +354,11 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Prints clap's text in colours or, if an argument such as the name of a file has something that a terminal would obey, its first
-/// paragraph.
+/// Prints clap's text in colours. It quotes arguments as they are, so if one isn't printable, only the first paragraph is printed,
+/// escaped.
 fn print_usage_error(error: &clap::Error) {
-    let is_plain = |argument: OsString| matches!(shown(&argument.to_string_lossy()), Cow::Borrowed(_));
-    if std::env::args_os().all(is_plain) {
+    let is_printable = |argument: OsString| matches!(printable(&argument.to_string_lossy()), Cow::Borrowed(_));
+    if std::env::args_os().all(is_printable) {
         let _ = error.print();
     } else {
         print_error(&format!("error: {}", usage_message(error)));
@@ -530,63 +433,6 @@ fn print_warnings(file: &str, warnings: &Warnings) {
     }
 }
 
-/// Shows a clip by name or index. With `has_motion`, retargeted clips come first, and the default is the first of them.
-fn show_clip(editor: &mut Editor, clip: Option<&str>, has_motion: bool) -> Outcome {
-    let Some(model) = editor.library().active() else { return Ok(()) };
-    let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
-    let choice = match clip {
-        Some(name) => Some(retargeted(name).unwrap_or_else(|| ClipChoice::called(name))),
-        None => retargeted("0"),
-    };
-    if let Some(choice) = choice {
-        editor.apply(Command::SetClip(choice));
-    }
-    if let (Some(_), Some(model)) = (clip, editor.library().active())
-        && let Some(unknown) = unknown_clip(model, editor.state())
-    {
-        return Err(Failure::from(unknown).in_file(&model.source));
-    }
-    Ok(())
-}
-
-/// Applies the given options and keeps the rest. With `has_motion`, retargeted clips come first.
-fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outcome {
-    editor.apply(Command::SetPlaying(false));
-    show_clip(editor, moment.clip.as_deref(), has_motion)?;
-    if let (false, Some(model)) = (moment.layers.layers.is_empty(), editor.library().active()) {
-        layer::check(&moment.layers.layers, model)?;
-        editor.apply(Command::SetLayers(moment.layers.layers.clone()));
-    }
-    if let Some(time_secs) = moment.time {
-        if !time_secs.is_finite() {
-            return Err(Failure::expected("a number of seconds", time_secs.to_string()).at("--time"));
-        }
-        editor.apply(Command::SetRange(None));
-        editor.apply(Command::SetLoopMode(LoopMode::Once));
-        editor.apply(Command::Seek(time_secs));
-    }
-    if let Some(skinning) = moment.skinning {
-        editor.apply(Command::SetSkinning(match skinning {
-            Skinning::Linear => SkinningMode::Linear,
-            Skinning::Rigid => SkinningMode::Rigid,
-            Skinning::DualQuaternion => SkinningMode::DualQuaternion,
-        }));
-    }
-    if let Some(model) = editor.library().active().filter(|_| !moment.pins.is_empty()) {
-        for (joint, pin) in moment.pins.pins(&model.asset, model.recognition())? {
-            editor.apply(Command::SetPin { joint, pin: Some(pin) });
-        }
-    }
-    Ok(())
-}
-
-/// Finds a retargeted clip by name, or by index among the retargeted ones.
-fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
-    let clips = model.clips().borrowed().map(|(_, borrowed)| &borrowed.clip);
-    let (clip, _) = model.clips().borrowed().nth(find_clip(clips, ClipQuery::NameOrIndex(name))?)?;
-    Some(ClipChoice::Clip(clip.id().clone()))
-}
-
 #[cfg(feature = "render")]
 fn read_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
@@ -594,10 +440,6 @@ fn read_size(text: &str) -> Result<[u32; 2], String> {
     sides
         .filter(|sides| sides.iter().all(fits))
         .ok_or_else(|| "expected WxH in pixels, from 1x1 to 8192x8192".to_owned())
-}
-
-fn read_seconds(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_| "expected seconds, such as 1.5".to_owned())
 }
 
 fn read_loops(text: &str) -> Result<u16, String> {

@@ -37,13 +37,18 @@ pub(super) fn check_output(out: &Path, extensions: &[&str], disk: &Disk) -> Outc
 
 /// A name without an extension fits everything, and so do devices and pipes.
 fn check_extension(out: &Path, extensions: &[&str]) -> Outcome {
-    let Some(extension) = out.extension().and_then(OsStr::to_str).map(str::to_lowercase) else { return Ok(()) };
+    let Some(extension) = extension_of(out) else { return Ok(()) };
     if extensions.contains(&extension.as_str()) || is_stream(out) {
         return Ok(());
     }
     let expected: Vec<String> = extensions.iter().map(|extension| format!(".{extension}")).collect();
     let failure = Failure::expected(expected.join(" or "), format!(".{extension}"));
     Err(failure.at("file extension").in_file(out.display()))
+}
+
+/// Returns a path's extension in lower case.
+pub(super) fn extension_of(path: &Path) -> Option<String> {
+    path.extension().and_then(OsStr::to_str).map(str::to_lowercase)
 }
 
 /// Prints a document to standard output.
@@ -64,38 +69,37 @@ pub(super) fn print_bytes(bytes: &[u8]) -> Outcome {
 
 /// Prints lines for people to standard output.
 pub(super) fn print_lines(lines: impl IntoIterator<Item: AsRef<str>>) -> Outcome {
-    let lines = lines.into_iter().map(|line| format!("{}\n", shown(line.as_ref())));
+    let lines = lines.into_iter().map(|line| format!("{}\n", printable(line.as_ref())));
     print_bytes(lines.collect::<String>().as_bytes())
 }
 
 /// Prints a line for people to standard error. If that fails, there is nowhere left to report it.
 pub(super) fn print_error(line: &str) {
-    let _ = writeln!(stderr(), "{}", shown(line));
+    let _ = writeln!(stderr(), "{}", printable(line));
 }
 
 pub(super) fn warn(message: &str) {
     print_error(&format!("warning: {message}"));
 }
 
-/// Returns a line as a terminal shows it. Names come from files that nobody has vetted: what a terminal would obey, such as escape
-/// sequences, new lines and marks that reverse the text, is escaped. All text for people passes through here; JSON has its own
-/// escapes.
-pub(super) fn shown(line: &str) -> Cow<'_, str> {
-    if !line.contains(is_obeyed) {
+/// Escapes what a terminal would interpret instead of showing it: escape sequences, line breaks and marks that reverse the text.
+/// Names come from untrusted files. All text for people passes through here; JSON has its own escapes.
+pub(super) fn printable(line: &str) -> Cow<'_, str> {
+    if !line.contains(is_interpreted) {
         return Cow::Borrowed(line);
     }
-    let mut shown = String::with_capacity(2 * line.len());
+    let mut printable = String::with_capacity(2 * line.len());
     for character in line.chars() {
-        match is_obeyed(character) {
-            true => shown.extend(character.escape_default()),
-            false => shown.push(character),
+        match is_interpreted(character) {
+            true => printable.extend(character.escape_default()),
+            false => printable.push(character),
         }
     }
-    Cow::Owned(shown)
+    Cow::Owned(printable)
 }
 
-/// Whether a terminal obeys a character instead of showing it: a control, a line separator or a bidirectional mark.
-fn is_obeyed(character: char) -> bool {
+/// Whether a character is a control character, a line separator or a bidirectional mark.
+fn is_interpreted(character: char) -> bool {
     let is_mark =
         matches!(character, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     character.is_control() || is_mark

@@ -3,9 +3,10 @@
 use gaitway_scene::frame::{NodePose, PoseDocument};
 
 use super::failure::Outcome;
+use super::moment::apply_moment;
 use super::motion::{apply_link, open_editor};
 use super::output::{print_bytes, print_lines};
-use super::{PoseArguments, apply_moment, open};
+use super::{PoseArguments, open};
 use crate::files::Disk;
 
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {

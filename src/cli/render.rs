@@ -13,11 +13,12 @@ use image::codecs::jpeg::JpegEncoder;
 use serde_json::json;
 
 use super::failure::{Failure, Outcome};
+use super::moment::apply_moment;
 use super::motion::{Overrides, apply_link, open_editor};
 use super::output::{check_output, is_standard_output, print_error, write_output};
 use super::quiet::Quiet;
 use super::sequence::{Format, Sequence};
-use super::{RenderArguments, apply_moment, open};
+use super::{RenderArguments, open};
 use crate::files::{Disk, Role, encode_png};
 
 /// File extensions for the image.

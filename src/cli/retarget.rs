@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::edit::baked;
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, DOUBTFUL_UP, doubtful_rest, doubtful_up, open_map, open_motion, rest_document};
-use super::output::{is_standard_output, print_error, print_json, print_lines, warn, write_output};
+use super::output::{extension_of, is_standard_output, print_error, print_json, print_lines, warn, write_output};
 use super::{RetargetArguments, RetargetChoices, RetargetOptions, batch, change, open};
 use crate::files::{Disk, Opened};
 
@@ -177,7 +177,7 @@ pub(super) fn model_extensions(asset: &Asset) -> Vec<&'static str> {
 
 /// The format that the extension of an output asks for.
 pub(super) fn clip_format_of(out: &Path) -> Option<ClipFormat> {
-    ClipFormat::of_extension(&out.extension()?.to_str()?.to_lowercase())
+    ClipFormat::of_extension(&extension_of(out)?)
 }
 
 /// Applies the command line's options, which override the map.

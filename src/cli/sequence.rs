@@ -154,12 +154,9 @@ impl<'a> Encoder<'a> {
                 .with_hint("choose .webm, .gif, a folder of PNGs, or another background")
                 .in_file(out.display()));
         }
-        let temporary = {
-            let folder = std::env::temp_dir();
-            let place = |name: &str| folder.join(format!("{name}.{}", container.extension()));
-            TemporaryFile::create(place)
-                .map_err(|problem| Failure::new(describe(&problem)).in_file(folder.display()))?
-        };
+        let folder = std::env::temp_dir();
+        let temporary = TemporaryFile::create(|name| folder.join(format!("{name}.{}", container.extension())))
+            .map_err(|problem| Failure::new(describe(&problem)).in_file(folder.display()))?;
         let size = format!("{width}x{height}");
         let rate = frames_per_sec.to_string();
         let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s:v", &size, "-r", &rate, "-i", "-"];
@@ -213,7 +210,8 @@ impl<'a> Encoder<'a> {
     }
 }
 
-/// A path as ffmpeg takes it: neither an option, whatever TMPDIR begins with, nor the URL of another protocol.
+/// Returns a path as a URL for ffmpeg, which would take one that begins with `-` for an option, and one with a colon for another
+/// protocol.
 fn as_argument(path: &Path) -> OsString {
     let mut argument = OsString::from("file:");
     argument.push(path);

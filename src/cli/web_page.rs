@@ -1,14 +1,16 @@
-//! `gaitway convert --out OUT.html`: a page that shows a scene by itself.
+//! `gaitway convert --out OUT.html`: a self-contained page that shows a scene.
 
 use std::path::{Path, PathBuf};
 
+use clap::{Args, ValueEnum};
 use gaitway_scene::editor::Editor;
 use gaitway_scene::state::{ClipChoice, Command};
 
 use super::failure::{Failure, Outcome};
+use super::moment::show_clip;
 use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
-use super::output::{check_output, write_output};
-use super::{ConvertArguments, open, show_clip};
+use super::output::{check_output, extension_of, write_output};
+use super::{ConvertArguments, open};
 use crate::files::{Backend, Disk, Opened, WebPage, has_ktx2, read_template};
 
 /// File extensions of pages.
@@ -17,9 +19,47 @@ pub(super) const EXTENSIONS: &[&str] = &["html", "htm"];
 /// Width and height of pictures for previews.
 pub(super) const PICTURE_SIZE: [u32; 2] = [1200, 630];
 
+/// Options that only a page has.
+#[derive(Debug, Args)]
+pub(super) struct PageArguments {
+    #[command(flatten)]
+    motion: MotionArguments,
+    /// Of an .html: its title [default: the model's name].
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Of an .html: what it draws with. With WebGPU it is smaller, but not every browser opens it [default: webgl2].
+    #[arg(long, value_enum)]
+    renderer: Option<RendererArgument>,
+    /// Of an .html: the folder with the page's program, such as dist of `cargo xtask build` [default: $GAITWAY_PAGE, or beside
+    /// this program].
+    #[arg(long, value_name = "FOLDER")]
+    page: Option<PathBuf>,
+}
+
+impl PageArguments {
+    pub(super) fn is_none(&self) -> bool {
+        let MotionArguments { motion, map } = &self.motion;
+        motion.is_none() && map.is_none() && self.title.is_none() && self.renderer.is_none() && self.page.is_none()
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum RendererArgument {
+    Webgl2,
+    Webgpu,
+}
+
+impl From<RendererArgument> for Backend {
+    fn from(argument: RendererArgument) -> Self {
+        match argument {
+            RendererArgument::Webgl2 => Self::WebGl2,
+            RendererArgument::Webgpu => Self::WebGpu,
+        }
+    }
+}
+
 pub(super) fn is_page(out: &Path) -> bool {
-    let extension = out.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase);
-    extension.is_some_and(|extension| EXTENSIONS.contains(&extension.as_str()))
+    extension_of(out).is_some_and(|extension| EXTENSIONS.contains(&extension.as_str()))
 }
 
 pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
@@ -35,7 +75,7 @@ pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
     let view = View { link: arguments.view.as_deref(), clip: arguments.clip.as_deref() };
     let editor = editor_of(opened, &page.motion, view, disk)?;
     let picture = picture_of(&editor);
-    let page = written(&editor, &template, page.title.as_deref(), picture.as_deref())?;
+    let page = page_of(&editor, &template, page.title.as_deref(), picture.as_deref())?;
     write_output(&arguments.out, page.as_bytes(), EXTENSIONS, disk)
 }
 
@@ -48,10 +88,10 @@ pub(super) struct View<'a> {
     pub clip: Option<&'a str>,
 }
 
-/// Reads the template from `folder`, otherwise from beside this program and from `more`.
-pub(super) fn template(backend: Backend, folder: Option<&Path>, more: Option<&Path>) -> Outcome<String> {
+/// Reads the template; see [`read_template`]. Without a folder, it is looked for near `prefix` and this program.
+pub(super) fn template(backend: Backend, folder: Option<&Path>, prefix: Option<&Path>) -> Outcome<String> {
     let own = std::env::current_exe().ok().and_then(|program| program.parent().map(Path::to_owned));
-    let near: Vec<PathBuf> = more.map(Path::to_owned).into_iter().chain(own).collect();
+    let near: Vec<PathBuf> = prefix.map(Path::to_owned).into_iter().chain(own).collect();
     read_template(backend, folder, &near).map_err(Failure::new)
 }
 
@@ -75,8 +115,8 @@ pub(super) fn editor_of(opened: Opened, motion: &MotionArguments, view: View<'_>
     Ok(editor)
 }
 
-/// Returns the page.
-pub(super) fn written(editor: &Editor, template: &str, title: Option<&str>, picture: Option<&[u8]>) -> Outcome<String> {
+/// Returns the page that shows what the editor shows.
+pub(super) fn page_of(editor: &Editor, template: &str, title: Option<&str>, picture: Option<&[u8]>) -> Outcome<String> {
     let scene = editor.scene().map_err(Failure::new)?;
     let title = title.unwrap_or(&scene.title);
     let has_ktx2 = editor.library().active().is_some_and(|model| has_ktx2(&model.asset));

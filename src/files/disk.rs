@@ -308,7 +308,7 @@ fn existing(path: &Path) -> PathBuf {
 }
 
 /// Finds what a link names: something `given`, by its path or file name, or a file in the folder of one or below. Any other path is
-/// not even looked up, since a server may be at its end.
+/// not even looked up, since it may lead to another machine.
 fn find_linked(given: &[PathBuf], address: &Path) -> Result<PathBuf, OpenError> {
     let unmarked = address.to_str().map(|address| container_of(address.strip_prefix("file:").unwrap_or(address)));
     let path = unmarked.map_or(address, Path::new);

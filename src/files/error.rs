@@ -38,7 +38,7 @@ pub enum OpenError {
         /// The underlying error, usually from the operating system.
         source: std::io::Error,
     },
-    /// A link names a file that the user hasn't named, somewhere else.
+    /// A link names a file that the user hasn't named, outside the folders of those named.
     #[error("{}: a link can only name what is opened with it, and files in the same folders or below", path.display())]
     NotGiven {
         /// As the link has it.

@@ -49,4 +49,4 @@ pub use view::Held;
 #[cfg(target_arch = "wasm32")]
 pub use web::{OnImage, open_items, open_view, within};
 #[cfg(not(target_arch = "wasm32"))]
-pub use web_page::{Backend, NoTemplate, PAGE_VARIABLE, WebPage, base64, escaped, read_template};
+pub use web_page::{Backend, NoTemplate, PAGE_VARIABLE, WebPage, escaped, read_template};

@@ -40,7 +40,7 @@ pub enum SaveError {
 /// Maximum length of a chain of symbolic links, as on Linux.
 const MAX_LINKS: usize = 40;
 /// Maximum number of temporary files in a folder.
-const MAX_LEFTOVERS: usize = 100;
+const MAX_TEMPORARY_FILES: usize = 100;
 
 /// Creates or replaces a file. A symbolic link stays, and the file it leads to is replaced. Devices, pipes and open descriptors
 /// (`/dev/stdout`) are written to directly.
@@ -110,8 +110,8 @@ fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::R
 }
 
 /// A new file, which is removed again unless it is renamed. If the program is killed, the next one that creates such a file in that
-/// folder removes it: nothing holds its lock any more. Elsewhere than on Unix, locks would keep ffmpeg out, so names are never used
-/// again.
+/// folder removes it, since nothing holds its lock any more. Only on Unix: elsewhere a lock would keep ffmpeg out, so each process
+/// uses names of its own.
 #[derive(Debug)]
 pub struct TemporaryFile {
     file: File,
@@ -119,7 +119,7 @@ pub struct TemporaryFile {
 }
 
 impl TemporaryFile {
-    /// `place` returns where a file of this name goes.
+    /// Creates a file where `place` puts one of a given name.
     ///
     /// # Errors
     /// If no file can be created there.
@@ -128,19 +128,16 @@ impl TemporaryFile {
             true => place(&format!("gaitway-{attempt}")),
             false => place(&format!("gaitway-{}-{attempt}", std::process::id())),
         };
-        (0..=MAX_LEFTOVERS).map(&place).for_each(|path| remove_abandoned(&path));
-        for path in (0..MAX_LEFTOVERS).map(&place) {
-            match Self::create_at(path) {
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                created => return created,
-            }
-        }
-        Self::create_at(place(MAX_LEFTOVERS))
+        let paths = || (0..MAX_TEMPORARY_FILES).map(&place);
+        paths().for_each(|path| remove_abandoned(&path));
+        let is_free =
+            |created: &io::Result<Self>| !matches!(created, Err(error) if error.kind() == ErrorKind::AlreadyExists);
+        paths().map(Self::create_at).find(is_free).unwrap_or_else(|| Err(ErrorKind::AlreadyExists.into()))
     }
 
     fn create_at(path: PathBuf) -> io::Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(&path)?;
-        // Before the lock, another process may have taken it for abandoned.
+        // Until it is locked, another process may take it for abandoned.
         if cfg!(unix) && (matches!(file.try_lock(), Err(TryLockError::WouldBlock)) || !is_at(&file, &path)) {
             return Err(ErrorKind::AlreadyExists.into());
         }
@@ -162,7 +159,7 @@ impl TemporaryFile {
 impl Drop for TemporaryFile {
     fn drop(&mut self) {
         if !self.path.as_os_str().is_empty() {
-            // Otherwise the next run does.
+            // If that fails, the next run does it.
             let _ = remove_file(&self.path);
         }
     }

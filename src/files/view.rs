@@ -122,7 +122,7 @@ async fn open_motion<S: Source>(
     }
 }
 
-/// Notes that a view is opened without one of its files.
+/// Records that a view is opened without one of its files.
 fn omit<S: Source>(source: &S, part: &str, error: &OpenError, contents: &mut Contents) {
     contents.problems.push(source.describe_omission(part, error));
     contents.failure.get_or_insert(error.code());

@@ -1,19 +1,20 @@
-//! Pages that show a scene by themselves: a template of the page's build (xtask/site/standalone.mjs), which has a program inside, with
+//! Self-contained pages that show a scene: a template with a program, from the page's build (xtask/site/standalone.mjs), with
 //! title, picture, link and files added. web/web-page.js does the same on the page.
 
 use std::fs::{read_dir, read_to_string};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use gaitway_character::asset::SharedBytes;
 use gaitway_scene::editor::Scene;
 
-/// Names the folder with the templates.
+/// The environment variable with the folder of the templates.
 pub const PAGE_VARIABLE: &str = "GAITWAY_PAGE";
 
-/// The graphics API that a page draws with, of which its template has the program.
+/// The graphics API that a page draws with. Each has a template with its own program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
     /// Every current browser has it.
@@ -24,7 +25,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// Its key in links and file names.
+    /// Returns its key in links and file names.
     pub fn key(self) -> &'static str {
         match self {
             Self::WebGl2 => "webgl2",
@@ -41,7 +42,7 @@ impl Backend {
     .backend.key(), listed(.folders), PAGE_VARIABLE
 )]
 pub struct NoTemplate {
-    /// Whose program it would have.
+    /// The graphics API of its program.
     pub backend: Backend,
     /// Where it was looked for.
     pub folders: Vec<PathBuf>,
@@ -51,8 +52,8 @@ fn listed(folders: &[PathBuf]) -> String {
     folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Reads the template for pages with a program: from `folder` or what [`PAGE_VARIABLE`] names, otherwise from `near`, a program's own
-/// folder, and the places beside it where packages put such files.
+/// Reads the template for a graphics API: from `folder` or the one that [`PAGE_VARIABLE`] names, otherwise from the folders in
+/// `near` and where packages put such files beside them.
 ///
 /// # Errors
 /// If there is none.
@@ -72,18 +73,18 @@ pub fn read_template(backend: Backend, folder: Option<&Path>, near: &[PathBuf]) 
 /// What a page shows besides its program.
 #[derive(Debug)]
 pub struct WebPage<'a> {
-    /// What to call it.
+    /// Its title.
     pub title: &'a str,
     /// A JPEG for previews of links to the page, and to cover it while it starts.
     pub picture: Option<&'a [u8]>,
     /// The files and the view of them.
     pub scene: &'a Scene,
-    /// Images of the model have to be transcoded.
+    /// Whether images of the model have to be transcoded.
     pub has_ktx2: bool,
 }
 
 impl WebPage<'_> {
-    /// Returns the page, if the template is one.
+    /// Returns the page, or `None` if the text is not a template.
     pub fn write(&self, template: &str) -> Option<String> {
         let (before, rest) = template.split_once("<!-- scene -->")?;
         let (middle, after) = rest.split_once("<!-- files -->")?;
@@ -95,8 +96,10 @@ impl WebPage<'_> {
         );
         page += &format!("\n    <meta property=\"og:title\" content=\"{title}\">");
         if let Some(picture) = self.picture {
-            page +=
-                &format!("\n    <meta property=\"og:image\" content=\"data:image/jpeg;base64,{}\">", base64(picture));
+            page += &format!(
+                "\n    <meta property=\"og:image\" content=\"data:image/jpeg;base64,{}\">",
+                BASE64_STANDARD.encode(picture)
+            );
         }
         match (self.has_ktx2, middle.split_once("<!-- ktx2 -->"), middle.split_once("<!-- /ktx2 -->")) {
             (false, Some((before, _)), Some((_, after))) => page.extend([before, after]),
@@ -112,13 +115,13 @@ impl WebPage<'_> {
 
 fn add_block(page: &mut String, role: &str, (name, bytes): &(String, SharedBytes)) {
     let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
-    // Nothing fails in memory.
+    // Writing to memory cannot fail.
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default();
     let name = escaped(name);
     page.push_str(&format!(
         "<script type=\"application/octet-stream\" data-name=\"{name}\" data-role=\"{role}\" data-coding=\"deflate\">"
     ));
-    page.push_str(&base64(&packed));
+    page.push_str(&BASE64_STANDARD.encode(&packed));
     page.push_str("</script>\n");
 }
 
@@ -127,33 +130,9 @@ pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;")
 }
 
-/// Encodes bytes with the standard alphabet and padding.
-pub fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let byte = |at: usize| u32::from(group.get(at).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for at in 0..4 {
-            let letter = char::from(LETTERS[(bits >> (18 - 6 * at) & 63) as usize]);
-            text.push(if at <= group.len() { letter } else { '=' });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_pads_groups() {
-        let cases =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("\u{ff}", "w78=")];
-        for (text, expected) in cases {
-            assert_eq!(base64(text.as_bytes()), expected, "{text}");
-        }
-    }
 
     #[test]
     fn a_page_has_the_scene_where_the_template_says() {

@@ -125,7 +125,7 @@ pub struct HostState {
     pub has_gallery: bool,
     /// The platform can show Gaitway in full screen.
     pub has_fullscreen: bool,
-    /// The platform can save pages that show a scene by themselves.
+    /// The platform can save self-contained pages that show a scene.
     pub can_save_page: bool,
     /// There is a step to undo.
     pub can_undo: bool,

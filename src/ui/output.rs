@@ -40,7 +40,7 @@ pub enum UiAction {
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
-    /// Save a page that shows the scene by itself.
+    /// Save a self-contained page that shows the scene.
     SavePage,
     /// Record one loop of the clip.
     Record(VideoSettings),

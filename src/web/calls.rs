@@ -58,7 +58,8 @@ pub async fn open(items: Array, role: String, is_private: bool, is_by_hand: bool
 }
 
 /// Opens a link, given the part after `#`, as far as it can be shown without the files that it waits for. Loads its files if they
-/// differ from the loaded ones, or all of them with `reload`. Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
+/// differ from the loaded ones, or all of them with `reload`. Resolves to `{loaded, problems}`: the sources that were read, and what
+/// could not be opened.
 #[wasm_bindgen]
 pub async fn follow_link(link: String, reload: bool) -> Result<String, JsValue> {
     let page = page().map_err(stopped)?;
@@ -370,7 +371,7 @@ async fn load_and_show(page: &Rc<Page>, request: Request) -> Result<Opened, Refu
         }
     };
     let shell_reports = matches!(request, Request::View { about_link: Some(_), .. });
-    // Over an embedded view only what its user opened: scripts get the error.
+    // Over an embedded view, only errors of what the user opened are shown. Scripts get the others.
     let is_embedded = with_app(page, |app| app.state().page.embed.is_on())?;
     let is_silent = is_embedded && !matches!(request, Request::Items { is_by_hand: true, .. });
     let read = async {
@@ -447,7 +448,8 @@ pub(super) fn progress_of(name: &str, received_bytes: u64, total_bytes: u64) -> 
 }
 
 /// Hands opened files to the app; resolves once they are on screen. The shell reports missing files of links, and only
-/// of links, so a `state` whose problems it doesn't report is a change of the current one.
+/// of links, so a `state` whose problems it doesn't report is a change of the current one. With `is_silent`, only scripts learn of
+/// problems.
 async fn show(
     page: &Rc<Page>,
     mut contents: Contents,
@@ -529,9 +531,9 @@ async fn settled(promise: Promise) -> Result<JsValue, String> {
 }
 
 /// Why a call failed.
-struct Refusal {
-    code: ErrorCode,
-    message: String,
+pub(super) struct Refusal {
+    pub code: ErrorCode,
+    pub message: String,
 }
 
 impl Refusal {
@@ -554,11 +556,11 @@ impl From<Refusal> for JsValue {
 }
 
 /// Returns a code as scripts get it.
-pub(super) fn code_text(code: ErrorCode) -> String {
+fn code_text(code: ErrorCode) -> String {
     json!(code).as_str().unwrap_or_default().to_owned()
 }
 
-pub(super) fn error(code: ErrorCode, message: &str) -> JsValue {
+fn error(code: ErrorCode, message: &str) -> JsValue {
     let error = js_sys::Error::new(message);
     // Only a frozen object refuses a property.
     let _ = Reflect::set(&error, &"code".into(), &code_text(code).into());

@@ -18,7 +18,7 @@ use js_sys::{Array, Uint8Array};
 use serde_json::json;
 use wasm_bindgen::prelude::*;
 
-use super::calls::{error, forget_images, progress_of, rest_progress, upload_image, with_app};
+use super::calls::{Refusal, forget_images, progress_of, rest_progress, upload_image, with_app};
 use super::shell::{self, Shell};
 use crate::app::mirror::Mirror;
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
@@ -93,9 +93,9 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to `{problems, code}`, the first problem's kind; call [`drawn`](super::calls::drawn), [`begin`](super::calls::begin) and
-/// [`complete`](super::calls::complete) next. Rejects, and leaves nothing behind, if no device is available, nothing could be opened
-/// or the model doesn't fit on the device.
+/// requested, to `{problems, code}`: the problems and the kind of the first one. Call [`drawn`](super::calls::drawn),
+/// [`begin`](super::calls::begin) and [`complete`](super::calls::complete) next. Rejects, and leaves nothing behind, if no device is
+/// available, nothing could be opened or the model doesn't fit on the device.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,
@@ -105,7 +105,7 @@ pub async fn run(
     is_private: bool,
     shell: Shell,
 ) -> Result<String, JsValue> {
-    let unsupported = |problem: String| (ErrorCode::Unsupported, problem);
+    let unsupported = |message| Refusal { code: ErrorCode::Unsupported, message };
     shell::set_shell(shell.clone());
     let first: Rc<RefCell<Option<First>>> = Rc::default();
     let image_limits = ImageLimits::default();
@@ -116,9 +116,10 @@ pub async fn run(
     };
     // Request the files first: the network takes longest. Meanwhile, create the device.
     let shown = pin!(async {
-        start_app(canvas, &shell, image_limits).await.map_err(|problem| (ErrorCode::NoGraphics, problem))?;
+        let no_graphics = |message| Refusal { code: ErrorCode::NoGraphics, message };
+        start_app(canvas, &shell, image_limits).await.map_err(no_graphics)?;
         // Nothing has to wake it: it is polled after what fills the slot.
-        poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, (ErrorCode, String)>(first)))).await
+        poll_fn(|_| first.take().map_or(Poll::Pending, |first| Poll::Ready(Ok::<_, Refusal>(first)))).await
     });
     let started = async {
         let ((contents, state, missing), rest) = match select(all, shown).await {
@@ -143,12 +144,9 @@ pub async fn run(
             page.inbox.send(Message::OpenProgress(progress_of(&name, 0, 0)));
         }
         page.inbox.wake();
-        Ok::<_, (ErrorCode, String)>(json!({ "problems": problems, "code": failure }))
+        Ok::<_, Refusal>(json!({ "problems": problems, "code": failure }))
     };
-    let shown = started.await.map_err(|(code, problem)| {
-        destroy();
-        error(code, &problem)
-    })?;
+    let shown = started.await.inspect_err(|_| destroy())?;
     Ok(shown.to_string())
 }
 

@@ -35,13 +35,13 @@ extern "C" {
     #[wasm_bindgen(method, getter, js_name = hasGallery)]
     pub fn has_gallery(this: &Shell) -> bool;
 
-    /// Saves a page that shows a scene by itself, once the user has chosen how. The files are pairs of name and content.
+    /// Saves a self-contained page that shows a scene, once the user has chosen how. The files are pairs of name and content.
     /// `has_ktx2`: images of the model have to be transcoded.
     #[wasm_bindgen(method, js_name = savePage)]
     pub fn save_page(this: &Shell, title: &str, link: &str, model: Array, motion: Array, has_ktx2: bool);
 
-    /// Records a video, GIF or images from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its file name, or
-    /// to nothing if it was cancelled.
+    /// Records a video, GIF or images from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its
+    /// file name, or to nothing if it was cancelled.
     #[wasm_bindgen(method, catch)]
     pub async fn record(
         this: &Shell,
@@ -94,11 +94,11 @@ extern "C" {
     #[wasm_bindgen(method, js_name = setTheme)]
     pub fn set_theme(this: &Shell, theme: &str);
 
-    /// Shows a warning, or one per line; it replaces the one before. The code says to scripts what kind of failure it is.
+    /// Shows a warning, or one per line; it replaces the one before. The code tells scripts what kind of failure it is.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str, code: Option<String>);
 
-    /// Reports a problem of an embedded view to the page around it; returns false if the page itself has to show it.
+    /// Reports a problem of an embedded view to the page around it; returns false if the app has to show it.
     #[wasm_bindgen(method)]
     pub fn report(this: &Shell, problem: &str) -> bool;
 

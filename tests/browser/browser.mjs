@@ -2,8 +2,9 @@
 // by their ids.
 import fs from "node:fs";
 import http from "node:http";
+import os from "node:os";
 import path from "node:path";
-import { test } from "node:test";
+import { after, test } from "node:test";
 import { chromium } from "playwright-core";
 import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, hasData } from "../three/data.mjs";
@@ -196,7 +197,7 @@ async function openPage(browser, shared, address, { renderer, link = "model=samp
   if (isShared) await page.setViewportSize(viewport);
   page.setDefaultTimeout(TIMEOUT_MS);
   if (isCalm) await page.emulateMedia({ reducedMotion: "reduce" });
-  await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
+  await page.addInitScript(reportPolicyViolations);
   if (before !== undefined) await page.addInitScript(before);
   for (const [name, body] of Object.entries(files)) await page.route(`**/${name}`, (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));
   await page.goto(`${program}${link === "" ? "" : `#${link}`}`);
@@ -219,6 +220,21 @@ export async function startServer(answer) {
       server.close();
     },
   };
+}
+
+/**
+ * Makes a folder for the tests of a file, and removes it after them.
+ * @param {string} name
+ */
+export function temporaryFolder(name) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), `gaitway-${name}-`));
+  after(() => fs.rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+/** Makes an error of what the page's content security policy refuses. Runs in the page, before its scripts. */
+export function reportPolicyViolations() {
+  addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`));
 }
 
 // Conditions that scripts simulate in a page.

@@ -1,13 +1,11 @@
 // A notebook that shows a scene: executed without a browser, converted to HTML, and opened.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
 import { after, before, describe, it } from "node:test";
 import { pathToFileURL } from "node:url";
 import { dist } from "../three/data.mjs";
-import { launch, pose, state, watched, whenReady } from "./browser.mjs";
+import { launch, pose, state, temporaryFolder, watched, whenReady } from "./browser.mjs";
 
 const python = process.env.GAITWAY_PYTHON ?? "python3";
 const isThere = spawnSync(python, ["-c", "import gaitway, ipykernel, nbclient, nbconvert"]).status === 0;
@@ -27,17 +25,14 @@ assert len(nbformat.writes(notebook)) < 3_000_000, len(nbformat.writes(notebook)
 open(out, "w").write(HTMLExporter(template_name="basic").from_notebook_node(notebook)[0])
 `;
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-notebook-"));
+const folder = temporaryFolder("notebook");
 /** @type {import("./browser.mjs").Browser} */
 let browser;
 
 before(async () => {
   browser = await launch();
 });
-after(async () => {
-  await browser.close();
-  fs.rmSync(folder, { recursive: true });
-});
+after(() => browser.close());
 
 describe("a notebook", { skip: isThere ? false : "ipykernel, nbclient and nbconvert aren't installed (python/requirements-notebook.txt)" }, () => {
   it("displays a scene without a network", async () => {

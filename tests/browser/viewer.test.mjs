@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -10,7 +9,7 @@ import zlib from "node:zlib";
 import { assemble } from "../../xtask/site/npm.mjs";
 import { serve } from "../../xtask/site/server.mjs";
 import { dist } from "../three/data.mjs";
-import { BACK_ENDS, drop, eventually, launch, stats, until, watched, whenReady } from "./browser.mjs";
+import { BACK_ENDS, drop, eventually, launch, reportPolicyViolations, stats, temporaryFolder, until, watched, whenReady } from "./browser.mjs";
 
 /** @typedef {import("../../npm/viewer/gaitway.d.ts").GaitwayViewer} GaitwayViewer */
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
@@ -18,7 +17,7 @@ import { BACK_ENDS, drop, eventually, launch, stats, until, watched, whenReady }
 /** Bytes of the module, compressed. */
 const MAX_MODULE = 6 * 1024;
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-viewer-"));
+const folder = temporaryFolder("viewer");
 const installed = path.join(folder, "node_modules/gaitway");
 /** Hosts keep files whose names have a hash. */
 const HEADERS = { "cache-control": "max-age=3600" };
@@ -51,7 +50,6 @@ before(async () => {
 after(async () => {
   await browser?.close();
   await Promise.all([site?.close(), elsewhere?.close()]);
-  fs.rmSync(folder, { recursive: true, force: true });
 });
 
 /**
@@ -430,7 +428,7 @@ describe("viewers", () => {
 
 test("the live examples run under their policy", async () => {
   const page = watched(await context.newPage(), true);
-  await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
+  await page.addInitScript(reportPolicyViolations);
   await page.goto(`${elsewhere.origin}/viewer/`);
   await page.locator("gaitway-viewer").first().locator(".shown").waitFor({ state: "attached" });
   const code = await page.locator("figure pre").allTextContents();

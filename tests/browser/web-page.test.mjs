@@ -1,28 +1,24 @@
-// Pages that show a scene by themselves: saved by the page, opened from the disk, in a sandboxed frame and on both back ends, with
+// Self-contained pages that show a scene: saved by the page, opened from the disk, in a sandboxed frame and on both back ends, with
 // every network request a failure.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
 import { after, before, describe, it } from "node:test";
 import { pathToFileURL } from "node:url";
-import { BACK_ENDS, apply, control, pose, startSite, state, until, watched, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, control, pose, reportPolicyViolations, startSite, state, temporaryFolder, until, watched, whenReady } from "./browser.mjs";
 
 /** @typedef {import("./browser.mjs").TestPage} TestPage */
 
 const LINK = "v=1&model=sample:dwarf&motion=sample:walk&root=horizontal:in-place&t=1.2&play=0&pose=5:0:20:0&camera=30,10,3,0,1,0";
 
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-web-page-"));
+const folder = temporaryFolder("web-page");
 /** @type {import("./browser.mjs").Site} */
 let site;
 
 before(async () => {
   site = await startSite();
 });
-after(async () => {
-  await site.close();
-  fs.rmSync(folder, { recursive: true });
-});
+after(() => site.close());
 
 /**
  * Saves what a page shows, and returns the file's path and the size that the dialog has said.
@@ -49,7 +45,7 @@ async function save(page, backend) {
 /** @param {string} address */
 async function opened(address) {
   const page = watched(await site.browser.newPage({ viewport: { width: 400, height: 300 } }));
-  await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
+  await page.addInitScript(reportPolicyViolations);
   await page.goto(address);
   return page;
 }

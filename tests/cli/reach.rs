@@ -2,7 +2,7 @@
 //! machine.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::motion::folder;
@@ -28,7 +28,7 @@ fn desk(name: &str) -> PathBuf {
 }
 
 /// Runs the program in `folder`. Its standard input stays open, and what is read from it would be waited for.
-fn run_in(folder: &PathBuf, arguments: &[&str]) -> Output {
+fn run_in(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
     let child = command.args(arguments).current_dir(folder).stdin(Stdio::piped());
     let mut child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program runs");
@@ -39,7 +39,7 @@ fn run_in(folder: &PathBuf, arguments: &[&str]) -> Output {
 }
 
 /// Returns what a link's key `key` with this value says beside the given files.
-fn said(folder: &PathBuf, given: &[&str], key: &str, value: &str) -> String {
+fn said(folder: &Path, given: &[&str], key: &str, value: &str) -> String {
     let with_motion = if key == "map" { "motion=a.bvh&map" } else { key };
     let output = run_in(folder, &[&["pose"], given, &["--view", &format!("v=1&{with_motion}={value}")]].concat());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

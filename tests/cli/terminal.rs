@@ -1,4 +1,4 @@
-//! Names come from files: whatever they hold, a terminal shows them and obeys nothing. JSON keeps them.
+//! Names come from files: a terminal shows whatever they contain and interprets none of it. JSON keeps them.
 
 use std::fs;
 

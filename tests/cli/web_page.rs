@@ -1,9 +1,10 @@
-//! Pages that show a scene by themselves, and link cards. The browser's side of them is in tests/browser/web-page.test.mjs.
+//! Self-contained pages that show a scene, and link cards. The browser's side of them is in tests/browser/web-page.test.mjs.
 
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use flate2::read::DeflateDecoder;
 use serde_json::Value;
 
@@ -29,21 +30,6 @@ fn text(path: &Path) -> String {
     path.to_str().expect("plain text").to_owned()
 }
 
-fn decoded(base64: &str) -> Vec<u8> {
-    let value = |letter: u8| match letter {
-        b'A'..=b'Z' => letter - b'A',
-        b'a'..=b'z' => letter - b'a' + 26,
-        b'0'..=b'9' => letter - b'0' + 52,
-        b'+' => 62,
-        _ => 63,
-    };
-    let letters: Vec<u8> = base64.bytes().filter(|&letter| letter != b'=').map(value).collect();
-    let bits = |letters: &[u8]| {
-        letters.iter().fold(0_u32, |bits, &six| bits << 6 | u32::from(six)) << (6 * (4 - letters.len()))
-    };
-    letters.chunks(4).flat_map(|group| bits(group).to_be_bytes()[1..group.len()].to_vec()).collect()
-}
-
 /// What a page has inside.
 struct Page {
     title: String,
@@ -61,7 +47,7 @@ fn read(path: &Path) -> Page {
     let blocks = page.split("<script ").skip(1);
     let files = blocks.map(|block| {
         let mut content = Vec::new();
-        let packed = decoded(between(block, ">", "</script>"));
+        let packed = BASE64_STANDARD.decode(between(block, ">", "</script>")).expect("base64");
         DeflateDecoder::new(&*packed).read_to_end(&mut content).expect("deflated");
         (between(block, "data-role=\"", "\"").to_owned(), between(block, "data-name=\"", "\"").to_owned(), content)
     });

@@ -27,7 +27,7 @@ const CALLS = {
 };
 
 /**
- * Returns an error's message without advice that only users who may drop files can follow.
+ * Returns an error's message without the advice to drop a file if files can't be dropped here.
  * @param {string} message
  */
 const advised = (message) => (allowsFiles ? message : message.replace(/[;,](?: or)? download the file and drop it here(?: instead)?/g, ""));
@@ -65,7 +65,7 @@ function announce(event, more) {
   parent.postMessage({ gaitway: 1, event, ...more }, "*");
 }
 
-/** What the program takes of the time until something is shown; files take the rest. */
+/** The program's share of the progress; files have the rest. */
 const PROGRAM_SHARE = 0.5;
 /** How much has arrived, from 0 to 1. It never goes back. */
 let progress = 0;
@@ -93,7 +93,7 @@ export function answerParent() {
   addEventListener("gaitway:change", () => announce("change"));
   addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || announceProgress(detail));
   addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || announce("error", { error: advised(message), code }));
-  // The first instance is about to be launched.
+  // Later, since the first instance is yet to be launched.
   const complete = Promise.resolve().then(whenComplete);
   drawingFor(complete).then(
     () => announce("ready", { isEmpty: isStageEmpty() }),

@@ -82,8 +82,8 @@ addEventListener("keydown", (event) => {
 });
 // The canvas doesn't see it.
 gallery.addEventListener("pointerdown", () => program.app?.close_menu());
-// Then the keyboard controls the viewport, whether a card was clicked or Enter was pressed on it: here its keys would do nothing. Before
-// the first image there is nothing to control.
+// After a click or Enter on a card, the keyboard controls the viewport: its keys would do nothing here. Before the first image there is
+// nothing to control.
 for (const card of cards)
   card.addEventListener("click", ({ ctrlKey, metaKey, shiftKey }) => {
     if (ctrlKey || metaKey || shiftKey) return;

@@ -36,9 +36,9 @@ field("bring-chosen").addEventListener("change", () => {
   field("bring-chosen").value = "";
   openByHand(files);
 });
-// What the user does counts: Chromium says only in its next frame that a dialog was closed, when this one may be open again.
+// Not on `close`, which Chromium reports a frame later, when this dialog may be open again.
 button("bring-later").addEventListener("click", () => send({ event: "later" }));
-// Escape. A file chooser that is cancelled says so here, too.
+// Escape. The event of a cancelled file chooser bubbles up to here, too.
 dialog("bring").addEventListener("cancel", ({ target, currentTarget }) => target === currentTarget && send({ event: "later" }));
 dialog("bring").addEventListener("close", () => document.activeElement === document.body && focusCanvas());
 button("missing-again").addEventListener("click", () => {

@@ -1,7 +1,7 @@
 // Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in
 // the sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the
-// conversion. The others are scripts
-// that encode videos (recording.js), validate glTF files (validation.js) and save pages (web-page.js), and the pages to fill.
+// conversion. The others are scripts that encode videos (recording.js), validate glTF files
+// (validation.js) and save pages (web-page.js), and the templates of those pages.
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));

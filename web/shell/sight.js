@@ -1,12 +1,11 @@
-// A frame that is out of sight draws nothing. Browsers stop the animation frames of another origin's frame then, but not those of one
-// from the page's own origin. Both are alike here: animation frames wait until the frame is back in sight, unless somebody waits for an
-// answer, such as a screenshot.
+// A frame that is out of sight draws nothing. Browsers stop its animation frames only if it is from another origin than the page around
+// it. Here they wait in either case until the frame is back in sight, unless the page around it awaits an answer, such as a screenshot.
 
 import { canvas } from "./dom.js";
 
-/** About as long as an animation frame, for those that can't be had from the browser. */
+/** About the length of an animation frame, for when the browser provides none. */
 const FRAME_MS = 16;
-/** So late, an animation frame will not come: the browser has stopped them before the observer could say so. */
+/** An animation frame this late won't come: the browser has stopped them, and the observer hasn't reported it yet. */
 const LATE_MS = 250;
 
 /** A frame of another origin that starts out of sight isn't even observed. */
@@ -15,7 +14,7 @@ let isInSight = false;
 let awaited = 0;
 
 /**
- * What was requested, by the identifiers that were returned.
+ * The requested callbacks, by the identifiers that were returned.
  * @type {Map<number, FrameRequestCallback>}
  */
 const held = new Map();
@@ -32,8 +31,8 @@ function callHeld(now) {
 }
 
 function drawNow() {
-  // egui requests its first frame once the browser has measured the canvas, which it doesn't out of sight, or hears of a change of
-  // visibility.
+  // egui requests its first frame once the browser has measured the canvas, which it doesn't do out of sight, or when the visibility
+  // changes.
   if (held.size === 0) canvas()?.dispatchEvent(new Event("visibilitychange"));
   callHeld(performance.now());
 }

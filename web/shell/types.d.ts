@@ -127,7 +127,7 @@ export interface ShellCalls {
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
   warn(message: string, code?: ErrorCode): void;
-  /** Returns whether the page around this one has it. */
+  /** Reports a problem to the page around this one. Returns whether that is told, instead of the user. */
   report(problem: string): boolean;
   mirror(tree: string): void;
   stopped(message: string): void;
@@ -251,7 +251,7 @@ export interface State {
   pose: string;
   pin: string[];
   names: string;
-  /** As a flag: a view that another page embeds, with a button that opens it in a page of its own. */
+  /** `true`: as another page embeds it, with the transport and a button that opens the view in a page of its own. */
   embed: boolean | "transport" | "viewport";
   exposure: number;
   root: string | null;

@@ -1,6 +1,6 @@
-// What is different in a frame that the element `<gaitway-viewer>` has made (npm/viewer/gaitway.js). The element shows progress, its
-// poster and what went wrong, so the page's own panels and dialogs about that stay away. The address remains the one that the element
-// gave: what is opened later must not become entries of the history around the frame.
+// What is different in a frame of the element `<gaitway-viewer>` (npm/viewer/gaitway.js). The element shows progress, its poster and
+// errors, so the page doesn't show its own panels and dialogs for these. The address never changes, so that what is opened later
+// adds no entries to the history of the page around the frame.
 const options = new URLSearchParams(location.search);
 
 /** Whether the element has made this frame. */

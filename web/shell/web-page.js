@@ -1,4 +1,4 @@
-// Saves a page that shows a scene by itself. What does so is downloaded when it is needed first (web/web-page.js).
+// Saves a self-contained page that shows a scene. What does so is downloaded when it is needed first (web/web-page.js).
 import { refuse } from "./changes.js";
 import { messageOf } from "./dom.js";
 import { download, importScript } from "./parts.js";

@@ -58,7 +58,7 @@ class RangeDecoder {
   }
 
   /**
-   * Bits that are as likely 0 as 1.
+   * Reads bits that are as likely 0 as 1.
    * @param {number} count
    */
   direct(count) {

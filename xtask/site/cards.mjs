@@ -3,14 +3,12 @@
 import fs from "node:fs";
 import path from "node:path";
 import sharp from "sharp";
+import { escaped } from "./html.mjs";
 import { linkOf, readDocScenes, stillOf } from "./samples.mjs";
 
 /** @typedef {import("./samples.mjs").LinkParts} LinkParts */
 
 const TEMPLATE = "src/cli/card.html";
-
-/** @type {(text: string) => string} */
-const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
 
 /**
  * Writes the cards to a folder of the site.

@@ -1,6 +1,6 @@
 // Makes the site: the page with its scripts and styles, the programs, samples with their images, icons, manifest and
-// service worker. Everything but index.html, manifest.webmanifest, sw.js and the
-// module of the element is named after a hash of its content.
+// service worker, link cards, and the element with its examples. Everything but index.html, manifest.webmanifest, sw.js, cards,
+// viewer/gaitway.js and viewer/index.html is named after a hash of its content.
 // Arguments: the folder of the site, that of the programs, and the URL that the site will have (optional).
 import crypto from "node:crypto";
 import fs from "node:fs";
@@ -8,6 +8,7 @@ import path from "node:path";
 import { build, transform } from "esbuild";
 import sharp from "sharp";
 import { putCards } from "./cards.mjs";
+import { escaped, policyHash } from "./html.mjs";
 import { PREVIEW, linkOf, readSamples, readScenes, stillOf } from "./samples.mjs";
 import { deflated, standaloneTemplate } from "./standalone.mjs";
 
@@ -17,8 +18,6 @@ const TARGET = "es2022";
 
 /** @type {(...parts: (string | Buffer)[]) => string} */
 const hashOf = (...parts) => parts.reduce((hash, part) => hash.update(part), crypto.createHash("sha256")).digest("hex").slice(0, 16);
-/** @type {(text: string) => string} */
-const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
 
 /**
  * Writes a file as `FOLDER/NAME-HASH.EXTENSION` and returns that path.
@@ -40,7 +39,7 @@ function put(folder, name, extension, bytes) {
  * @param {string} to
  */
 function replaced(text, from, to) {
-  if (!text.includes(from)) throw new Error(`web/index.html: expected ${from}`);
+  if (!text.includes(from)) throw new Error(`expected ${from} in the page`);
   return text.replace(from, () => to);
 }
 
@@ -79,7 +78,7 @@ function putParts() {
 }
 
 /**
- * Returns the template of pages that show a scene by themselves, with one program.
+ * Returns the template of self-contained pages that show a scene, with one program.
  * @param {string} backend
  */
 async function standalone(backend) {
@@ -162,14 +161,15 @@ const head = [
 ];
 const index = path.join(dist, "index.html");
 let html = text("web/index.html");
-html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}"`);
+const iconFile = put("", "icon", ".svg", icon);
+html = replaced(html, 'href="icon.svg"', `href="${iconFile}"`);
 html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", style)}"`);
 html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundled("web/shell.js"))}"`);
 html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
 const start = await bundled("web/start.js", "iife");
 html = replaced(html, '<script src="start.js"></script>', `<script>${start}</script>`);
 // The policy allows no other script in the page's text.
-html = replaced(html, "script-src 'self'", `script-src 'self' 'sha256-${crypto.createHash("sha256").update(start).digest("base64")}'`);
+html = replaced(html, "script-src 'self'", `script-src 'self' ${policyHash(start)}`);
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 // Of several scenes with one model the first, which is the plainest.
 const images = Object.fromEntries(scenes.map(({ model }, index) => [model, stills[index].large]).reverse());
@@ -181,11 +181,11 @@ fs.mkdirSync(path.join(dist, "viewer"));
 fs.writeFileSync(path.join(dist, "viewer/gaitway.js"), await bundled("npm/viewer/gaitway.js"));
 fs.writeFileSync(path.join(dist, "viewer/index.html"), await examples());
 
-/** The live examples of the element. What they show as code is the code that runs. */
+/** Returns the page of the element's live examples. What it shows as code is the code that runs. */
 async function examples() {
   let html = text("web/examples/index.html");
   const page = (/** @type {string} */ file) => path.posix.join("..", file);
-  html = replaced(html, 'href="icon.svg"', `href="${page(put("", "icon", ".svg", icon))}"`);
+  html = replaced(html, 'href="icon.svg"', `href="${page(iconFile)}"`);
   html = replaced(html, 'href="examples.css"', `href="${page(put("viewer", "examples", ".css", await bundled("web/examples/examples.css")))}"`);
   html = replaced(html, 'src="examples.js"', `src="${page(put("viewer", "examples", ".js", await minified("web/examples/examples.js", { target: TARGET })))}"`);
   html = html.replace(/"picture:(\w+)"/g, (_, name) => `"${page(stills[scenes.findIndex((scene) => scene.name === name)].large)}"`);

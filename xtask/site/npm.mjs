@@ -22,11 +22,11 @@ export function assemble(dist, folder) {
   for (const file of files) if (fs.statSync(path.join(dist, file)).isFile() && !LEFT_OUT.test(file)) copy(path.join(dist, file), file);
   for (const file of ["viewer/gaitway.d.ts", "viewer/react.d.ts", "README.md"]) copy(path.join(ROOT, "npm", file), file);
   for (const file of ["LICENSE-MIT", "LICENSE-APACHE"]) copy(path.join(ROOT, file), file);
-  const description = JSON.parse(fs.readFileSync(path.join(ROOT, "npm/package.json"), "utf8"));
-  fs.writeFileSync(path.join(folder, "package.json"), `${JSON.stringify({ ...description, version: version() }, null, 2)}\n`);
+  const manifest = JSON.parse(fs.readFileSync(path.join(ROOT, "npm/package.json"), "utf8"));
+  fs.writeFileSync(path.join(folder, "package.json"), `${JSON.stringify({ ...manifest, version: version() }, null, 2)}\n`);
 }
 
-/** That of all packages. */
+/** Returns the version of all packages. */
 function version() {
   const [, version] = /^version = "(.+)"$/m.exec(fs.readFileSync(path.join(ROOT, "Cargo.toml"), "utf8")) ?? [];
   if (version === undefined) throw new Error("Cargo.toml: expected a version");

@@ -1,12 +1,9 @@
-// Makes the template of pages that show a scene by themselves: Gaitway's page with its scripts, its style and one program in its
+// Makes the template of self-contained pages that show a scene: Gaitway's page with its scripts, its style and one program in its
 // text. web/web-page.js and src/files/web_page.rs add a scene. Such a page reads nothing but its own text, as its policy says.
-import crypto from "node:crypto";
 import zlib from "node:zlib";
+import { policyHash } from "./html.mjs";
 
 /** @typedef {{ name: string, role: string, coding: "lzma" | "deflate", packed: Buffer }} Block */
-
-/** @type {(text: string) => string} */
-const hashed = (text) => `'sha256-${crypto.createHash("sha256").update(text).digest("base64")}'`;
 
 /** @type {(name: string, role: string, content: Buffer | string) => Block} */
 export const deflated = (name, role, content) => ({ name, role, coding: "deflate", packed: zlib.deflateRawSync(content, { level: 9 }) });
@@ -22,8 +19,8 @@ export function standaloneTemplate(page, { style, script, icon, program, binding
   const policy = [
     "default-src 'none'",
     // What a page makes of its own text has a blob: URL.
-    `script-src ${hashed(script)} blob: 'wasm-unsafe-eval'`,
-    `style-src ${hashed(style)}`,
+    `script-src ${policyHash(script)} blob: 'wasm-unsafe-eval'`,
+    `style-src ${policyHash(style)}`,
     "img-src data: blob:",
     "connect-src blob:",
     "worker-src blob:",

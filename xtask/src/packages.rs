@@ -1,5 +1,5 @@
-//! The packages that a release publishes for Rust: packs them all and builds the program from the packed files as people who
-//! install it do: outside of the repository, without the crates in crates/epaint-text and the flags of .cargo/config.toml.
+//! The packages that a release publishes for Rust: packs them all and builds the program from the packed files as those who install
+//! it do: outside of the repository, without the crates in crates/epaint-text and the flags of .cargo/config.toml.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ pub fn check() -> anyhow::Result<()> {
     let packages = published()?;
     let selected = packages.iter().map(|(name, _)| format!("--package={name}"));
     let selected: Vec<String> = selected.collect();
-    // Quiet: it says of every test that it isn't packed.
+    // Quiet, since Cargo reports each test that it doesn't pack.
     let cargo = ["package", "--no-verify", "--allow-dirty", "--quiet"].into_iter();
     run("cargo", &cargo.chain(selected.iter().map(String::as_str)).collect::<Vec<_>>())?;
 
@@ -30,7 +30,10 @@ pub fn check() -> anyhow::Result<()> {
     // Not with --locked: these packages come from paths instead of the registry. All others are as the lock file says.
     build(&folder)?;
     let built = fs::read_to_string(sources.join("Cargo.lock"))?;
-    ensure!(of_others(&built) == of_others(&lock_file), "the lock file that is published with gaitway doesn't fit it");
+    ensure!(
+        without_our_sources(&built) == without_our_sources(&lock_file),
+        "the lock file that is published with gaitway doesn't fit it"
+    );
     let program = folder.join("target/debug").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
     run(text(&program)?, &["inspect", "sample:pilot"])
 }
@@ -48,7 +51,7 @@ fn published() -> anyhow::Result<Vec<(String, String)>> {
         .collect()
 }
 
-/// Unpacks a package into a folder of its name. Files that are the same keep their times, so that Cargo builds what has changed.
+/// Unpacks a package into a folder of its name. Unchanged files keep their times, so that Cargo builds only what has changed.
 fn unpack(name: &str, version: &str, folder: &Path) -> anyhow::Result<()> {
     let fresh = folder.join("fresh");
     fs::create_dir_all(&fresh)?;
@@ -92,7 +95,7 @@ fn write_if_different(path: &Path, content: &[u8]) -> anyhow::Result<()> {
     Ok(fs::write(path, content)?)
 }
 
-/// A workspace in which the packages find each other in place of the registry.
+/// Returns the manifest of a workspace in which the packages find each other instead of in the registry.
 fn workspace(packages: &[(String, String)]) -> anyhow::Result<String> {
     let mut manifest = "[workspace]\nresolver = \"3\"\nmembers = [\"gaitway\"]\n\n[patch.crates-io]\n".to_owned();
     for (name, _) in packages.iter().filter(|(name, _)| name != "gaitway") {
@@ -113,8 +116,8 @@ fn build(folder: &Path) -> anyhow::Result<()> {
     step.end(succeeded(cargo.status()))
 }
 
-/// Removes from a lock file where packages of ours come from.
-fn of_others(lock_file: &str) -> String {
+/// Returns a lock file without the sources and checksums of our packages.
+fn without_our_sources(lock_file: &str) -> String {
     let packages = lock_file.split("[[package]]\n").map(|package| {
         let is_ours = package.starts_with("name = \"gaitway");
         let lines = package

@@ -1,32 +1,31 @@
-//! Text in other encodings than UTF-8: names in old programs' files are in the code page of the computer that wrote them, which
-//! no file states. A text file is converted to UTF-8 as a whole before it is read, since the second byte of a character may
-//! look like a brace or a backslash.
+//! Text in encodings other than UTF-8: old programs write names in the code page of their computer, and no file states which one.
+//! A text file is converted to UTF-8 as a whole before it is parsed, since the second byte of a character may look like a brace or
+//! a backslash.
 //!
-//! Natively, `encoding_rs` has the tables; on the page the browser does, which follow the same standard
-//! (<https://encoding.spec.whatwg.org>).
+//! Natively, `encoding_rs` has the tables; on the page, the browser has. Both follow <https://encoding.spec.whatwg.org>.
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use crate::lines::Lines;
 
-/// Longer texts are not converted: the copy may take three times as much.
+/// Maximum size of a text to convert: the copy may take three times as much.
 const MAX_BYTES: usize = 1 << 28;
-/// Maximum size of what an encoding is guessed from.
+/// Maximum size of the sample from which an encoding is guessed.
 const MAX_SAMPLE: usize = 1 << 14;
-/// What a character of [`DoubleByte::words`] counts, relative to a common one.
+/// Score of a character of [`DoubleByte::words`]; a common one scores 1.
 const WORD_SCORE: i32 = 3;
-
-/// What a character counts that isn't in the encoding.
+/// Score of bytes that aren't a character of the encoding.
 const ERROR_SCORE: i32 = -5;
-
-/// The encoding of Western European text, in which all bytes are characters.
-const WESTERN: &str = "windows-1252";
-/// Its letters beyond ASCII, and those of the code page in which old programs wrote the names in zip archives.
-const WESTERN_LETTERS: RangeInclusive<u8> = 0xC0..=0xFF;
-const ZIP_LETTERS: RangeInclusive<u8> = 0x80..=0xA5;
-/// What a letter counts that has ASCII on both sides, as most letters with accents have.
+/// Score of a single-byte letter between ASCII characters, where most accented letters are.
 const LETTER_SCORE: i32 = 2;
+
+/// The encoding of Western European text, in which every byte is a character.
+const WESTERN: &str = "windows-1252";
+/// Its letters beyond ASCII.
+const WESTERN_LETTERS: RangeInclusive<u8> = 0xC0..=0xFF;
+/// Letters beyond ASCII in MS-DOS's code page, in which old programs wrote names into zip archives.
+const ZIP_LETTERS: RangeInclusive<u8> = 0x80..=0xA5;
 
 /// An encoding with characters of two bytes.
 struct DoubleByte {
@@ -36,7 +35,7 @@ struct DoubleByte {
     single: RangeInclusive<u8>,
     /// First and second byte of common characters: the alphabet, and the more frequent half of the ideographs.
     common: &'static [(RangeInclusive<u8>, RangeInclusive<u8>)],
-    /// Characters in names of joints. Chinese and Korean can't be distinguished by their bytes.
+    /// Characters that occur in joint names: Chinese and Korean can't be told apart by their bytes.
     words: &'static str,
 }
 
@@ -75,7 +74,7 @@ const DOUBLE_BYTE: [DoubleByte; 4] = [
     },
 ];
 
-/// Returns a text file's contents as UTF-8 without a byte-order mark. Text in no known encoding stays as it is.
+/// Converts a text file to UTF-8. Text in an unknown encoding is returned unchanged.
 pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     if let Some(text) = utf16(bytes) {
         return text.into_bytes().into();
@@ -93,7 +92,7 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
             sample.push(b'\n');
         }
     }
-    // A damaged character in a text that is UTF-8 otherwise.
+    // UTF-8 with a damaged character.
     if is_mostly_utf8(&sample) {
         return bytes.into();
     }
@@ -101,14 +100,17 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
         .map_or(bytes.into(), |text| text.into_bytes().into())
 }
 
-/// Decodes the names in a zip archive. `None` if they are in no encoding with characters of two bytes.
+/// Decodes the names in a zip archive. `None` unless they are in an encoding with characters of two bytes.
 pub fn double_byte_names(names: &[&[u8]]) -> Option<Vec<String>> {
     let sample = names.join(&b'\n');
-    let label = if is_mostly_utf8(&sample) { None } else { guess(&sample, &ZIP_LETTERS) }?;
+    if is_mostly_utf8(&sample) {
+        return None;
+    }
+    let label = guess(&sample, &ZIP_LETTERS)?;
     names.iter().map(|name| decode(label, name)).collect()
 }
 
-/// Returns whether lines are UTF-8 rather than something else.
+/// Returns whether most of the bytes beyond ASCII are in lines that are UTF-8.
 fn is_mostly_utf8(text: &[u8]) -> bool {
     let (mut as_utf8, mut others) = (0, 0);
     for line in text.split(|&byte| byte == b'\n') {
@@ -121,13 +123,13 @@ fn is_mostly_utf8(text: &[u8]) -> bool {
     as_utf8 >= others
 }
 
-/// Returns whether a character stands for a byte, as in the encoding x-user-defined. Parts, which have no tables, write text in
-/// an unknown encoding so.
+/// Returns whether a character stands for a byte, as in the encoding x-user-defined. Parts have no encoding tables and return text
+/// in an unknown encoding that way.
 pub fn is_byte(character: char) -> bool {
     matches!(character, '\u{F780}'..='\u{F7FF}')
 }
 
-/// Decodes those texts of a part that consist of bytes ([`is_byte`]) or that only happen to be UTF-8.
+/// Decodes the texts of a part that contain bytes ([`is_byte`]), and those whose bytes only happen to be UTF-8.
 pub fn decode_bytes(texts: &mut [&mut String]) {
     let as_bytes = |text: &str| -> Vec<u8> {
         let mut bytes = Vec::with_capacity(text.len());
@@ -149,7 +151,7 @@ pub fn decode_bytes(texts: &mut [&mut String]) {
     }
 }
 
-/// Decodes UTF-16, which has a byte-order mark or begins with a character of ASCII.
+/// Decodes UTF-16 that has a byte-order mark or begins with two ASCII characters.
 fn utf16(bytes: &[u8]) -> Option<String> {
     let word = match bytes {
         [0xFF, 0xFE, ..] | [1..=0x7F, 0, 1..=0x7F, 0, ..] => u16::from_le_bytes,
@@ -160,8 +162,8 @@ fn utf16(bytes: &[u8]) -> Option<String> {
     Some(char::decode_utf16(words).map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
 }
 
-/// Returns the encoding with characters of two bytes in which a text makes the most sense. `None` if it makes as much sense in
-/// one in which all bytes are characters, `letters` those that words are made of.
+/// Returns the encoding with characters of two bytes in which a text makes the most sense. `None` if it makes as much sense in one
+/// in which every byte is a character and words consist of `letters`.
 fn guess(text: &[u8], letters: &RangeInclusive<u8>) -> Option<&'static str> {
     let text = &text[..text.len().min(MAX_SAMPLE)];
     let is_high = |byte: Option<&u8>| byte.is_some_and(|byte| !byte.is_ascii());
@@ -171,7 +173,7 @@ fn guess(text: &[u8], letters: &RangeInclusive<u8>) -> Option<&'static str> {
     });
     let mut best = (single.sum::<i32>().max(0), None);
     for encoding in &DOUBLE_BYTE {
-        // The first of several with the same score.
+        // Among equal scores, the first one wins.
         let score = encoding.score(text);
         if score > best.0 {
             best = (score, Some(encoding.label));
@@ -181,7 +183,7 @@ fn guess(text: &[u8], letters: &RangeInclusive<u8>) -> Option<&'static str> {
 }
 
 impl DoubleByte {
-    /// Returns how much sense a text makes.
+    /// Scores how much sense a text makes in this encoding.
     fn score(&self, text: &[u8]) -> i32 {
         let decoded = decode(self.label, text).unwrap_or_default();
         let of_characters = decoded.chars().map(|character| match character {
@@ -205,14 +207,14 @@ impl DoubleByte {
     }
 }
 
-/// Decodes text; what isn't in the encoding becomes the replacement character. `None` if the encoding is unknown.
+/// Decodes text; invalid bytes become the replacement character. `None` if the encoding is unknown.
 #[cfg(not(target_arch = "wasm32"))]
 fn decode(label: &str, bytes: &[u8]) -> Option<String> {
     let encoding = encoding_rs::Encoding::for_label(label.as_bytes())?;
     Some(encoding.decode_without_bom_handling(bytes).0.into_owned())
 }
 
-/// Decodes text; what isn't in the encoding becomes the replacement character. `None` if the browser doesn't know the encoding.
+/// Decodes text; invalid bytes become the replacement character. `None` if the browser doesn't know the encoding.
 #[cfg(target_arch = "wasm32")]
 fn decode(label: &str, bytes: &[u8]) -> Option<String> {
     web_sys::TextDecoder::new_with_label(label).ok()?.decode_with_u8_array(bytes).ok()

@@ -71,7 +71,7 @@ impl FileSet {
         }
     }
 
-    /// Adds a file of another set under its normalized name.
+    /// Adds a file of another set. Its name is normalized and not taken.
     pub(super) fn insert_shared(&mut self, name: &str, bytes: SharedBytes) {
         self.files.push((name.to_owned(), bytes));
     }
@@ -175,8 +175,8 @@ impl FileSet {
     }
 }
 
-/// Returns the names of members whose encoding is unknown, if all of them make sense in another encoding than MS-DOS's. Archives of
-/// Windows in East Asia have such names.
+/// Returns the names of members whose encoding is unknown, or nothing if MS-DOS's fits them. Archives made on an East Asian Windows
+/// have names in other encodings.
 fn decoded_names(directory: &Directory) -> Vec<String> {
     let names = directory.members().flatten().filter(Member::has_unknown_encoding);
     encoding::double_byte_names(&names.map(|member| member.raw_name).collect::<Vec<_>>()).unwrap_or_default()

@@ -80,26 +80,32 @@ pub fn referred_file<'a>(files: &'a FileSet, name: &str, uri: &str) -> Option<&'
     gltf::find_file(files, name, uri).map(|found| found.bytes)
 }
 
-/// Returns a file of a set with those that it refers to, in the conversions that are there, as a set of its own.
+/// Returns a file and those that it refers to as a set of their own, in the form that they have now: converted ones stay converted.
 pub fn with_references(files: &FileSet, name: &str) -> FileSet {
     let mut own = FileSet::default();
-    let add = |own: &mut FileSet, name: &str| {
-        let bytes = files.get(name).filter(|_| own.get(name).is_none());
-        bytes.map(|bytes| own.insert_shared(name, bytes.clone())).is_some()
+    let add = |own: &mut FileSet, name: &str| match files.get(name) {
+        Some(bytes) if own.get(name).is_none() => {
+            own.insert_shared(name, bytes.clone());
+            true
+        }
+        _ => false,
     };
     add(&mut own, name);
     if obj::is_obj(name) {
         obj::companions(files, name).into_iter().for_each(|companion| _ = add(&mut own, companion));
     }
     // What was found may refer to more, such as a material library to its images.
-    while missing_files(&own)
-        .iter()
-        .fold(false, |found, uri| found | files.resolve(name, uri).is_some_and(|file| add(&mut own, file.name)))
-    {}
-    own
+    loop {
+        let missing = missing_files(&own);
+        let found = missing.iter().filter_map(|uri| files.resolve(name, uri));
+        if found.filter(|file| add(&mut own, file.name)).count() == 0 {
+            return own;
+        }
+    }
 }
 
-/// Extensions of glTF files, in lower case; [`AssetParts::format`](gaitway_character::asset::AssetParts::format) uses the same words.
+/// Extensions of glTF files, in lower case; [`AssetParts::format`](gaitway_character::asset::AssetParts::format) uses the same
+/// words.
 pub const GLTF_EXTENSIONS: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
 /// Extensions of other files with a skeleton or clips, in lower case.

@@ -19,7 +19,7 @@ pub const MAX_FOLDER_DEPTH: usize = 16;
 pub const MAX_MAP_BYTES: usize = 16 << 20;
 /// Frames of a clip that is sampled to be written, nine hours at 30 a second.
 pub const MAX_WRITTEN_FRAMES: usize = 1_000_000;
-/// Frames of such a clip times its joints: what a .bvh takes memory for.
+/// Frames of such a clip times its joints, which limits the memory that writing it takes.
 pub const MAX_WRITTEN_POSES: usize = 12 << 20;
 /// Width and height of an image in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 16_384;

@@ -1,5 +1,5 @@
-//! Splits text files into words and lines, with line numbers. What isn't UTF-8 was converted by [`encoding`](super::encoding), if
-//! its encoding could be found.
+//! Splits text files into words and lines, with line numbers. [`encoding`](super::encoding) converted them to UTF-8 before, if it
+//! recognized their encoding.
 
 use std::borrow::Cow;
 
@@ -73,8 +73,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Drops what begins with a byte that text doesn't have: padding, or the mark for a text's end (`^Z`). Returns whether there was
-    /// any.
+    /// Cuts the text at the first byte that no text has: padding, or the end-of-file mark `^Z`. Returns whether there was one.
     pub fn end_at_padding(&mut self) -> bool {
         let end = self.rest.iter().position(|byte| matches!(byte, 0 | 0x1A));
         self.rest = &self.rest[..end.unwrap_or(self.rest.len())];

@@ -82,7 +82,7 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
     Ok(None)
 }
 
-/// Returns what a part reads of a file. Parts have no tables of encodings.
+/// Returns a part's input. Text is converted to UTF-8 for it, since parts have no encoding tables.
 fn input_of(part: Part, bytes: &SharedBytes) -> SharedBytes {
     let is_text = part == Part::X && bytes.get(8..12) == Some(b"txt ");
     match is_text.then(|| encoding::utf8(bytes)) {

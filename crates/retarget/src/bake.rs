@@ -138,19 +138,14 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     let ends = detached_ends(transfer);
     if !policy.is_same_skeleton {
         let moves = |joint: JointIndex| {
-            let is_translation =
-                |channel: &NewChannel| channel.joint == joint && channel.keys.property() == Property::Translation;
+            let is_translation = |channel: &NewChannel| channel.is_of(joint, Property::Translation);
             channels.iter().chain(&copied).any(is_translation) || ends.iter().any(|(end, _)| *end == joint)
         };
-        let still = rest_translations(transfer, &rest, moves);
-        channels.extend(still);
+        let offsets = rest_translations(transfer, &rest, moves);
+        channels.extend(offsets);
     }
     let reflection = transfer.target_skeleton.reflection();
-    let in_file = |channel: NewChannel| match &reflection {
-        Some(reflection) => channel.in_mirror(reflection),
-        None => channel,
-    };
-    let mut channels: Vec<NewChannel> = channels.into_iter().map(in_file).collect();
+    let mut channels: Vec<NewChannel> = channels.into_iter().map(|channel| channel.in_mirror(&reflection)).collect();
     // In an equal skeleton, the copied translations keep the ends in place.
     let detached = if ends.is_empty() || (policy.translations && policy.is_same_skeleton) {
         Vec::new()
@@ -159,9 +154,8 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         detached_channels(transfer, &ends, &so_far.clip)
     };
     let detached: Vec<NewChannel> = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect();
-    let expressions = expression_channels(transfer).into_iter().filter(|new| {
-        !copied.iter().any(|channel| channel.joint == new.joint && channel.keys.property() == Property::MorphWeights)
-    });
+    let mut expressions = expression_channels(transfer);
+    expressions.retain(|new| !copied.iter().any(|channel| channel.is_of(new.joint, Property::MorphWeights)));
     channels.extend(expressions);
     channels.extend(copied);
     channels.extend(detached);

@@ -40,14 +40,14 @@ fn depths(skeleton: &Skeleton) -> Vec<usize> {
     depths
 }
 
-/// Returns how many steps of a measurement to take, from the start of a clip, for a skeleton of this many joints: all of these, or as
-/// many as the budget has.
+/// Returns how many steps of a measurement to take, from the start of a clip, for a skeleton of this many joints: all of these, or
+/// as many as the budget has.
 pub fn measured_steps(steps: f32, joints: usize) -> usize {
     // The conversion saturates.
     (steps as usize).min(MAX_MEASURED / joints.max(1))
 }
 
-/// Returns at how many times a clip may be baked for a skeleton of this many joints.
+/// Returns at how many times a clip may be baked for a skeleton of this many joints, or a mesh of this many morph targets.
 pub fn held_poses(joints: usize) -> usize {
     MAX_HELD / joints.max(1)
 }

@@ -4,8 +4,8 @@
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
 //! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds
-//! parts of it still, `stack` puts others over it, `pins` holds hands and feet, and `baker` makes a clip of what these two do. `pose`, `keys`, `math`,
-//! `times`, `limit`, `skin` and `two_bones` are shared.
+//! parts of it still, `stack` puts others over it, `pins` holds hands and feet, and `baker` makes a clip of what these two do.
+//! `budget`, `pose`, `keys`, `math`, `times`, `limit`, `side`, `skin` and `two_bones` are shared.
 //!
 //! The result is an ordinary clip: the library lists it after the model's own, and the player cannot tell them apart.
 //! `docs/retargeting.md` has the math.

@@ -1,7 +1,7 @@
 //! Poses in double precision: local transforms, and the rotation and position of every joint that follow from them.
 
 use gaitway_character::anim::{Clip, JointIndex, Pose, Reflection, SampleCursor, Skeleton, Transform};
-use glam::{DAffine3, DQuat, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec3};
 
 use super::math::unit;
 
@@ -126,7 +126,7 @@ pub fn moved(skeleton: &Skeleton, joint: JointIndex, poses: &[WorldPose], moves:
     let reflection = skeleton.reflection();
     let translation = |(pose, by): (&WorldPose, &DVec3)| {
         let local = pose.parent_frame(skeleton, joint).inverse().transform_point3(pose.position(joint) + by);
-        reflection.as_ref().map_or(local, |reflection| reflection.translation(joint, local)).as_vec3()
+        reflection.translation(joint, local).as_vec3()
     };
     poses.iter().zip(moves).map(translation).collect()
 }
@@ -144,19 +144,21 @@ pub fn parent_frame(
     DAffine3::from_quat(world_from_model) * model_from_parent
 }
 
+/// The space in which bodies are recognized and retargeted: model space, or for a mirrored skeleton its mirror.
+pub fn mirror_from_model(skeleton: &Skeleton) -> Affine3A {
+    let is_mirrored = !skeleton.reflection().is_identity();
+    if is_mirrored { Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)) } else { Affine3A::IDENTITY }
+}
+
 /// The rest pose's local transforms; those of a mirrored skeleton in the mirror.
 pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
     locals_in_mirror(skeleton, skeleton.rest())
 }
 
 fn locals_in_mirror(skeleton: &Skeleton, pose: &Pose) -> Vec<Local> {
-    let mut locals = locals_of(pose);
-    if let Some(reflection) = skeleton.reflection() {
-        for joint in skeleton.joints() {
-            locals[joint.get()] = locals[joint.get()].in_mirror(&reflection, joint);
-        }
-    }
-    locals
+    let reflection = skeleton.reflection();
+    let locals = skeleton.joints().zip(pose.locals());
+    locals.map(|(joint, local)| Local::from(&local).in_mirror(&reflection, joint)).collect()
 }
 
 pub fn locals_of(pose: &Pose) -> Vec<Local> {

@@ -121,11 +121,7 @@ impl<'a> Retargeting<'a> {
     /// Brings the source into the model's space: facing the same way, with the hips at the same place and height.
     pub fn model_from_source(&self) -> Affine3A {
         let skeletons = [&self.source.asset.skeleton, &self.model.asset.skeleton];
-        model_from_source(
-            &self.alignment,
-            self.hips.as_ref(),
-            skeletons.map(|skeleton| skeleton.reflection().is_some()),
-        )
+        model_from_source(&self.alignment, self.hips.as_ref(), skeletons)
     }
 
     /// All pairs of the map, for showing the source beside the model.

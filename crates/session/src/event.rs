@@ -27,9 +27,9 @@ pub enum Event {
         /// Why.
         failure: Failure,
     },
-    /// The page itself has files, of which links find those that they name.
+    /// Files came with the page. Its links can name them.
     Hold {
-        /// Files that are opened together.
+        /// Files that belong together.
         items: Vec<Item>,
     },
     /// Something is opened.

@@ -210,7 +210,7 @@ impl Session {
     /// Returns what the page reads at any time.
     pub fn facts(&self) -> Facts {
         let asking = self.awaited.as_ref().filter(|awaited| !awaited.missing.is_empty());
-        // Where the user has gone is shown next.
+        // The link that the user has gone to is shown next.
         let link = self.asked.as_ref().map_or(&self.view, Asked::shown_link);
         Facts {
             link: link.clone(),
@@ -221,7 +221,7 @@ impl Session {
         }
     }
 
-    /// Holds files of the page's own, which are nobody's secret.
+    /// Holds files that came with the page, which aren't private.
     fn hold(&mut self, items: &[Item]) {
         self.files.extend(items.iter().filter_map(Item::id).map(|id| (id, false)));
         self.held.hold_last(items);
@@ -321,7 +321,7 @@ impl Session {
         }
         let visit = self.move_to_entry(link.clone(), state);
         let ask = self.next_ask();
-        // An instance that is starting shows something else until it has started: the view stays what it is.
+        // The view stays what it is: an instance that is starting shows something else until it has started.
         self.asked = Some(Asked { ask, link, visit, was_private: state.own });
         if self.program == Program::Running {
             self.follow_asked();

@@ -158,12 +158,12 @@ impl<'a> Directory<'a> {
 }
 
 impl<'a> Member<'a> {
-    /// Returns the path inside the archive. If it is in an unknown encoding, that is taken for the one of MS-DOS.
+    /// Returns the path inside the archive. An unknown encoding is taken for MS-DOS's.
     pub fn name(&self) -> Cow<'a, str> {
         unicode_path(self.raw_name, self.extra).unwrap_or_else(|| decoded(self.raw_name))
     }
 
-    /// Returns whether nothing says in which encoding the path is, so that it isn't certain to be [`Self::name`].
+    /// Returns whether the archive doesn't state the path's encoding, so that [`Self::name`] is a guess.
     pub fn has_unknown_encoding(&self) -> bool {
         !self.raw_name.is_ascii() && !self.is_utf8 && unicode_path(self.raw_name, self.extra).is_none()
     }

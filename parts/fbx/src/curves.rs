@@ -17,7 +17,7 @@ const MAX_KEYS: usize = 1 << 22;
 const MAX_REPEATED_KEYS: usize = 1 << 16;
 /// Maximum length of a clip, in seconds: a day.
 const MAX_SECS: f64 = 86_400.0;
-/// Minimum difference between the ends of a clip and of its keys that is worth mentioning: the last frame of most programs.
+/// Minimum difference between the ends of a clip and of its keys that counts: most programs differ by a frame.
 const MIN_DIFFERENCE_SECS: f64 = 0.1;
 /// The properties that a node's transform is made of.
 pub const TRANSLATION_PROPERTIES: [&str; 5] =
@@ -78,21 +78,25 @@ impl<'a> Curves<'a> {
         own.filter(|(_, name, _)| names.contains(name)).map(|&(_, _, value)| value)
     }
 
+    fn all(&self) -> impl Iterator<Item = &AnimCurve> {
+        self.properties.iter().flat_map(|(_, _, value)| curves(value))
+    }
+
     /// Returns whether there is any key.
     pub fn have_keys(&self) -> bool {
-        self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(|curve| !curve.keyframes.is_empty())
+        self.all().any(|curve| !curve.keyframes.is_empty())
     }
 
     /// Returns the times of the first and the last key.
-    fn keys(&self) -> [f64; 2] {
-        let curves = self.properties.iter().flat_map(|(_, _, value)| curves(value));
-        let times = curves.filter(|curve| !curve.keyframes.is_empty()).map(|curve| (curve.min_time, curve.max_time));
+    fn key_range(&self) -> [f64; 2] {
+        let with_keys = self.all().filter(|curve| !curve.keyframes.is_empty());
+        let times = with_keys.map(|curve| (curve.min_time, curve.max_time));
         times.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], (from, to)| [first.min(from), last.max(to)])
     }
 
     /// Returns the time range of the stack and of the keys after it, or that of the keys; none if that is implausible.
     pub fn range(&self, stack: &AnimStack) -> Option<[f64; 2]> {
-        let [first, last] = self.keys();
+        let [first, last] = self.key_range();
         let is_valid = |[from, to]: [f64; 2]| {
             first.is_finite() && last.is_finite() && from.is_finite() && (0.0..=MAX_SECS).contains(&(to - from))
         };
@@ -105,15 +109,13 @@ impl<'a> Curves<'a> {
     /// Warns if a clip ends at another time than its keys.
     pub fn warn_of_length(&self, stack: &AnimStack, [from, to]: [f64; 2], warnings: &mut Warnings) {
         let name = &*stack.element.name;
-        let [_, last] = self.keys();
+        let [_, last] = self.key_range();
         let repeats = |curve: &AnimCurve| curve.post_extrapolation.mode != ExtrapolationMode::Constant;
         if stack.time_begin < stack.time_end && to > stack.time_end {
             let [stop, end] = [stack.time_end, to].map(|time| seconds(time - from));
             warnings
                 .add(format!("Clip \"{name}\" has keys after its end (LocalStop) at {stop} s: kept, up to {end} s."));
-        } else if to > last + MIN_DIFFERENCE_SECS
-            && !self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(repeats)
-        {
+        } else if to > last + MIN_DIFFERENCE_SECS && !self.all().any(repeats) {
             let [last, end] = [last, to].map(|time| seconds(time - from));
             warnings.add(format!(
                 "Clip \"{name}\" is longer than its keys, which end at {last} s: it stands still until {end} s."

@@ -7,8 +7,8 @@
 /// Positions between two keys at which the fit is compared with the function: unevenly spaced, so that a motion that
 /// repeats inside a piece is noticed, and close to the ends, where steep tangents act.
 const CHECKS: [f64; 7] = [0.04, 0.15, 0.31, 0.5, 0.69, 0.85, 0.96];
-/// Minimum cosine between the quaternions at a piece's ends: half of the angle between them, 160° at most. At 180°, rounding decides
-/// in which direction a rotation goes.
+/// Minimum dot product of the quaternions at a piece's ends, so that it turns by 160° at most. At 180°, rounding would decide in
+/// which direction.
 const MIN_COSINE: f64 = 0.17;
 /// Maximum number of times a piece is halved.
 const MAX_HALVINGS: u32 = 10;
@@ -452,12 +452,12 @@ mod tests {
         let speeds = [(1.0, false), (2.0, false), (0.7, false), (1.0, true), (2.0, true)];
         for degrees in [-1440, -1080, -720, -540, -360, -180, 180, 360, 540, 720, 1080, 1440] {
             for (duration, is_eased) in speeds {
-                axes.iter().for_each(|&axis| turns_as_it_should(degrees.into(), duration, is_eased, axis));
+                axes.iter().for_each(|&axis| check_turn(degrees.into(), duration, is_eased, axis));
             }
         }
     }
 
-    fn turns_as_it_should(degrees: f64, duration: f64, is_eased: bool, axis: [f64; 3]) {
+    fn check_turn(degrees: f64, duration: f64, is_eased: bool, axis: [f64; 3]) {
         let angle = |time: f64| {
             let t = time / duration;
             degrees.to_radians() * if is_eased { t * t * (3.0 - 2.0 * t) } else { t }
@@ -471,13 +471,13 @@ mod tests {
             for (time, found) in within_piece(&keys, at) {
                 let mut expected = [0.0; 4];
                 turn(time, &mut expected);
-                let error = dot(&found, &expected).abs();
-                assert!(error > 1.0 - 1e-6, "{degrees}° in {duration} s about {axis:?}, at {time}: {error}");
+                let cosine = dot(&found, &expected).abs();
+                assert!(cosine > 1.0 - 1e-6, "{degrees}° in {duration} s about {axis:?}, at {time}: {cosine}");
             }
         }
     }
 
-    /// Rotations over one piece by itself, as a reader of the file sees it.
+    /// Samples one piece the way a reader of the file does.
     fn within_piece(keys: &Keys, at: usize) -> [(f64, [f64; 4]); 9] {
         let is_cubic = keys.interpolation == Interpolation::CubicSpline;
         let parts = if is_cubic { 3 } else { 1 };

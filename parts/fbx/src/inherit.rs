@@ -1,5 +1,5 @@
-//! Works around a fault of ufbx 0.23.1: where a node inherits the scale of several ancestors component by component, it takes an
-//! ancestor's scale for 0 that the file leaves out because it is 1.
+//! Works around a bug of ufbx 0.23.1: where a node inherits the scales of several ancestors component by component, it takes a
+//! scale that the file leaves out, because it is 1, for 0.
 
 use ufbx::{Anim, MirrorAxis, Node, Transform, Vec3};
 
@@ -7,6 +7,8 @@ const LCL_SCALING: &str = "Lcl Scaling";
 const LCL_TRANSLATION: &str = "Lcl Translation";
 /// `UFBX_TRANSFORM_FLAG_IGNORE_COMPONENTWISE_SCALE`.
 const IGNORE_COMPONENTWISE_SCALE: u32 = 0x2;
+
+const ONE: Vec3 = Vec3 { x: 1.0, y: 1.0, z: 1.0 };
 
 /// Evaluates a node's transform like `ufbx::evaluate_transform_flags`.
 pub fn transform(anim: &Anim, node: &Node, time: f64, flags: u32) -> Transform {
@@ -29,8 +31,6 @@ pub fn transform(anim: &Anim, node: &Node, time: f64, flags: u32) -> Transform {
     }
     transform
 }
-
-const ONE: Vec3 = Vec3 { x: 1.0, y: 1.0, z: 1.0 };
 
 /// Iterates over the helper nodes that hold the scales which a node inherits.
 fn helpers(node: &Node) -> impl Iterator<Item = &Node> {

@@ -3,7 +3,7 @@
 use gaitway_glb::{Glb, Object, Warnings, number, numbers, push};
 use ufbx::{Matrix, Node, Quat, Scene, Transform, Vec3};
 
-/// Properties of cameras and lights that other nodes are connected to: what they look at, and what says where up is.
+/// Properties of cameras and lights to which other nodes are connected: the one they look at, and the one that defines up.
 const TARGETS: [&str; 2] = ["LookAtProperty", "UpVectorProperty"];
 
 /// A glTF node under construction.
@@ -129,8 +129,8 @@ impl Nodes {
     }
 
     /// A hidden node hides only itself, whereas in glTF it hides everything below: nodes that would hide others stay visible, and
-    /// so do bones, which programs hide to show the mesh alone. The others aren't part of the scene, such as MotionBuilder's own
-    /// cameras.
+    /// so do bones, which programs hide to show the mesh alone. Other hidden nodes aren't part of the scene, such as
+    /// MotionBuilder's own cameras.
     fn show_what_hides_others(&mut self) {
         let mut is_needed = vec![false; self.entries.len()];
         // Children, and leaves even more, come after their parents.

@@ -63,7 +63,7 @@ const FINGERS: [(&str, [f64; 3], [f64; 3]); 5] = [
 /// The numbers of joints that bodies have: SMPL without and with hands, SMPL+H, SMPL-X.
 pub const JOINT_COUNTS: [usize; 4] = [22, 24, 52, 55];
 
-/// The parents of the joints that all bodies have and their positions relative to these.
+/// Iterates over the joints that all bodies have: the parent, and the position relative to it.
 pub fn bones() -> impl Iterator<Item = (usize, DVec3)> {
     BODY.iter().map(|&Joint(_, parent, offset)| (parent, offset.into()))
 }

@@ -22,9 +22,9 @@
 //! | the path's units per metre (optional) | `smpl_scaling` | 1 |
 //! | frames per second | `mocap_framerate`, `mocap_frame_rate`, `fps` | 1 |
 //!
-//! Rotations are axis times angle in radians, or matrices (× 3 × 3 or × 9 numbers, row by row), relative to the parent joint. A batch
-//! axis of length 1 may be anywhere. Names that begin with `smpl_` are those of AIST++, which scales the body to its path. Shape (`betas`), soft tissue (`dmpls`) and faces
-//! are ignored.
+//! Rotations are axis times angle in radians, or matrices (× 3 × 3 or × 9 numbers, row by row), relative to the parent joint. A
+//! batch axis of length 1 may be anywhere. Names that begin with `smpl_` are those of AIST++, which scales the body to its path.
+//! Shape (`betas`), soft tissue (`dmpls`) and faces are ignored.
 //!
 //! # The skeleton
 //!
@@ -38,8 +38,8 @@
 //! Right-handed, metres. At rest the person stands in a T-pose, faces +Z and has +Y up, with the origin near the breastbone: the
 //! pelvis lies at `body::PELVIS`, and `trans` moves it from there. AMASS has Z up in the world, so that its pelvis is
 //! rotated by 90° while a person stands; other data has Y up. The one that the pelvis's own Y axis is closer to on average
-//! is taken as up, unless the body would be in the ground then and isn't with the other one: `trans` shows whether a person
-//! stands or lies.
+//! is taken as up, unless `trans` shows that the person lies: the body would be in the ground then, and wouldn't with the other
+//! axis.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![forbid(unsafe_code)]

@@ -14,11 +14,17 @@ const AIST_FRAMES_PER_SEC: f64 = 60.0;
 /// AIST++'s units of the path per metre of the body.
 const SCALING: &str = "smpl_scaling";
 
-/// Maximum difference between a rotation matrix and one whose axes are exactly orthogonal and of length 1, by 16-bit floats and
-/// models that don't make them so.
+/// Maximum difference between a rotation matrix times its transpose and the identity. 16-bit floats and the models that predict
+/// such matrices aren't exact.
 const MATRIX_TOLERANCE: f64 = 0.1;
+/// Maximum number of frames in which the body's height is looked up.
+const MAX_LOOKS: usize = 64;
+/// A body that is deeper in the ground than this, in metres, isn't upright along that axis.
+const MAX_DEPTH: f64 = 0.35;
+/// Minimum difference between Y and Z of the pelvis's mean direction that shows which axis is up.
+const MIN_LEAN: f64 = 0.2;
 
-/// How one rotation is written.
+/// How a rotation is stored; the discriminant is how many numbers that takes.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// Axis times angle.
@@ -26,15 +32,6 @@ enum Kind {
     /// Rows of a matrix.
     Matrix = 9,
 }
-
-/// Moments at which the body's height is looked up.
-const MAX_LOOKS: usize = 64;
-
-/// A body that is deeper in the ground than this, in metres, isn't upright along that axis.
-const MAX_DEPTH: f64 = 0.35;
-
-/// The least difference between the two axes, in the mean direction of the pelvis, that shows which one is up.
-const MIN_LEAN: f64 = 0.2;
 
 /// Rotations of some of the joints: frames × joints.
 struct Group {
@@ -46,7 +43,7 @@ struct Group {
 }
 
 impl Group {
-    /// Finds the layout with one of the numbers of joints that an array of this name may have.
+    /// Finds the layout of an array. `counts` are the numbers of joints that one of its name may have.
     fn of(array: Array, counts: &[usize]) -> Result<Group, String> {
         let found = layouts(&array.shape);
         let is_expected = |layout: &&(usize, usize, Kind)| counts.contains(&layout.1);
@@ -178,8 +175,8 @@ impl Motion {
         Ok(())
     }
 
-    /// Returns whether Z is up: the pelvis's own Y axis is closer to Z than to Y on average, unless the body would then be in the
-    /// ground, and isn't with the other axis: a person may lie.
+    /// Returns whether Z is up: on average, the pelvis's own Y axis is closer to Z than to Y. A person may lie, however: if the
+    /// body would be in the ground then, and wouldn't with the other axis, that one is up.
     fn is_z_up(&self, warnings: &mut Warnings) -> bool {
         let up: DVec3 = (0..self.frames).map(|frame| rotation(&self.groups[0], frame, 0) * DVec3::Y).sum();
         let is_z = up.z > up.y;
@@ -198,7 +195,7 @@ impl Motion {
         is_z
     }
 
-    /// The least coordinates of any joint at some moments. The ground is at 0 in nearly all files.
+    /// Returns the least coordinates of any joint in some of the frames. The ground is at 0 in nearly all files.
     fn lowest(&self, trans: &[DVec3]) -> DVec3 {
         let mut lowest = DVec3::INFINITY;
         for frame in (0..self.frames).step_by(self.frames.div_ceil(MAX_LOOKS).max(1)) {

@@ -3,8 +3,8 @@
 //! (`web/shell/parts.js`), so that it can be stopped, and so that a trap ends nothing but the conversion.
 //!
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
-//! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it. If `run()` traps, it finds what the
-//! panic said there instead, or nothing.
+//! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it. If `run()` traps, it finds what
+//! the panic said there instead, or nothing.
 
 use std::io::{self, Read, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -94,7 +94,7 @@ impl Clips<'_, '_> {
             }
             let entry = &mut self.nodes.entries[node];
             entry.is_animated = true;
-            // Nothing but its keys says where a frame rests that the file doesn't have.
+            // Only the keys tell the rest of a frame that the file doesn't have.
             if self.nodes.are_targets && before == 0 {
                 set_part(&mut entry.matrix, path, &track.values);
             }

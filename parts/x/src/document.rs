@@ -131,7 +131,8 @@ pub fn short(name: &[u8]) -> String {
     text(&name[..name.len().min(MAX_SHOWN)])
 }
 
-/// Text of any code page: UTF-8, or else x-user-defined, whose characters stand for bytes: a caller with tables can decode them.
+/// Decodes text of any code page: as UTF-8, or else as x-user-defined, whose characters stand for bytes, so that a caller with
+/// encoding tables can decode it.
 pub fn text(bytes: &[u8]) -> String {
     let character = |&byte: &u8| {
         let code = if byte.is_ascii() { u32::from(byte) } else { 0xF700 + u32::from(byte) };
@@ -336,7 +337,7 @@ impl<'a> Names<'a> {
         Names(names)
     }
 
-    /// Indexes the references to what animations move.
+    /// Indexes the references of animations to the frames that they move.
     pub fn of_targets(document: &Document<'a>) -> Names<'a> {
         let animations = document.all("Animation").flat_map(|(_, animation)| &animation.children);
         let targets =

@@ -57,7 +57,7 @@ impl<'a> Nodes<'a> {
         Ok(nodes)
     }
 
-    /// Adds what the animations of a file without frames move, in the file's order.
+    /// Adds the frames that the animations of a file without frames name, in the file's order.
     fn add_targets(&mut self, document: &Document<'a>) -> Result<(), String> {
         self.are_targets = true;
         self.names = Names::of_targets(document);

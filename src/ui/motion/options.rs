@@ -86,7 +86,7 @@ pub(super) fn show(
     }
 }
 
-/// Which rest poses the joints' rotations are measured from, and which way is up in the motion.
+/// The choices of both rest poses, and of the motion's up axis.
 fn rests(ui: &mut Ui, pairing: &Pairing<'_>, rest: RestChoices, inspect: Inspect, out: &mut Output) {
     let edit = |rest| Command::EditMap { motion: pairing.id(), edit: MapEdit::Rest(rest) };
     controls::section(ui, capitals!(text::REST_POSE_ALIGNMENT));

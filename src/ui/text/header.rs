@@ -18,7 +18,7 @@ pub const SAMPLES: &str = "Samples";
 pub const EXPORT: &str = "Export";
 /// Entry of the export menu that shows the settings of images and videos.
 pub const PICTURE_SETTINGS: &str = "Image and video settings…";
-/// Entry of the export menu that saves a page that shows the scene by itself.
+/// Entry of the export menu that saves a self-contained page that shows the scene.
 pub const SAVE_PAGE: &str = "Save web page (HTML)…";
 /// Button that shares a link to the view.
 pub const SHARE: &str = "Share…";

@@ -152,7 +152,7 @@ pub const DONE_PICKING: &str = "Done";
 /// Shown if the motion's rest pose may not be one.
 pub const DOUBTFUL_REST: &str = "The motion's rest pose looks like a frame of the animation. If feet, hands or hips are \
     rotated, compare the rest poses in Options and choose another.";
-/// Warning about a body that may lie or stand.
+/// Shown if the motion's up axis may be wrong.
 pub const DOUBTFUL_UP: &str = "The body lies throughout the clip, but would stand on the ground if another axis were up. If it \
     should, choose the up axis of the motion among the options.";
 /// Button that returns to the proposed map.

@@ -10,8 +10,9 @@ use crate::ui::{Output, Shown, UiAction, UiState, controls, style, text};
 const MARGIN: f32 = 10.0;
 
 pub fn show(ui: &mut Ui, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let is_embedded = shown.state.page.embed.is_on();
-    if is_embedded && (shown.state.page.embed != Embed::Page || !local.host.has_gallery) {
+    let embed = shown.state.page.embed;
+    let is_embedded = embed.is_on();
+    if is_embedded && (embed != Embed::Page || !local.host.has_gallery) {
         return;
     }
     let height = icon_size(ui, ICON_SIZE).y + 4.0;

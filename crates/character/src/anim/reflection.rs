@@ -8,9 +8,10 @@ use glam::{DQuat, DVec3, Vec3};
 
 use super::{JointIndex, Skeleton};
 
-/// How the local transforms of a mirrored skeleton change in a mirror.
-#[derive(Debug, Clone, PartialEq)]
+/// How the local transforms of a mirrored skeleton change in a mirror. Those of any other skeleton don't change.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reflection {
+    /// By joint; empty if the skeleton isn't mirrored.
     places: Vec<Place>,
 }
 
@@ -24,12 +25,12 @@ enum Place {
 }
 
 impl Skeleton {
-    /// Returns the reflection if most joints are mirrored at rest.
-    pub fn reflection(&self) -> Option<Reflection> {
+    /// Returns the reflection that puts the skeleton right, the identity unless most joints are mirrored at rest.
+    pub fn reflection(&self) -> Reflection {
         let rest = self.rest();
         let scale = |joint: JointIndex| rest.local(joint).scale;
         if !self.joints().any(|joint| is_mirroring(scale(joint))) {
-            return None;
+            return Reflection::default();
         }
         let mut is_mirrored: Vec<bool> = Vec::with_capacity(self.len());
         let mut places = Vec::with_capacity(self.len());
@@ -44,7 +45,7 @@ impl Skeleton {
             });
         }
         let mirrored = is_mirrored.iter().filter(|mirrored| **mirrored).count();
-        (2 * mirrored > self.len()).then_some(Reflection { places })
+        if 2 * mirrored > self.len() { Reflection { places } } else { Reflection::default() }
     }
 }
 
@@ -52,7 +53,7 @@ fn is_mirroring(scale: Vec3) -> bool {
     scale.x * scale.y * scale.z < 0.0
 }
 
-/// The rotation that negating X and these axes make together.
+/// The rotation that negating X and the axes of a mirroring scale make together. The signs of X and Y imply Z's.
 fn turn_of(scale: Vec3) -> DQuat {
     match (scale.x < 0.0, scale.y < 0.0) {
         (true, false) => DQuat::IDENTITY,
@@ -63,26 +64,30 @@ fn turn_of(scale: Vec3) -> DQuat {
 }
 
 impl Reflection {
-    /// Whether a joint's local transform is another one in the mirror.
-    pub fn changes(&self, joint: JointIndex) -> bool {
-        self.places[joint.get()] != Place::Below
+    /// Whether the skeleton isn't mirrored, so that nothing changes.
+    pub fn is_identity(&self) -> bool {
+        self.places.is_empty()
     }
 
-    /// Returns a point or direction of model space in the mirror.
-    pub fn vector(&self, vector: DVec3) -> DVec3 {
-        vector * DVec3::new(-1.0, 1.0, 1.0)
+    fn place(&self, joint: JointIndex) -> Place {
+        self.places.get(joint.get()).copied().unwrap_or(Place::Below)
+    }
+
+    /// Whether a joint's local transform is another one in the mirror.
+    pub fn changes(&self, joint: JointIndex) -> bool {
+        self.place(joint) != Place::Below
     }
 
     /// Returns a joint's local translation in the mirror, and back again.
     pub fn translation(&self, joint: JointIndex, translation: DVec3) -> DVec3 {
-        if self.changes(joint) { self.vector(translation) } else { translation }
+        if self.changes(joint) { translation * DVec3::new(-1.0, 1.0, 1.0) } else { translation }
     }
 
     /// Returns a joint's local rotation in the mirror, and back again; linear, so that tangents change alike.
     pub fn rotation(&self, joint: JointIndex, rotation: DQuat) -> DQuat {
         let DQuat { x, y, z, w } = rotation;
         let mirrored = DQuat::from_xyzw(x, -y, -z, w);
-        match self.places[joint.get()] {
+        match self.place(joint) {
             Place::Below => rotation,
             Place::Mirrors(turn) => mirrored * turn,
             Place::Elsewhere => mirrored,
@@ -91,6 +96,6 @@ impl Reflection {
 
     /// Returns a joint's local scale in the mirror.
     pub fn scale(&self, joint: JointIndex, scale: DVec3) -> DVec3 {
-        if matches!(self.places[joint.get()], Place::Mirrors(_)) { scale.abs() } else { scale }
+        if matches!(self.place(joint), Place::Mirrors(_)) { scale.abs() } else { scale }
     }
 }

@@ -22,16 +22,16 @@ impl Asset {
     }
 }
 
-/// A joint's local transform in the bind pose, where it is known and isn't that of the rest pose anyway.
+/// A joint's local transform in the bind pose, as far as it is known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BoundTransform {
-    /// `None` also where the rest pose has nearly the same.
+    /// The joint's translation; `None` also if the rest pose has nearly the same.
     pub translation: Option<DVec3>,
-    /// The joint's rotation.
+    /// The joint's rotation, even if the rest pose has the same.
     pub rotation: Option<DQuat>,
 }
 
-/// Inverse bind matrices are less exact than rest poses, and what differs by less isn't seen.
+/// As a share of the longest offset. Inverse bind matrices are less exact than rest poses, and smaller differences are invisible.
 const TRANSLATION_TOLERANCE: f64 = 1e-3;
 
 impl AssetParts {
@@ -44,14 +44,14 @@ impl AssetParts {
         }
     }
 
-    /// Returns each joint's local transform in the bind pose. It is taken relative to the nearest ancestor in the same skin, or to the
-    /// skin's largest branch, because bind space may have other units and another up axis. Unknown for the root of that branch, and
-    /// if a matrix is singular.
+    /// Returns each joint's local transform in the bind pose. It is taken relative to the nearest ancestor in the same skin, or to
+    /// the skin's largest branch, because bind space may have other units and another up axis. Unknown for the root of that branch,
+    /// and if a matrix is singular.
     pub fn bind_transforms(&self) -> Vec<BoundTransform> {
         let mut locals: Vec<Option<DAffine3>> = vec![None; self.skeleton.len()];
         let mut bind_from_joint: Vec<Option<DAffine3>> = vec![None; self.skeleton.len()];
         for skin in &self.skins {
-            // Without a pose of its own: its vertices are relative to their joints.
+            // Equal matrices are no bind pose: the vertices are relative to their joints.
             if skin.joint_from_bind().windows(2).all(|pair| pair[0] == pair[1]) {
                 continue;
             }
@@ -95,18 +95,24 @@ fn bind_local(
         }
         bound_from_parent = affine(&skeleton.rest().local(ancestor)) * bound_from_parent;
     }
-    // Feet that inverse kinematics moves hang beside the body.
+    // In a branch of its own, as feet hang beside the body for inverse kinematics.
     let (root, model_from_bind) = model_from_bind?;
     (joint != root).then(|| bound_from_parent.inverse() * model_from_bind * bind)
 }
 
-/// The root of a skin's largest branch, and the bind space as that root rests; `None` if the skin has no other branch.
+/// Returns the root of a skin's largest branch, and where the bind space is if that root is at rest; `None` if the skin has no
+/// other branch.
 fn model_from_bind(skeleton: &Skeleton, bind_from_joint: &[Option<DAffine3>]) -> Option<(JointIndex, DAffine3)> {
-    let is_bound = |joint: &JointIndex| bind_from_joint[joint.get()].is_some();
+    // By joint: the topmost bound joint at or above it.
+    let mut roots: Vec<Option<JointIndex>> = Vec::with_capacity(skeleton.len());
     let mut sizes: BTreeMap<JointIndex, usize> = BTreeMap::new();
-    for joint in skeleton.joints().filter(is_bound) {
-        let root = ancestors(skeleton, joint).filter(is_bound).last().unwrap_or(joint);
-        *sizes.entry(root).or_default() += 1;
+    for (joint, bind) in skeleton.joints().zip(bind_from_joint) {
+        let above = skeleton.parent(joint).and_then(|parent| roots[parent.get()]);
+        let root = above.or(bind.map(|_| joint));
+        if let (Some(root), Some(_)) = (root, bind) {
+            *sizes.entry(root).or_default() += 1;
+        }
+        roots.push(root);
     }
     let (&root, _) = sizes.iter().rev().max_by_key(|(_, size)| **size).filter(|_| sizes.len() > 1)?;
     let model_from_root = ancestors(skeleton, root)

@@ -23,13 +23,9 @@ pub fn read(
     budget: &Budget,
     warnings: &mut Warnings,
 ) -> Result<Option<Frames>, Problem> {
-    let other =
-        |line: usize, problem: String| Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem };
-    let missing = |line: usize, problem: String| Warning::FramesMissing { line: format!("line {line}"), problem };
     if lines.end_at_padding() {
-        let (place, problem) =
-            ("the end".to_owned(), "a byte that text doesn't have, and what follows it, is skipped".to_owned());
-        warnings.push(Warning::Other { code: "bvh-motion", place, problem });
+        let problem = "a control character ends the text; what follows it is skipped".to_owned();
+        warnings.push(Warning::Other { code: "bvh-motion", place: "the end".to_owned(), problem });
     }
     if lines.word().is_none() {
         warnings.push(other(lines.line, "there is no MOTION: the skeleton stands still".to_owned()));
@@ -54,6 +50,14 @@ pub fn read(
         return Err(missing_time(line, &frame_secs.to_string()));
     }
     Ok(Some(Frames { frame_count, frame_secs, numbers, line }))
+}
+
+fn other(line: usize, problem: String) -> Warning {
+    Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem }
+}
+
+fn missing(line: usize, problem: String) -> Warning {
+    Warning::FramesMissing { line: format!("line {line}"), problem }
 }
 
 struct Header {
@@ -94,8 +98,8 @@ fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
 }
 
 /// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing number is reported
-/// where it occurs. An incomplete last frame is dropped, as are a few surplus numbers at the end of a frame's only line, and what
-/// isn't a frame after the announced ones.
+/// where it occurs. Three things are dropped with a warning: an incomplete last frame, a few surplus numbers at the end of a line
+/// that holds a whole frame, and whatever follows the announced frames and isn't one.
 fn frames(
     lines: &mut Lines,
     channels: usize,
@@ -122,7 +126,7 @@ fn frames(
                 frames.in_frame = 0;
                 let problem =
                     format!("{} after the last frame, and the rest of the file, is skipped", quoted(Some(text)));
-                warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
+                warnings.push(other(line, problem));
                 break;
             }
             Err(problem) => return Err(problem),
@@ -131,16 +135,16 @@ fn frames(
     let Numbers { mut all, in_frame, began, .. } = frames;
     if in_frame > 0 {
         let problem = format!("the last frame has {in_frame} of {channels} numbers (cut short?) and is left out");
-        warnings.push(Warning::FramesMissing { line: format!("line {began}"), problem });
+        warnings.push(missing(began, problem));
         all.truncate(all.len() - in_frame);
     }
     if let Some((line, count)) = surplus {
-        // Lines that don't begin with a frame are fewer than the frames.
+        // Too few frames: the file fills its lines regardless of where frames begin.
         if announced.is_some_and(|announced| ((all.len() / channels) as u64) < announced) {
             return Err(more(line, line, channels));
         }
         let problem = format!("{count} more than the {channels} numbers of a frame; what follows these is skipped");
-        warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
+        warnings.push(other(line, problem));
     }
     Ok(all)
 }
@@ -156,7 +160,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// Adds those of a line. Returns how many more than a frame's it has, if it has at most one frame.
+    /// Adds the numbers of a line. Returns how many it has beyond a whole frame, as long as they are fewer than another one.
     fn add(&mut self, line: usize, text: &[u8]) -> Result<usize, Problem> {
         let mut surplus = 0;
         for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {

@@ -1,4 +1,4 @@
-//! Names in a converted file whose encoding its part couldn't decode.
+//! Names in a converted file whose encoding the part couldn't decode.
 
 use serde_json::Value;
 
@@ -6,7 +6,7 @@ use super::container;
 use super::write::glb;
 use crate::encoding::{decode_bytes, is_byte};
 
-/// Decodes the names in a GLB, and in the warnings that come with it. A GLB that has none stays as it is.
+/// Decodes such names in a GLB, and in the warnings that come with it. A GLB without any stays as it is.
 pub fn decode_names(bytes: Vec<u8>, warnings: &mut [String]) -> Vec<u8> {
     decoded(&bytes, warnings).unwrap_or(bytes)
 }
@@ -21,7 +21,7 @@ fn decoded(bytes: &[u8], warnings: &mut [String]) -> Option<Vec<u8>> {
     glb(serde_json::to_vec(&json).ok()?, container.binary.unwrap_or_default().to_vec()).ok()
 }
 
-/// Adds the strings in a value. The parser limits how deeply values nest.
+/// Collects the strings in a value. The parser limits how deeply values nest.
 fn add_strings<'a>(value: &'a mut Value, strings: &mut Vec<&'a mut String>) {
     match value {
         Value::String(text) => strings.push(text),

@@ -10,7 +10,7 @@ use serde::de::{
     Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 
-/// What a material counts as: two bytes of text become more than a kilobyte.
+/// The number of objects that a material counts as: two bytes of text become more than a kilobyte.
 const OBJECTS_OF_MATERIAL: usize = 16;
 
 /// Why a text could not be read.

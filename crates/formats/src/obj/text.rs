@@ -34,7 +34,7 @@ const MAX_LIBRARIES: usize = 64;
 /// Stands for a missing texture coordinate or normal.
 pub const NONE: u32 = u32::MAX;
 
-/// Stands for one that can't exist.
+/// Stands for a texture coordinate or normal that can't exist, as none has the index 0.
 const ABSENT: u32 = NONE - 1;
 
 /// Indices of vertex, texture coordinate and normal, from 0. The latter two may be [`NONE`].
@@ -335,7 +335,7 @@ fn numbers<'a, const N: usize>(
 }
 
 /// Parses a number that counts from 1, or backwards from the count so far if it is negative. Returns it from 0; `Some(None)` if
-/// it counts to nothing.
+/// nothing can have that index.
 fn index(word: &[u8], so_far: usize) -> Option<Option<u32>> {
     let number: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = if number < 0 { (so_far as i64).checked_add(number) } else { number.checked_sub(1) };
@@ -362,7 +362,8 @@ fn library_names(names: &str) -> Vec<String> {
     found
 }
 
-/// Removes texture coordinates and normals that don't exist from corners. Returns the line of the first one, and their number.
+/// Removes texture coordinates and normals that don't exist from corners. Returns the line of the first such corner, and their
+/// number.
 fn check_corners(obj: &mut ObjText) -> Result<Option<(usize, usize)>, Problem> {
     let (vertices, others) = (obj.positions.len(), [obj.uvs.len(), obj.normals.len()]);
     let mut start = 0;

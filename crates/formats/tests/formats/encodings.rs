@@ -1,4 +1,4 @@
-//! Names in other encodings than UTF-8.
+//! Names in encodings other than UTF-8.
 
 use std::io::{Cursor, Write};
 
@@ -51,7 +51,7 @@ fn loaded(name: &str, bytes: Vec<u8>) -> Asset {
     load(&files).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-/// Files of all text formats that have these names, and how they are found in what was loaded.
+/// Checks that files of all text formats with these names load with them.
 fn check_names(encoding: &'static Encoding, names: &[&str]) {
     let joints =
         |asset: &Asset| asset.skeleton.joints().map(|joint| asset.skeleton.name(joint).to_owned()).collect::<Vec<_>>();
@@ -116,7 +116,8 @@ fn single_names_of_a_body_are_decoded() {
 
 #[test]
 fn text_that_is_utf8_but_for_a_character_stays_so() {
-    let text = "HIERARCHY\nROOT 左腕\n{ OFFSET 0 0 0 CHANNELS 0 JOINT 頭\n{ OFFSET 0 1 0 CHANNELS 0 JOINT x\n{ OFFSET 0 1 0 CHANNELS 0 } } }\n";
+    let text = "HIERARCHY\nROOT 左腕\n{ OFFSET 0 0 0 CHANNELS 0 JOINT 頭\n{ OFFSET 0 1 0 CHANNELS 0 JOINT x\n\
+                { OFFSET 0 1 0 CHANNELS 0 } } }\n";
     let mut bytes = text.as_bytes().to_vec();
     let at = text.find("x\n").expect("a joint");
     bytes[at] = 0xE4;

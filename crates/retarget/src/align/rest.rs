@@ -83,8 +83,8 @@ pub fn source_rest(input: RestInput) -> SourceRest {
     rest
 }
 
-/// Returns the source's rest pose, whichever way is up in it. `Auto` uses the model's if the rig is the same, and a pose of the clip
-/// if the body does not stand in its own.
+/// Returns the source's rest pose, whichever way is up in it. `Auto` uses the model's if the rig is the same, and a pose of the
+/// clip if the body does not stand in its own.
 fn chosen_rest(input: RestInput) -> SourceRest {
     let RestInput { source, source_slots: slots, clip, map, .. } = input;
     let skeleton = &source.skeleton;
@@ -148,7 +148,7 @@ fn bound(skeleton: &Skeleton, transforms: Vec<BoundTransform>) -> Vec<Local> {
     let reflection = skeleton.reflection();
     for (joint, BoundTransform { translation, rotation }) in skeleton.joints().zip(transforms) {
         // What mirrors the body is above it, and no part of its pose.
-        if reflection.as_ref().is_some_and(|reflection| reflection.changes(joint)) {
+        if reflection.changes(joint) {
             continue;
         }
         let local = &mut locals[joint.get()];

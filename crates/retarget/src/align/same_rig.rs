@@ -185,8 +185,8 @@ impl Rigs<'_> {
     }
 
     /// Whether the rests hold the same pose although the offsets in the joints' own axes differ, or although the source's joints
-    /// have no rotations at all, as in BVH. The usual limit on offsets, which allows for differences in build, is too wide where the
-    /// pose tells.
+    /// have no rotations at all, as in BVH. The usual limit on offsets, which allows for differences in build, is too wide where
+    /// the pose tells.
     fn is_same_pose_in_other_axes(&self, offsets: &[Offset]) -> bool {
         let degrees = |offset: &Offset| {
             angle_between(self.source.locals[offset.source.get()].rotation, DQuat::IDENTITY).to_degrees()

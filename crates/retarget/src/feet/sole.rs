@@ -46,7 +46,7 @@ impl Sole {
         center.y + self.positions(pose).map(|point| (turn * (point - center)).y).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns where the sole is from its ankle, ahead in a foot: the mean of its points, which counts far ones more.
+    /// Returns the sole's offset from its ankle, which points ahead: the mean of its points, weighted by their squared distances.
     pub fn ahead(&self, pose: &WorldPose, ankle: JointIndex) -> DVec3 {
         let offsets = || self.positions(pose).map(|point| point - pose.position(ankle));
         let weight: f64 = offsets().map(DVec3::length_squared).sum();

@@ -32,6 +32,11 @@ impl NewChannel {
         Self::resampled(joint, positions.times, Keys::Translation(values))
     }
 
+    /// Whether the channel animates this property of this joint.
+    pub fn is_of(&self, joint: JointIndex, property: Property) -> bool {
+        self.joint == joint && self.keys.property() == property
+    }
+
     /// Returns the channel of a mirrored skeleton, from the one in the mirror.
     pub fn in_mirror(mut self, reflection: &Reflection) -> Self {
         match &mut self.keys {

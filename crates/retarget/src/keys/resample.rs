@@ -57,7 +57,7 @@ pub fn resample_adding<T>(
     mut curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
     max_added: usize,
 ) -> Resampled<T> {
-    let mut left = max_added;
+    let mut budget = max_added;
     let mut keys = Resampled { times: Vec::with_capacity(times.len()), values: Vec::with_capacity(times.len()) };
     for &time in times {
         let key = (time, (curve.value)(time));
@@ -65,10 +65,10 @@ pub fn resample_adding<T>(
             let just_before = time.next_down();
             if jumps.binary_search_by(|jump| jump.total_cmp(&time)).is_ok() && just_before > start {
                 let end = (just_before, (curve.value)(just_before));
-                refine(&mut curve, &end, 0, &mut left, &mut keys);
+                refine(&mut curve, &end, 0, &mut budget, &mut keys);
                 keys.push(end);
             } else {
-                refine(&mut curve, &key, 0, &mut left, &mut keys);
+                refine(&mut curve, &key, 0, &mut budget, &mut keys);
             }
         }
         keys.push(key);
@@ -96,12 +96,12 @@ fn refine<T>(
     curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
     end: &(f32, T),
     halvings: u32,
-    left: &mut usize,
+    budget: &mut usize,
     keys: &mut Resampled<T>,
 ) {
     let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
     let length = end.0 - start_secs;
-    let Some(middle_secs) = middle(start_secs, end.0).filter(|_| *left > 0) else { return };
+    let Some(middle_secs) = middle(start_secs, end.0).filter(|_| *budget > 0) else { return };
     // Halfway through an S-curve there is no error.
     let is_close = [0.25, 0.5, 0.75].into_iter().all(|part| {
         let time = start_secs + part * length;
@@ -116,10 +116,10 @@ fn refine<T>(
         return;
     }
     let middle = (middle_secs, (curve.value)(middle_secs));
-    *left -= 1;
-    refine(curve, &middle, halvings + 1, left, keys);
+    *budget -= 1;
+    refine(curve, &middle, halvings + 1, budget, keys);
     keys.push(middle);
-    refine(curve, end, halvings + 1, left, keys);
+    refine(curve, end, halvings + 1, budget, keys);
 }
 
 /// Bisects to a jump between the last key and `end`, and adds keys on both sides of it. A smooth curve would have been close

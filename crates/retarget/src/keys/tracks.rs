@@ -50,17 +50,14 @@ pub struct SourceTracks<'a> {
     /// Which joints have a channel at all, even a constant one.
     pub has_channel: Vec<bool>,
     /// Tracks have the values of the file; transforms are those in the mirror.
-    reflection: Option<Reflection>,
+    reflection: Reflection,
 }
 
 impl<'a> SourceTracks<'a> {
     /// `unmoved` holds the local transforms of joints that the clip does not animate.
     pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
         let reflection = skeleton.reflection();
-        let in_file = |(joint, local): (JointIndex, &Local)| match &reflection {
-            Some(reflection) => local.in_mirror(reflection, joint),
-            None => *local,
-        };
+        let in_file = |(joint, local): (JointIndex, &Local)| local.in_mirror(&reflection, joint);
         let unmoved: Vec<Local> = skeleton.joints().zip(unmoved).map(in_file).collect();
         let mut tracks = Self {
             skeleton,
@@ -114,19 +111,19 @@ impl<'a> SourceTracks<'a> {
                 rotation: rotation(&self.rotations[joint.get()], &mut search),
                 scale: vector(&self.scales[joint.get()], &mut search),
             };
-            self.reflection.as_ref().map_or(local, |reflection| local.in_mirror(reflection, joint))
+            local.in_mirror(&self.reflection, joint)
         }
     }
 
     /// The joint's local rotation at a time.
     pub fn rotation(&self, joint: JointIndex, time_secs: f32) -> DQuat {
         let local = rotation(&self.rotations[joint.get()], &mut Search { time_secs, last: None });
-        self.reflection.as_ref().map_or(local, |reflection| reflection.rotation(joint, local))
+        self.reflection.rotation(joint, local)
     }
 
     /// Whether the joint's keys are its transforms, and not those in a mirror.
     pub fn has_own_keys(&self, joint: JointIndex) -> bool {
-        self.reflection.as_ref().is_none_or(|reflection| !reflection.changes(joint))
+        !self.reflection.changes(joint)
     }
 
     /// World position of a joint, without sampling the joints beside its ancestors.
@@ -134,8 +131,7 @@ impl<'a> SourceTracks<'a> {
         let world_from_parent =
             parent_frame(self.skeleton, joint, world_from_model, |ancestor| self.local(ancestor, time_secs));
         let local = vector(&self.translations[joint.get()], &mut Search { time_secs, last: None });
-        let local = self.reflection.as_ref().map_or(local, |reflection| reflection.translation(joint, local));
-        world_from_parent.transform_point3(local)
+        world_from_parent.transform_point3(self.reflection.translation(joint, local))
     }
 
     pub fn is_moving(&self, joint: JointIndex) -> bool {

@@ -43,7 +43,8 @@ impl UpChoice {
 #[serde(rename_all = "kebab-case")]
 pub enum RestChoice {
     /// The bind pose where a skin covers a joint, the node's transform elsewhere and for a declared humanoid. For a motion of the
-    /// model's own rig, the model's rest; for one whose own rest is not upright and symmetric, the pose of its clip that comes closest.
+    /// model's own rig, the model's rest; for one whose own rest is not upright and symmetric, the pose of its clip that comes
+    /// closest.
     #[default]
     Auto,
     /// The nodes' own transforms.

@@ -2,34 +2,29 @@
 //! and right don't count, so a body that walks backwards shows even if both files are wrong about the sides.
 
 use gaitway_character::anim::JointIndex;
-use gaitway_character::asset::Slot;
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::feet::{Sole, Soles};
 use crate::map::Pair;
 use crate::pose::WorldPose;
-use crate::transfer::Transfer;
-
-const LEGS: [[Slot; 3]; 2] = [
-    [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
-    [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
-];
+use crate::transfer::{LEG_CHAINS, Transfer};
 
 /// Shares of a leg's length: how far a foot reaches ahead of its ankle, or a knee out of line, to show a direction.
 const MIN_FOOT: f64 = 0.04;
 const MIN_KNEE: f64 = 0.08;
 
-/// A body travels between two moments this far apart if its hips go this share of a leg's length.
+/// A body travels if its hips go this share of a leg's length from so many moments before to as many after.
 const WINDOW: usize = 4;
 const MIN_TRAVEL: f64 = 0.3;
 
 /// The joints of a leg from the thigh to the foot, and the foot's sole.
 type Leg = ([JointIndex; 3], Option<Sole>);
 
-/// The legs of one side, source or target.
+/// The legs of the source or the target.
 pub struct Legs {
     legs: Vec<Leg>,
     hips: Option<JointIndex>,
+    /// Mean length of a leg at rest.
     length: f64,
 }
 
@@ -46,7 +41,7 @@ impl Legs {
     fn new(transfer: &Transfer, rest: &WorldPose, soles: Soles, joint: fn(&Pair) -> JointIndex) -> Self {
         let mut legs = Vec::new();
         let mut length = 0.0;
-        for (slots, sole) in LEGS.into_iter().zip(soles.feet) {
+        for (slots, sole) in LEG_CHAINS.into_iter().zip(soles.feet) {
             let [Some(upper), Some(lower), Some(foot)] = slots.map(|slot| transfer.pair(slot).map(joint)) else {
                 continue;
             };
@@ -58,7 +53,7 @@ impl Legs {
         Self { legs, hips: transfer.hips_pair().map(joint), length }
     }
 
-    /// The joints that a pose needs.
+    /// The joints that [`Heading::new`] needs in a pose.
     pub fn joints(&self) -> impl Iterator<Item = JointIndex> + '_ {
         let of_legs = self
             .legs
@@ -99,7 +94,7 @@ impl Heading {
         Self { forward: legs.forward(pose), hips: DVec2::new(hips.x, hips.z) }
     }
 
-    /// Undoes a turn of the body about the vertical; the hips stay.
+    /// Turns the body about the vertical; the hips stay.
     pub fn turned(self, turn: DQuat) -> Self {
         let turned = |forward: DVec2| {
             let forward = turn * DVec3::new(forward.x, 0.0, forward.y);

@@ -63,8 +63,8 @@ pub struct Figures {
     /// Mean angle between which way the body faces along its path and how its source does, by where feet point, or knees where a
     /// body has no feet; without regard to names and slots.
     pub facing_path_error_degrees_mean: Option<f64>,
-    /// By how much the lengths of the skin's edges differ from those of the mesh as it was bound: the ratio for the edges around one
-    /// joint, where and when it is largest. 1 if none changes. Measured where ends move differently.
+    /// By how much the lengths of the skin's edges differ from those of the mesh as it was bound: the ratio for the edges around
+    /// one joint, where and when it is largest. 1 if none changes. Measured where ends move differently.
     pub skin_stretch_max: Option<f64>,
     /// The same on average, over all such edges and the whole clip.
     pub skin_stretch_mean: Option<f64>,
@@ -73,7 +73,7 @@ pub struct Figures {
     /// Limbs and other chains of joints that stay still although their counterparts in the motion move: parts of the body, or names
     /// of joints they begin with. Chains are found by hierarchy and place.
     pub idle_chains: Vec<String>,
-    /// Share of the joints in the chains that both bodies have which are mapped, on average over the chains.
+    /// Share of a chain's length that follows the motion, on average over the chains of joints that both bodies have.
     pub coverage: Option<f64>,
 }
 

@@ -2,12 +2,13 @@
 //! still on the model though they move in the motion. Slots name them and help where the map has nothing, but a wrong one hides
 //! nothing.
 
-use std::cmp::Reverse;
+use std::collections::BTreeMap;
 
 use gaitway_character::anim::{JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Humanoid};
 use glam::{DQuat, DVec3};
 
+use crate::map::ResolvedMap;
 use crate::math::angle_between;
 use crate::skin::moves_skin;
 use crate::stack::BodyPart;
@@ -21,8 +22,8 @@ const MIN_CHAIN: f64 = 0.1;
 /// How far the ends of two chains without a common pair may be apart in sum, as a share of the model's chain.
 const MAX_DISTANCE: f64 = 1.2;
 
-/// A chain of the motion moves if its joints turn by this in sum. The model's is idle below this share of it, unless a third of it is
-/// mapped.
+/// A chain of the motion moves if its joints turn by this in sum. The model's is idle below this share of it, unless a third of it
+/// is mapped.
 const MIN_TURN_DEGREES: f64 = 20.0;
 const MAX_IDLE_SHARE: f64 = 0.15;
 const MAX_IDLE_COVERED: f64 = 1.0 / 3.0;
@@ -108,7 +109,7 @@ impl Limb {
     }
 }
 
-/// The share of the chains' joints that are mapped, on average; `None` without any.
+/// The share of the chains' lengths that follows the motion, on average; `None` without any.
 pub fn coverage(limbs: &[Limb]) -> Option<f64> {
     (!limbs.is_empty()).then(|| limbs.iter().map(Limb::covered).sum::<f64>() / limbs.len() as f64)
 }
@@ -126,22 +127,14 @@ pub fn limbs(transfer: &Transfer, [source_slots, target_slots]: [&Humanoid; 2]) 
     let source_position = |joint| places.of_source(joint);
     let targets = chains(target_skeleton, &bodily(transfer.target), target_position, places.unit);
     let sources = chains(source_skeleton, &animated, source_position, places.unit);
-    let pairs_of = |target: &[JointIndex], source: &[JointIndex]| {
-        map.pairs.iter().filter(|pair| target.contains(&pair.target) && source.contains(&pair.source)).count()
-    };
-    let by_map: Vec<Option<usize>> = targets
-        .iter()
-        .map(|target| {
-            let counts = sources.iter().map(|source| pairs_of(target, source)).enumerate();
-            let most = counts.filter(|(_, count)| *count > 0).max_by_key(|&(at, count)| (count, Reverse(at)));
-            most.map(|(at, _)| at)
-        })
-        .collect();
-    let free = || sources.iter().enumerate().filter(|(at, _)| !by_map.contains(&Some(*at)));
+    let source_chain = chain_by_joint(&sources, source_skeleton);
+    let by_map = by_map(map, [&chain_by_joint(&targets, target_skeleton), &source_chain], targets.len());
+    let mut is_free = vec![true; sources.len()];
+    by_map.iter().flatten().for_each(|&source| is_free[source] = false);
     let by_slot = |target: &[JointIndex]| {
         let mut slots = target.iter().filter_map(|&joint| target_slots.slot(joint));
         let joint = slots.find_map(|slot| source_slots.joint(slot))?;
-        free().find(|(_, source)| source.contains(&joint)).map(|(at, _)| at)
+        source_chain[joint.get()].filter(|&source| is_free[source])
     };
     let by_place = |target: &[JointIndex]| {
         let length: f64 =
@@ -151,9 +144,12 @@ pub fn limbs(transfer: &Transfer, [source_slots, target_slots]: [&Humanoid; 2]) 
             let both = ends(target).into_iter().zip(ends(source));
             both.filter_map(|(target, source)| Some(target_position(target?).distance(source_position(source?)))).sum()
         };
-        let near = free().map(|(at, source)| (at, distance(source))).filter(|(_, far)| *far < MAX_DISTANCE * length);
+        let free = sources.iter().enumerate().filter(|(at, _)| is_free[*at]);
+        let near = free.map(|(at, source)| (at, distance(source))).filter(|(_, far)| *far < MAX_DISTANCE * length);
         near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
     };
+    let mut is_source = vec![false; source_skeleton.len()];
+    map.pairs.iter().for_each(|pair| is_source[pair.source.get()] = true);
     let mut found = Vec::new();
     for (target, by_map) in targets.iter().zip(&by_map) {
         let source = by_map.or_else(|| by_slot(target)).or_else(|| by_place(target));
@@ -163,10 +159,35 @@ pub fn limbs(transfer: &Transfer, [source_slots, target_slots]: [&Humanoid; 2]) 
         found.push(Limb {
             name: name(target_skeleton, target[0], slot.map(BodyPart::of)),
             target: Bend::new(target, target_position, |joint| map.source_of(joint).is_some()),
-            source: Bend::new(source, source_position, |joint| map.pairs.iter().any(|pair| pair.source == joint)),
+            source: Bend::new(source, source_position, |joint| is_source[joint.get()]),
         });
     }
     found
+}
+
+/// Returns the index of each joint's chain.
+fn chain_by_joint(chains: &[Vec<JointIndex>], skeleton: &Skeleton) -> Vec<Option<usize>> {
+    let mut chain_by_joint = vec![None; skeleton.len()];
+    for (at, chain) in chains.iter().enumerate() {
+        chain.iter().for_each(|joint| chain_by_joint[joint.get()] = Some(at));
+    }
+    chain_by_joint
+}
+
+/// Returns for each chain of the target the source's chain that it has most pairs with, of equal ones the first.
+fn by_map(map: &ResolvedMap, chain_by_joint: [&[Option<usize>]; 2], targets: usize) -> Vec<Option<usize>> {
+    let [target_chain, source_chain] = chain_by_joint;
+    let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for pair in &map.pairs {
+        if let (Some(target), Some(source)) = (target_chain[pair.target.get()], source_chain[pair.source.get()]) {
+            *counts.entry((target, source)).or_default() += 1;
+        }
+    }
+    let most = |target: usize| {
+        let of_target = counts.range((target, 0)..(target + 1, 0)).rev();
+        of_target.max_by_key(|(_, count)| **count).map(|((_, source), _)| *source)
+    };
+    (0..targets).map(most).collect()
 }
 
 /// Names a chain after the part of the body, else after its first joint.
@@ -230,8 +251,7 @@ fn chains(
     // How far the farthest wanted joint below is, along the bones; None if neither the joint nor any below is wanted.
     let mut reach: Vec<Option<f64>> = is_wanted.iter().map(|wanted| wanted.then_some(0.0)).collect();
     let mut roots = Vec::new();
-    let joints: Vec<JointIndex> = skeleton.joints().collect();
-    for &joint in joints.iter().rev() {
+    for joint in skeleton.joints().rev() {
         let Some(below) = reach[joint.get()] else { continue };
         match skeleton.parent(joint) {
             Some(parent) => {
@@ -254,14 +274,14 @@ fn chains(
         loop {
             let below = &children[end.get()];
             let longer = |min: f64| below.iter().filter(move |child| length(end, child) >= min * unit);
-            let forks = longer(MIN_LIMB).count() >= 2;
-            if forks {
+            let limbs = longer(MIN_LIMB).count();
+            if limbs >= 2 {
                 open.extend(longer(MIN_CHAIN).map(|&child| (child, true)));
                 break;
             }
             let longest = below.iter().max_by(|a, b| length(end, a).total_cmp(&length(end, b)));
             // Fingers and the like are no part of the chain they hang on.
-            let goes_on = below.len() == 1 || longer(MIN_LIMB).count() == 1;
+            let goes_on = below.len() == 1 || limbs == 1;
             let Some(&next) = longest.filter(|_| goes_on) else { break };
             chain.push(next);
             end = next;

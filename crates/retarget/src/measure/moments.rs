@@ -12,9 +12,10 @@ use crate::feet::Soles;
 use crate::pose::PartialPose;
 use crate::transfer::{Transfer, removed_travel};
 
-/// The rate, and the fewest and most moments of a clip.
-const PER_SEC: f32 = 4.0;
-const COUNT: [f32; 2] = [8.0, 48.0];
+/// Steps between moments: the rate, and the fewest and most of a clip.
+const STEPS_PER_SEC: f32 = 4.0;
+const MIN_STEPS: f32 = 8.0;
+const MAX_STEPS: f32 = 48.0;
 
 /// Part of [`Figures`](super::Figures).
 #[derive(Debug, Default)]
@@ -29,8 +30,8 @@ pub struct Moments {
 /// Plays the clip at some moments. `soles` are the target's.
 pub fn moments(transfer: &Transfer, slots: [&Humanoid; 2], clip: &Clip, soles: Soles) -> Moments {
     let skeleton = transfer.target_skeleton;
-    let count = (clip.duration_secs() * PER_SEC).clamp(COUNT[0], COUNT[1]) as usize;
-    let times: Vec<f32> = (0..=count).map(|at| clip.duration_secs() * at as f32 / count as f32).collect();
+    let steps = (clip.duration_secs() * STEPS_PER_SEC).clamp(MIN_STEPS, MAX_STEPS) as usize;
+    let times: Vec<f32> = (0..=steps).map(|step| clip.duration_secs() * step as f32 / steps as f32).collect();
     let mut model_from_joints = Vec::new();
     model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut model_from_joints);
     let mut skin = SkinEdges::new(transfer.target, &model_from_joints);

@@ -8,7 +8,7 @@ use crate::transfer::Transfer;
 /// The measured joints of the target, in the common frame.
 pub struct PlayedClip<'a> {
     skeleton: &'a Skeleton,
-    reflection: Option<Reflection>,
+    reflection: Reflection,
     scratch: Scratch,
     pose: PartialPose<'a>,
 }
@@ -23,9 +23,6 @@ impl<'a> PlayedClip<'a> {
     /// Poses the joints as the player would play a clip; those of a mirrored skeleton in the mirror, as its source is.
     pub fn pose(&mut self, clip: &Clip, time_secs: f32) -> &WorldPose {
         let sampled = self.scratch.sample(self.skeleton, clip, time_secs);
-        self.pose.update(|joint| {
-            let local = Local::from(&sampled.local(joint));
-            self.reflection.as_ref().map_or(local, |reflection| local.in_mirror(reflection, joint))
-        })
+        self.pose.update(|joint| Local::from(&sampled.local(joint)).in_mirror(&self.reflection, joint))
     }
 }

@@ -1,10 +1,11 @@
 //! The source shown beside its target: its placement in the model's space, and the error of each pair.
 
-use gaitway_character::anim::{JointIndex, Transform};
+use gaitway_character::anim::{JointIndex, Skeleton, Transform};
 use glam::{Affine3A, DAffine3, DVec3, Quat};
 
 use crate::align::Alignment;
 use crate::map::ResolvedMap;
+use crate::pose::mirror_from_model;
 use crate::transfer::Hips;
 
 /// A pair of joints and the rotations of their aligned rests in the model's space, from which both turn away alike.
@@ -35,8 +36,8 @@ impl StagePair {
 }
 
 /// Brings the source into the model's space: facing the same way, with the hips at the same place and height.
-/// `is_mirrored` says which of the two skeletons is mirrored, the source's first.
-pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>, is_mirrored: [bool; 2]) -> Affine3A {
+/// Takes the skeletons of the source and the model.
+pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>, skeletons: [&Skeleton; 2]) -> Affine3A {
     let common_from_source = DAffine3::from_quat(alignment.source.world_from_model);
     let model_from_common = DAffine3::from_quat(alignment.target.world_from_model.conjugate());
     let target_from_source = hips.map_or(DAffine3::IDENTITY, |hips| {
@@ -44,9 +45,9 @@ pub fn model_from_source(alignment: &Alignment, hips: Option<&Hips>, is_mirrored
             * DAffine3::from_scale(DVec3::splat(hips.scale))
             * DAffine3::from_translation(-hips.source_rest)
     });
-    let [source, target] =
-        is_mirrored.map(|is| DAffine3::from_scale(DVec3::new(if is { -1.0 } else { 1.0 }, 1.0, 1.0)));
-    (target * model_from_common * target_from_source * common_from_source * source).as_affine3a()
+    // Mirroring twice changes nothing.
+    let [mirror_source, mirror_model] = skeletons.map(|skeleton| mirror_from_model(skeleton).as_daffine3());
+    (mirror_model * model_from_common * target_from_source * common_from_source * mirror_source).as_affine3a()
 }
 
 pub fn stage_pairs(map: &ResolvedMap, alignment: &Alignment) -> Vec<StagePair> {

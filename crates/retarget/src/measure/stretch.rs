@@ -13,18 +13,18 @@ const MIN_EDGES: usize = 6;
 /// Ends whose weights differ by less than this in sum move alike: such an edge keeps its length.
 const MIN_DIFFERENCE: f32 = 0.05;
 
-/// Shorter edges, as a share of the mesh's diagonal, count as this long: where weights change abruptly, a fine mesh is stretched many
-/// times over in any bent joint, and it can't be seen.
+/// Changes of edges shorter than this, as a share of the mesh's diagonal, are relative to it: where weights change abruptly, any
+/// bent joint stretches a fine mesh many times over, and nobody sees it.
 const MIN_LENGTH: f32 = 0.02;
 
 /// The edges of a model's skin that may change their lengths.
 pub struct SkinEdges<'a> {
     asset: &'a Asset,
     edges: Vec<Edge>,
-    /// By joint, at the current moment.
+    /// Changes by joint, at the current moment.
     by_joint: Vec<Sum>,
     model_from_bind: Vec<Vec<Affine3A>>,
-    /// Of all moments.
+    /// Changes at all moments.
     all: Sum,
     worst: Option<(f64, JointIndex)>,
 }
@@ -52,10 +52,10 @@ impl End {
     }
 
     fn posed(&self, model_from_bind: &[Affine3A]) -> Vec3A {
-        let moved = self.influences.iter();
-        moved
-            .map(|&(joint, weight)| weight * model_from_bind[usize::from(joint)].transform_point3a(self.position))
-            .sum()
+        let moved = |&(joint, weight): &(u16, f32)| {
+            weight * model_from_bind[usize::from(joint)].transform_point3a(self.position)
+        };
+        self.influences.iter().map(moved).sum()
     }
 }
 
@@ -105,10 +105,10 @@ impl<'a> SkinEdges<'a> {
                 edges.iter().map(|edge| edge.length(&found.model_from_bind) / edge.bound_length).collect();
             scales.sort_by(f32::total_cmp);
             let Some(&scale) = scales.get(scales.len() / 2).filter(|scale| scale.is_normal()) else { continue };
-            edges.iter_mut().for_each(|edge| {
+            for edge in &mut edges {
                 edge.bound_length *= scale;
                 edge.unit *= scale;
-            });
+            }
             found.edges.append(&mut edges);
         }
         found

@@ -50,7 +50,7 @@ pub(super) const FACING_PATH: Limits = limits(20.0, 45.0);
 /// Ratios to the lengths as bound.
 const SKIN_STRETCH_MAX: Limits = limits(2.5, 5.0);
 const SKIN_STRETCH_MEAN: Limits = limits(1.15, 1.3);
-/// Share of the chains' joints that are not mapped.
+/// Share of the chains' lengths that is not mapped.
 const UNMAPPED: Limits = limits(0.1, 0.25);
 
 impl Limits {

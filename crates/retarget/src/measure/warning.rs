@@ -13,7 +13,7 @@ pub enum FitWarning {
         /// A part of the body or the name of the first joint.
         chain: String,
     },
-    /// The body faces otherwise along its path than its source.
+    /// The body faces another way along its path than its source does.
     FacesAway {
         /// See [`Figures::facing_path_error_degrees_mean`].
         degrees: f64,
@@ -23,8 +23,8 @@ pub enum FitWarning {
 impl FitWarning {
     /// Returns what is wrong, by the limits of [`Verdicts`](super::Verdicts).
     pub fn of(figures: &Figures) -> Vec<Self> {
-        let needs_review = |value: &f64, limits: super::verdict::Limits| limits.verdict(*value) == Verdict::NeedsReview;
-        let away = figures.facing_path_error_degrees_mean.filter(|value| needs_review(value, FACING_PATH));
+        let needs_review = |degrees: &f64| FACING_PATH.verdict(*degrees) == Verdict::NeedsReview;
+        let away = figures.facing_path_error_degrees_mean.filter(needs_review);
         let idle = figures.idle_chains.iter().map(|chain| Self::IdleChain { chain: chain.clone() });
         idle.chain(away.map(|degrees| Self::FacesAway { degrees })).collect()
     }
@@ -46,8 +46,8 @@ impl fmt::Display for FitWarning {
             }
             Self::FacesAway { degrees } => write!(
                 f,
-                "the body faces {degrees:.0}° away from where its source faces along its path; check left and right in the map, and \
-                 the rest poses"
+                "the body faces {degrees:.0}° away from where its source faces along its path; check left and right in the map, \
+                 and the rest poses"
             ),
         }
     }

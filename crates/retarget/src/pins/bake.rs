@@ -20,7 +20,8 @@ pub struct BakedPins<'a> {
 }
 
 impl<'a> BakedPins<'a> {
-    /// Registers the channels that the pins replace and the times to sample. The clip repeats after `period_secs`, and so do the times of the pins.
+    /// Registers the channels that the pins replace and the times to sample. The clip repeats after `period_secs`, and so do the
+    /// times of the pins.
     pub fn new(pinning: &'a Pinning<'a>, period_secs: f64, baker: &mut Baker<'_>) -> Self {
         for (joint, pin) in pinning.in_order() {
             pinning.replace_pinned(joint, pin, baker);

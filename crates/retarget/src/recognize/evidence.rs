@@ -5,7 +5,7 @@ use gaitway_character::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use gaitway_character::asset::Asset;
 use glam::{Affine3A, Vec3};
 
-use super::tree::mirror_from_model;
+use crate::pose::mirror_from_model;
 
 /// Number of times at which the first clip is sampled.
 const MOMENTS: u8 = 8;

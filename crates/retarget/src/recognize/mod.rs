@@ -24,9 +24,11 @@ use gaitway_character::anim::{JointIndex, Pose, SampleCursor};
 use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::Vec3;
 
+use crate::pose::mirror_from_model;
+
 use by_shape::Found;
 use evidence::Evidence;
-use tree::{Tree, mirror_from_model};
+use tree::Tree;
 
 pub(crate) use creature::chains;
 pub use names::Name;

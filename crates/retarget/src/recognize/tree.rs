@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::{JointIndex, Pose, Skeleton, model_from_joint};
 use gaitway_character::asset::Asset;
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
 use super::languages;
 use super::names::{Name, is_number};
 use super::words::{self, Word};
+use crate::pose::mirror_from_model;
 use crate::skin::moves_skin;
 
 pub(super) struct Tree<'a> {
@@ -148,10 +149,4 @@ fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
     let mut model_from = Vec::new();
     model_from_joint(skeleton, pose, mirror_from_model(skeleton), &mut model_from);
     model_from.into_iter().map(|transform| transform.translation.into()).collect()
-}
-
-/// Where bodies are recognized: in model space, or in the mirror of a skeleton whose left and right a node above them exchanges.
-pub(super) fn mirror_from_model(skeleton: &Skeleton) -> Affine3A {
-    let is_mirrored = skeleton.reflection().is_some();
-    if is_mirrored { Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)) } else { Affine3A::IDENTITY }
 }

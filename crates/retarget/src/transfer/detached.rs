@@ -47,7 +47,7 @@ pub fn detached_channels(transfer: &Transfer, ends: &[(JointIndex, JointIndex)],
             let pose = transfer.target_pose(clip, time, &mut scratch.borrow_mut());
             let position = pose.position(limb) + pose.rotation(limb) * offset;
             let local = pose.parent_frame(transfer.target_skeleton, end).inverse().transform_point3(position);
-            reflection.as_ref().map_or(local, |reflection| reflection.translation(end, local))
+            reflection.translation(end, local)
         };
         // The tolerance is in the units of the end's parent.
         let unit_length = rest.parent_frame(transfer.target_skeleton, end).matrix3.x_axis.length().max(1e-12);

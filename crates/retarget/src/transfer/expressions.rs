@@ -6,10 +6,11 @@ use gaitway_character::anim::{
 };
 
 use super::Transfer;
+use crate::budget::held_poses;
 use crate::keys::channel::NewChannel;
 use crate::keys::resample::union;
 
-/// Keys between those of a CUBICSPLINE expression.
+/// Time between the keys that stand in for a CUBICSPLINE expression.
 const SPLINE_STEP_SECS: f32 = 1.0 / 60.0;
 
 /// Returns the weights of the model's morph targets that are named like animated expressions.
@@ -50,11 +51,11 @@ fn weights_channel(
         clip.properties().iter().filter(|channel| moved.iter().any(|(_, target)| *target == channel.target)).collect();
     let mut times =
         union(sources.iter().map(|channel| clip.property_timelines()[channel.timeline as usize].as_slice()));
-    let all = |interpolation| sources.iter().all(|channel| channel.interpolation == interpolation);
+    let is_stepped = sources.iter().all(|channel| channel.interpolation == Interpolation::Step);
     if sources.iter().any(|channel| channel.interpolation == Interpolation::CubicSpline)
         && let (Some(&first), Some(&last)) = (times.first(), times.last())
     {
-        let steps = ((last - first) / SPLINE_STEP_SECS) as usize;
+        let steps = (((last - first) / SPLINE_STEP_SECS) as usize).min(held_poses(rest.len()));
         let between: Vec<f32> = (0..=steps).map(|step| first + step as f32 * SPLINE_STEP_SECS).collect();
         times = union([times.as_slice(), &between]);
     }
@@ -70,7 +71,7 @@ fn weights_channel(
     }
     NewChannel {
         joint,
-        interpolation: if all(Interpolation::Step) { Interpolation::Step } else { Interpolation::Linear },
+        interpolation: if is_stepped { Interpolation::Step } else { Interpolation::Linear },
         times,
         keys: Keys::MorphWeights { values, targets: rest.len() },
         resampled: false,

@@ -22,6 +22,12 @@ const LEGS: [Slot; 8] = [
     Slot::RightToes,
 ];
 
+/// Both legs from thigh to foot.
+pub const LEG_CHAINS: [[Slot; 3]; 2] = [
+    [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
+    [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
+];
+
 /// Moments of the clip at which the lowest foot is looked up.
 const GROUND_SAMPLES: usize = 32;
 
@@ -92,7 +98,7 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
     } else {
         lowest_joints(alignment, legs.iter().copied())
     };
-    let (mut source_height, mut height) = (source_rest.y - source_ground, target_rest.y - target_ground);
+    let (source_height, height) = (source_rest.y - source_ground, target_rest.y - target_ground);
     let of_both = |length: fn(&WorldPose, &Humanoid) -> Option<f64>| {
         Some((length(&alignment.source, source_slots)?, length(&alignment.target, target_slots)?))
     };
@@ -103,7 +109,7 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
         }
         (None, torso) => torso.filter(|_| legs.is_empty()),
     };
-    (source_height, height) = instead.unwrap_or((source_height, height));
+    let (source_height, height) = instead.unwrap_or((source_height, height));
     let is_usable = source_height > 1e-9 && height > 1e-9 && (height / source_height).is_finite();
     let source_legs: Vec<JointIndex> = legs.into_iter().map(|(source, _)| source).collect();
     if rests_in_the_ground(input, pair, &source_legs, source_ground) {
@@ -132,11 +138,7 @@ const MIN_HIPS_HEIGHT: f64 = 0.25;
 
 /// Mean length of the legs, from hip to ankle. None without two whole ones.
 fn leg_length(pose: &WorldPose, slots: &Humanoid) -> Option<f64> {
-    let legs = [
-        [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
-        [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
-    ];
-    let [left, right] = legs.map(|leg| {
+    let [left, right] = LEG_CHAINS.map(|leg| {
         let [hip, knee, ankle] = leg.map(|slot| slots.joint(slot).map(|joint| pose.position(joint)));
         Some(hip?.distance(knee?) + knee?.distance(ankle?))
     });
@@ -173,26 +175,33 @@ fn between_feet(skeleton: &Skeleton, slots: &Humanoid, position: impl Fn(JointIn
     Some(left?.midpoint(right?))
 }
 
+/// The pair whose source travels, without one above it that does, and whose target carries most others.
 fn travelling_pair(input: HipsInput) -> Option<usize> {
     let HipsInput { map, alignment, tracks, target, .. } = input;
     if !alignment.pair_of_slot.is_empty() {
         return None;
     }
+    let mut is_source = vec![false; tracks.skeleton.len()];
+    map.pairs.iter().for_each(|pair| is_source[pair.source.get()] = true);
     // A joint travels along with what isn't mapped above it.
-    let is_source = |joint: JointIndex| map.pairs.iter().any(|pair| pair.source == joint);
     let travels = |pair: &Pair| {
         let moves = |joint: JointIndex| tracks.translations[joint.get()].is_moving();
-        let mut above = ancestry(tracks.skeleton, pair.source).skip(1).take_while(|&joint| !is_source(joint));
+        let mut above = ancestry(tracks.skeleton, pair.source).skip(1).take_while(|joint| !is_source[joint.get()]);
         moves(pair.source) || above.any(moves)
     };
-    let is_carried = |pair: &Pair| {
-        let mut above = ancestry(&target.skeleton, pair.target).skip(1).filter_map(|joint| map.pair_index(joint));
-        above.any(|pair| travels(&map.pairs[pair]))
+    // By joint of the target: whether its pair travels, and how many mapped joints are at or below it.
+    let mut is_travelling = vec![false; target.skeleton.len()];
+    let mut carried = vec![0_usize; target.skeleton.len()];
+    for pair in &map.pairs {
+        is_travelling[pair.target.get()] = travels(pair);
+        ancestry(&target.skeleton, pair.target).for_each(|joint| carried[joint.get()] += 1);
+    }
+    let is_carrier = |pair: &Pair| {
+        let mut above = ancestry(&target.skeleton, pair.target).skip(1);
+        is_travelling[pair.target.get()] && !above.any(|joint| is_travelling[joint.get()])
     };
-    let carried =
-        |pair: &Pair| map.pairs.iter().filter(|other| is_within(&target.skeleton, other.target, pair.target)).count();
-    let carriers = map.pairs.iter().enumerate().filter(|(_, pair)| travels(pair) && !is_carried(pair));
-    carriers.rev().max_by_key(|(_, pair)| carried(pair)).map(|(index, _)| index)
+    let carriers = map.pairs.iter().enumerate().filter(|(_, pair)| is_carrier(pair));
+    carriers.rev().max_by_key(|(_, pair)| carried[pair.target.get()]).map(|(index, _)| index)
 }
 
 /// Heights of the lowest source joint and the lowest target joint at the aligned rest.

@@ -18,7 +18,7 @@ pub use copy::{CopyPolicy, copied_channels};
 pub use detached::{detached_channels, detached_ends};
 pub use expressions::expression_channels;
 pub use heading::rotation_laws;
-pub use hips::{Hips, HipsInput, lowest_leg_joint, match_hips};
+pub use hips::{Hips, HipsInput, LEG_CHAINS, lowest_leg_joint, match_hips};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
 pub use path_channels::hips_channels;
 pub use removed_travel::{RemovedTravel, removed_travel};

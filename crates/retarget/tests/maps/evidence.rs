@@ -76,8 +76,8 @@ fn the_arm_that_moves_the_skin_is_the_arm() {
 
 type Limb = fn(&str) -> [String; 4];
 
-/// A body in a T-pose whose limbs have names. `left` is the side that the geometry gives to the limbs of `l`, and `ahead` how far the
-/// toes are in front of the ankles.
+/// A body in a T-pose whose limbs have names. `left` is the side that the geometry gives to the limbs of `l`, and `ahead` how far
+/// the toes are in front of the ankles.
 fn named_figure([arm, leg]: [Limb; 2], left: f32, ahead: f32) -> Asset {
     let figure = figure(&[0.03, 0.15, 0.28, 0.26], ahead);
     let trunk = ["root.x", "spine_01.x", "spine_02.x", "neck.x", "head.x"].map(str::to_owned).into_iter();

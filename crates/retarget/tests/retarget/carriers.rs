@@ -62,14 +62,16 @@ fn travelling(asset: &Asset, joint: &str) -> Asset {
     Asset::new(AssetParts { skeleton, clips, ..AssetParts::default() }).expect("an asset")
 }
 
-fn retargeted(model: &Asset, motion: &Asset) -> Clip {
+/// The motion's first clip, retargeted with the proposed map.
+pub fn retargeted(model: &Asset, motion: &Asset) -> Clip {
     let slots = [model, motion].map(|asset| recognize(asset).humanoid());
     let map = propose(model, motion).to_map(model, motion).resolve(model, motion).expect("a map");
     let [model, motion] = [Body { asset: model, slots: &slots[0] }, Body { asset: motion, slots: &slots[1] }];
     Retargeting::new(model, motion, 0, &map).expect("fits").bake().expect("bakes").clip
 }
 
-fn positions(asset: &Asset, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
+/// Positions of all joints in model space.
+pub fn positions(asset: &Asset, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
     let (mut pose, mut world) = (asset.skeleton.rest().clone(), Vec::new());
     clip.sample(&asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world);

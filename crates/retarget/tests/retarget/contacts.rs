@@ -106,7 +106,8 @@ fn clap(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Bends down by an angle in one second, keeps the hands down for one and a half, and straightens up. The arms hang with bent elbows.
+/// Bends down by an angle in one second, keeps the hands down for one and a half, and straightens up. The arms hang with bent
+/// elbows.
 fn bend_down(mut figure: Figure, degrees: f32) -> Figure {
     let mut clip = ClipBuilder::new("bend", &figure.asset.skeleton);
     let times = [0.0, 1.0, 2.5, 3.5];
@@ -141,7 +142,8 @@ fn bend_down(mut figure: Figure, degrees: f32) -> Figure {
     figure
 }
 
-/// Lifts the right foot, brings it to the left leg for half a second and back: thigh and shin bend alike, so the shin is behind the knee.
+/// Lifts the right foot, brings it to the left leg for half a second and back: thigh and shin bend alike, so the shin is behind the
+/// knee.
 fn legs_together(mut figure: Figure) -> Figure {
     let mut clip = ClipBuilder::new("together", &figure.asset.skeleton);
     let bend = |share: f32| Quat::from_rotation_x(share * 25.0_f32.to_radians());

@@ -1,30 +1,19 @@
-//! Figures and warnings show what is visibly wrong with a clip, and where. That they find nothing wrong with good ones is checked with
-//! every real pair (`pairs`).
+//! Figures and warnings show what is visibly wrong with a clip, and where. That they find nothing wrong with good ones is checked
+//! with every real pair (`pairs`).
 
 use std::f64::consts::PI;
 
-use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, Skeleton};
+use gaitway_character::anim::{Clip, ClipBuilder, JointIndex, Keys, Skeleton};
 use gaitway_character::asset::Slot;
 use gaitway_retarget::{Figures, FitWarning, ResolvedMap, Retargeting};
 use glam::{DQuat, Vec3};
 
-use crate::data_folder::data_folder;
-use crate::people::{Loaded, load_one, measured, model_rotations, proposed};
+use crate::people::{Loaded, measured, model_rotations, with_pairs};
 
 /// Characters and motions of different rigs; two motions have no toes.
 const MODELS: [&str; 4] = ["human-male.glb", "Knight.glb", "Soldier.glb", "vrm0_cryptovoxels.vrm"];
-const MOTIONS: [&str; 3] = ["cmu_91_48.glb", "cosc422_Walk.bvh", "deepmotion_xia_neutral_16_000.bvh"];
-
-/// Calls a test with each pair and its proposed map.
-fn each_pair(check: impl Fn(&Loaded, &Loaded, ResolvedMap)) {
-    let Some(folder) = data_folder() else { return };
-    let motions = MOTIONS.map(|name| load_one(&folder, name));
-    for model in MODELS.map(|name| load_one(&folder, name)) {
-        for motion in &motions {
-            check(&model, motion, proposed(&model, motion).unwrap());
-        }
-    }
-}
+const WALK: &str = "deepmotion_xia_neutral_16_000.bvh";
+const MOTIONS: [&str; 3] = ["cmu_91_48.glb", "cosc422_Walk.bvh", WALK];
 
 fn warnings(figures: &Figures) -> Vec<&'static str> {
     FitWarning::of(figures).iter().map(FitWarning::code).collect()
@@ -36,7 +25,7 @@ fn is_within(skeleton: &Skeleton, joint: JointIndex, ancestor: JointIndex) -> bo
 
 #[test]
 fn a_limb_that_is_not_mapped_is_idle() {
-    each_pair(|model, motion, map| {
+    with_pairs(&MODELS, &MOTIONS, |model, motion, map| {
         let whole = measured(model, motion, &map).unwrap().0;
         for (limb, name) in [(Slot::LeftUpperArm, "left-arm"), (Slot::RightUpperLeg, "right-leg")] {
             let first = model.slots.joint(limb).unwrap();
@@ -71,10 +60,7 @@ fn with_path_on(clip: &Clip, skeleton: &Skeleton, hips: JointIndex, spine: Joint
 
 #[test]
 fn a_path_on_the_spine_alone_stretches_the_skin() {
-    let Some(folder) = data_folder() else { return };
-    let motion = load_one(&folder, "deepmotion_xia_neutral_16_000.bvh");
-    for model in MODELS.map(|name| load_one(&folder, name)) {
-        let map = proposed(&model, &motion).unwrap();
+    with_pairs(&MODELS, &[WALK], |model, motion, map| {
         let pair = Retargeting::new(model.body(), motion.body(), 0, &map).unwrap();
         let made = pair.bake().unwrap();
         let [hips, spine] = [Slot::Hips, Slot::Spine].map(|slot| model.slots.joint(slot).unwrap());
@@ -85,24 +71,13 @@ fn a_path_on_the_spine_alone_stretches_the_skin() {
         assert!(of_torn > of_good, "{}: {of_torn}, not more than {of_good}", model.name);
         // Angles don't show it.
         assert_eq!(good.orientation_error_degrees_max, torn.orientation_error_degrees_max);
-    }
+    });
 }
 
 /// The map with some joints turned back to front.
 fn turned(model: &Loaded, map: &ResolvedMap, slots: &[Slot]) -> ResolvedMap {
     let skeleton = &model.asset.skeleton;
-    let rest = {
-        let mut still = ClipBuilder::new("still", skeleton);
-        still
-            .channel(
-                JointIndex(0),
-                Interpolation::Step,
-                &[0.0],
-                Keys::Rotation(vec![skeleton.rest().local(JointIndex(0)).rotation]),
-            )
-            .unwrap();
-        model_rotations(skeleton, &still.build(), 0.0)
-    };
+    let rest = model_rotations(skeleton, &ClipBuilder::new("without channels", skeleton).build(), 0.0);
     let mut map = map.clone();
     for joint in slots.iter().filter_map(|&slot| model.slots.joint(slot)) {
         if let Some(index) = map.pair_index(joint) {
@@ -116,7 +91,7 @@ fn turned(model: &Loaded, map: &ResolvedMap, slots: &[Slot]) -> ResolvedMap {
 #[test]
 fn feet_that_point_backwards_face_away() {
     const FEET: [Slot; 4] = [Slot::LeftFoot, Slot::RightFoot, Slot::LeftToes, Slot::RightToes];
-    each_pair(|model, motion, map| {
+    with_pairs(&MODELS, &MOTIONS, |model, motion, map| {
         let who = format!("{} ← {}", model.name, motion.name);
         let good = measured(model, motion, &map).unwrap().0;
         assert!(good.facing_path_error_degrees_mean.unwrap() < 30.0, "{who}: {good:?}");

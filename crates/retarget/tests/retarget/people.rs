@@ -8,6 +8,8 @@ use gaitway_formats::{FileSet, load};
 use gaitway_retarget::{Body, Feet, Figures, ResolvedMap, Retargeted, Retargeting, propose, recognize};
 use glam::{Affine3A, DQuat};
 
+use crate::data_folder::data_folder;
+
 /// A file with a person: its path under the data folder, and the clip to retarget; none for targets only.
 pub struct Person {
     pub file: &'static str,
@@ -85,6 +87,18 @@ pub fn load_people(folder: &Path) -> Vec<Loaded> {
 pub fn load_one(folder: &Path, name: &str) -> Loaded {
     let person = PEOPLE.iter().find(|person| person.file.ends_with(name));
     load_person(folder, person.unwrap_or_else(|| panic!("{name} is no person")))
+}
+
+/// Calls a test with each of these characters, each of these motions, and the proposed map.
+pub fn with_pairs(models: &[&str], motions: &[&str], check: impl Fn(&Loaded, &Loaded, ResolvedMap)) {
+    let Some(folder) = data_folder() else { return };
+    let load = |names: &[&str]| names.iter().map(|name| load_one(&folder, name)).collect::<Vec<_>>();
+    let motions = load(motions);
+    for model in load(models) {
+        for motion in &motions {
+            check(&model, motion, proposed(&model, motion).unwrap());
+        }
+    }
 }
 
 fn load_person(folder: &Path, person: &'static Person) -> Loaded {

@@ -1,12 +1,11 @@
 //! Motion that translations carry: travel that moves to a root joint, and creatures, which hop.
 
-use gaitway_character::anim::{
-    Clip, ClipBuilder, Interpolation, JointIndex, Keys, Property, SampleCursor, Transform, model_from_joint,
-};
+use gaitway_character::anim::{ClipBuilder, Interpolation, JointIndex, Keys, Property, Transform};
 use gaitway_character::asset::{Asset, AssetParts, Slot};
-use gaitway_retarget::{Body, ResolvedMap, Retargeting, propose, recognize};
-use glam::{Affine3A, DVec3, Quat, Vec3};
+use gaitway_retarget::{ResolvedMap, Retargeting};
+use glam::{DVec3, Quat, Vec3};
 
+use crate::carriers::{positions, retargeted};
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, degrees, map};
 use crate::skeletons;
@@ -69,13 +68,12 @@ fn an_extracted_root_goes_below_the_hips() {
             travelled = travelled.max(found[root.get()].1.length());
         }
         assert!(travelled > 3.0, "{travelled}");
-        let moves_root = |property: Property| {
-            let of_root = extracted.channels().iter().filter(move |channel| channel.joint == root);
-            of_root.clone().find(|channel| channel.keys.property() == property)
+        let root_channel = |property: Property| {
+            extracted.channels().iter().find(|channel| channel.joint == root && channel.keys.property() == property)
         };
-        let keys = moves_root(Property::Translation).map(|channel| &extracted.timelines()[channel.timeline as usize]);
-        assert_eq!(keys.unwrap().len() == 2, is_straight);
-        assert_eq!(moves_root(Property::Rotation).is_some(), !is_straight, "the root turns with the path");
+        let travel = root_channel(Property::Translation).unwrap();
+        assert_eq!(extracted.timelines()[travel.timeline as usize].len() == 2, is_straight);
+        assert_eq!(root_channel(Property::Rotation).is_some(), !is_straight, "the root turns with the path");
     }
 }
 
@@ -114,20 +112,10 @@ fn hopping(asset: Asset) -> Asset {
     Asset::new(AssetParts { clips, ..asset.into_parts() }).unwrap()
 }
 
-fn positions(asset: &Asset, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
-    let (mut pose, mut world) = (asset.skeleton.rest().clone(), Vec::new());
-    clip.sample(&asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
-    model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world);
-    world.into_iter().map(|joint| joint.translation.into()).collect()
-}
-
 #[test]
 fn creatures_hop_at_their_size() {
     let (motion, model) = (hopping(creature(1.0)), creature(2.6));
-    let slots = [&model, &motion].map(|asset| recognize(asset).humanoid());
-    let map = propose(&model, &motion).to_map(&model, &motion).resolve(&model, &motion).unwrap();
-    let [target, source] = [Body { asset: &model, slots: &slots[0] }, Body { asset: &motion, slots: &slots[1] }];
-    let clip = Retargeting::new(target, source, 0, &map).unwrap().bake().unwrap().clip;
+    let clip = retargeted(&model, &motion);
     for time in [0.0, 0.5, 1.0, 1.3, 2.0] {
         let (wanted, found) = (positions(&motion, &motion.clips[0], time), positions(&model, &clip, time));
         for joint in motion.skeleton.joints() {

@@ -1,12 +1,12 @@
 //! Which way is up in a motion: its rest, its clip or the map decides, and the model stands.
 
-use gaitway_character::anim::{Clip, ClipBuilder, Keys, SampleCursor, Skeleton, model_from_joint};
+use gaitway_character::anim::{Clip, ClipBuilder, Keys};
 use gaitway_character::asset::{Asset, AssetParts, Slot};
 use gaitway_retarget::{Body, ResolvedMap, Retargeting, UpChoice};
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Quat, Vec3};
 
-use crate::data_folder::data_folder;
-use crate::people::{Loaded, load_one, proposed};
+use crate::carriers::positions;
+use crate::people::{Loaded, with_pairs};
 
 /// Motions whose rest stands, and that walk, run or dance on their feet.
 const MOTIONS: [&str; 6] = [
@@ -46,18 +46,11 @@ fn baked(model: &Loaded, motion: &Loaded, asset: &Asset, map: &ResolvedMap) -> (
     (pair.bake().unwrap().clip, pair.motion_rest().is_up_doubtful)
 }
 
-fn positions(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Vec3> {
-    let (mut pose, mut world) = (skeleton.rest().clone(), Vec::new());
-    clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
-    model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
-    world.into_iter().map(|joint| joint.translation.into()).collect()
-}
-
 /// How far joints of two clips are apart at most.
-fn apart(skeleton: &Skeleton, [one, other]: [&Clip; 2]) -> f32 {
+fn apart(asset: &Asset, [one, other]: [&Clip; 2]) -> f32 {
     let times = (0..=10).map(|at| one.duration_secs() * at as f32 / 10.0);
     let distances = times.flat_map(|time| {
-        let [one, other] = [one, other].map(|clip| positions(skeleton, clip, time));
+        let [one, other] = [one, other].map(|clip| positions(asset, clip, time));
         one.into_iter().zip(other).map(|(one, other)| one.distance(other)).collect::<Vec<f32>>()
     });
     distances.fold(0.0, f32::max)
@@ -66,45 +59,39 @@ fn apart(skeleton: &Skeleton, [one, other]: [&Clip; 2]) -> f32 {
 /// Data in which Z is up, below a rest that stands along Y, gives the same motion.
 #[test]
 fn the_clip_shows_which_way_is_up() {
-    let Some(folder) = data_folder() else { return };
-    let model = load_one(&folder, "human-male.glb");
-    for motion in MOTIONS.map(|name| load_one(&folder, name)) {
-        let map = proposed(&model, &motion).unwrap();
-        let z_up = turned(&motion, None);
-        let (expected, _) = baked(&model, &motion, &motion.asset, &map);
+    with_pairs(&["human-male.glb"], &MOTIONS, |model, motion, map| {
+        let z_up = turned(motion, None);
+        let (expected, _) = baked(model, motion, &motion.asset, &map);
         for up in [UpChoice::Auto, UpChoice::Z] {
             let mut map = map.clone();
             map.rest.up = up;
-            let (found, is_doubtful) = baked(&model, &motion, &z_up, &map);
-            let apart = apart(&model.asset.skeleton, [&expected, &found]);
+            let (found, is_doubtful) = baked(model, motion, &z_up, &map);
+            let apart = apart(&model.asset, [&expected, &found]);
             assert!(apart < 0.01 && !is_doubtful, "{}, {up:?}: {apart} m", motion.name);
         }
         // As the map says, it lies.
-        let mut as_it_rests = map.clone();
+        let mut as_it_rests = map;
         as_it_rests.rest.up = UpChoice::Y;
-        let (lying, _) = baked(&model, &motion, &z_up, &as_it_rests);
-        let apart = apart(&model.asset.skeleton, [&expected, &lying]);
+        let (lying, _) = baked(model, motion, &z_up, &as_it_rests);
+        let apart = apart(&model.asset, [&expected, &lying]);
         assert!(apart > 0.5, "{}: {apart}", motion.name);
-    }
+    });
 }
 
 /// Someone who lies above the ground isn't put on their feet, but it's said where these would be on the ground, too.
 #[test]
 fn a_body_on_the_ground_lies() {
-    let Some(folder) = data_folder() else { return };
-    let model = load_one(&folder, "human-male.glb");
-    for motion in MOTIONS.map(|name| load_one(&folder, name)) {
-        let map = proposed(&model, &motion).unwrap();
+    with_pairs(&["human-male.glb"], &MOTIONS, |model, motion, map| {
         let mut as_it_rests = map.clone();
         as_it_rests.rest.up = UpChoice::Y;
         let hips = motion.slots.joint(Slot::Hips).unwrap();
-        let height = positions(&motion.asset.skeleton, &motion.asset.clips[0], 0.0)[hips.get()].y;
+        let height = positions(&motion.asset, &motion.asset.clips[0], 0.0)[hips.get()].y;
         for (along, is_unclear) in [(0.0, false), (-2.0, false), (1.0, true)] {
-            let lying = turned(&motion, Some(height * Vec3::new(0.0, 0.8, along)));
-            let (found, is_doubtful) = baked(&model, &motion, &lying, &map);
-            let (expected, _) = baked(&model, &motion, &lying, &as_it_rests);
-            let apart = apart(&model.asset.skeleton, [&found, &expected]);
+            let lying = turned(motion, Some(height * Vec3::new(0.0, 0.8, along)));
+            let (found, is_doubtful) = baked(model, motion, &lying, &map);
+            let (expected, _) = baked(model, motion, &lying, &as_it_rests);
+            let apart = apart(&model.asset, [&found, &expected]);
             assert_eq!((apart, is_doubtful), (0.0, is_unclear), "{}, {along}", motion.name);
         }
-    }
+    });
 }

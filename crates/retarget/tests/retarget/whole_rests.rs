@@ -5,7 +5,7 @@ use gaitway_character::anim::{Clip, Interpolation, Joint, JointIndex, Skeleton, 
 use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
 use gaitway_character::mesh::Skin;
 use gaitway_retarget::{RestChoice, Retargeting};
-use glam::{Affine3A, DVec3};
+use glam::{Affine3A, DQuat, DVec3};
 
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
@@ -78,10 +78,7 @@ fn furthest(a: (&Figure, &Clip), b: (&Figure, &Clip)) -> (f64, Slot) {
     for step in 0..=30 {
         let time = step as f32 * 1.5 / 30.0;
         let [a_world, b_world] = [a, b].map(|(figure, clip)| figure.world(clip, time));
-        let at = |figure: &Figure, world: &[_], slot| -> DVec3 {
-            let (_, position): (glam::DQuat, DVec3) = world[figure.joint(slot).get()];
-            position
-        };
+        let at = |figure: &Figure, world: &[(DQuat, DVec3)], slot| world[figure.joint(slot).get()].1;
         for &slot in a.0.slots.0.keys() {
             let distance = at(a.0, &a_world, slot).distance(at(b.0, &b_world, slot));
             if distance > worst.0 {
@@ -137,8 +134,7 @@ fn a_motion_is_measured_from_the_pose_its_skin_was_bound_in() {
             }
         });
         let parts = AssetParts { skeleton, ..bound.asset.into_parts() };
-        let lower =
-            Figure { asset: Asset::new(parts).unwrap(), slots: plain.slots.clone(), t_pose: plain.t_pose.clone() };
+        let lower = Figure { asset: Asset::new(parts).unwrap(), ..bound };
         let (wanted, found) =
             (retargeted(&model, &plain, RestChoice::Auto), retargeted(&model, &lower, RestChoice::Auto));
         let (distance, slot) = furthest((&model, &wanted), (&model, &found));

@@ -94,8 +94,8 @@ impl Editor {
         }
     }
 
-    /// Returns the active clip and where a camera that the user has moved and that follows the character finds it there. The automatic
-    /// camera finds it anyway.
+    /// Returns the active clip and where a camera that the user has moved and that follows the character finds it there. The
+    /// automatic camera finds it anyway.
     pub(super) fn followed_place(&self) -> Option<(Option<ClipId>, Vec3)> {
         let follows = self.state.camera_options.follow && matches!(self.state.camera, CameraChoice::Orbit(_));
         follows.then(|| (self.active_clip(), self.automatic_target()))

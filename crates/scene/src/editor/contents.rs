@@ -23,7 +23,7 @@ pub struct Contents {
     pub is_by_hand: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
-    /// What kind of failure the first of them is, where that is known.
+    /// Code of the first problem, if known.
     pub failure: Option<ErrorCode>,
     /// Of the link whose view is opened.
     pub about_link: AboutLink,

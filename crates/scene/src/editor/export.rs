@@ -81,8 +81,8 @@ fn is_derived(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
     clip.is_renamed() || !is_in_file(model, state, clip)
 }
 
-/// Whether a clip as it plays is in the model's file, perhaps under another name: it is not retargeted, changed, below layers or what
-/// is set manually, nor pinned.
+/// Whether a clip as it plays is in the model's file, perhaps under another name: it is not retargeted, changed, below layers or
+/// what is set manually, nor pinned.
 fn is_in_file(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
     clip.is_in_file() && !take_of(model, Some(clip), state).is_more_than_clip()
 }

@@ -206,12 +206,12 @@ impl Editor {
         }
     }
 
-    /// Whether anything shown is, or anything set may have come from, one of the user's local files.
+    /// Whether anything shown is one of the user's local files, or anything set may come from one.
     pub fn is_private(&self) -> bool {
         self.state.is_private || self.shows_private()
     }
 
-    /// Notes that the state may have values from the user's local files from now on.
+    /// Marks the state as private while the user's local files are shown: from now on, it may have values from them.
     fn note_private(&mut self) {
         self.state.is_private |= self.shows_private();
     }

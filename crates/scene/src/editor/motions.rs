@@ -164,8 +164,8 @@ impl Editor {
         problems.join("\n")
     }
 
-    /// Retargets the motions' clips and applies the edits of clips where their inputs differ from before; returns problems not reported
-    /// yet.
+    /// Retargets the motions' clips and applies the edits of clips where their inputs differ from before; returns problems not
+    /// reported yet.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(|problem| self.map_problem(problem)).collect();

@@ -225,8 +225,8 @@ impl Editor {
         }
     }
 
-    /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet. `has_step`:
-    /// undo takes it back.
+    /// Tells what was opened, if it took the place of another model or of an empty stage, and what was done to its feet.
+    /// `has_step`: undo takes it back.
     fn announce(&mut self, opened: &Opened, is_replacement: bool, has_step: bool) {
         if is_replacement {
             let undoable = has_step || opened.about_feet.is_some();
@@ -314,8 +314,8 @@ impl Editor {
         closed
     }
 
-    /// Closes the empty stages that have waited for a model, once something else is active. Returns the snapshot unless it is of one
-    /// of them: nobody wants that back.
+    /// Closes the empty stages that have waited for a model, once something else is active. Returns the snapshot unless it is of
+    /// one of them: nobody wants that back.
     fn close_placeholders(&mut self, before: Option<Snapshot>) -> Option<Snapshot> {
         let placeholders = self.library.models().iter().filter(|model| model.is_placeholder());
         let placeholders: Vec<ModelId> = placeholders.map(|model| model.id).collect();
@@ -441,8 +441,9 @@ impl Editor {
         self.library.active().filter(|model| model.id == id).map_or(Ok(()), admit)
     }
 
-    /// Activates another loaded model with the view it had: its clip, time, range and camera. Motions added since then are retargeted
-    /// to it. A model that was never active plays the clip that it was written for, otherwise the retargeted clip that is active.
+    /// Activates another loaded model with the view it had: its clip, time, range and camera. Motions added since then are
+    /// retargeted to it. A model that was never active plays the clip that it was written for, otherwise the retargeted clip that
+    /// is active.
     ///
     /// # Errors
     /// The message for the user if it cannot be shown; nothing changes then.

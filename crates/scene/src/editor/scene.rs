@@ -1,4 +1,4 @@
-//! The scene as files and a link that shows them, for pages that hold both.
+//! The scene as files and a link that shows them, for pages that contain both.
 
 use std::collections::BTreeSet;
 
@@ -9,26 +9,26 @@ use super::{Editor, short_name};
 use crate::library::ModelFiles;
 use crate::state::{Embed, EnvironmentChoice, to_link};
 
-/// Everything that shows a view again, without a network. Files are what was loaded: compressed geometry is decompressed, and what
-/// isn't glTF, BVH or OBJ is a .glb, under the name that it had.
+/// Everything that shows a view again without a network. Files are in the form that was loaded: compressed geometry is
+/// decompressed, and what isn't glTF, BVH or OBJ is a .glb under its original name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What to call it.
+    /// Its name, for people.
     pub title: String,
-    /// The part of a link after `#`. It names the main files of model and motions, and shows only viewport and transport.
+    /// The part of a link after `#`. It names the main files of the model and the motions, and embeds the view.
     pub link: String,
     /// Names and contents of the model's files.
     pub model: Vec<(String, SharedBytes)>,
-    /// The same of the motions, and of the image that lights the scene.
+    /// Names and contents of the motions' files, and of the image that lights the scene.
     pub motion: Vec<(String, SharedBytes)>,
 }
 
-/// Names of a scene's files, which differ even where files from several places are called the same.
+/// The names taken by a scene's files: those of several places may have the same.
 #[derive(Default)]
 struct Names(BTreeSet<String>);
 
 impl Names {
-    /// Returns a name for the main one of some files, and all of them, in a folder of their own if one of their names is taken.
+    /// Places files, in a folder of their own if one of their names is taken. Returns the name of the main one, and all of them.
     fn place(&mut self, ModelFiles { set, name: main }: &ModelFiles) -> (String, Vec<(String, SharedBytes)>) {
         let files = with_references(set, main);
         let mut folders = (1..).map(|number| if number == 1 { String::new() } else { format!("{number}/") });
@@ -63,18 +63,19 @@ impl Editor {
             others.extend(files);
         }
         if matches!(state.lighting.environment, EnvironmentChoice::File(_)) {
+            state.lighting.environment = EnvironmentChoice::default();
+        }
+        if let Some(environment) = self.environment() {
             let name = "light/environment.hdr".to_owned();
-            let file = self.environment().map(|environment| (name.clone(), environment.file.clone()));
-            let choice = if file.is_some() { EnvironmentChoice::File(name) } else { EnvironmentChoice::default() };
-            state.lighting.environment = choice;
-            others.extend(file);
+            others.push((name.clone(), environment.file.clone()));
+            state.lighting.environment = EnvironmentChoice::File(name);
         }
         let (title, link) = (short_name(&model.source), to_link(&state, &self.library));
         Ok(Scene { title, link, model: model_files, motion: others })
     }
 }
 
-/// Returns what a link calls a model or motion, and its files; generated samples have none.
+/// Returns a link's name for a model or motion, and its files; generated samples have none.
 fn place(
     names: &mut Names,
     origin: &str,

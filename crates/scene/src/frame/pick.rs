@@ -19,8 +19,8 @@ const MIN_BALL: f32 = 0.5;
 /// A ball is at most this share of its bone, so that the middle of a short one still belongs to it.
 const MAX_BALL: f32 = 0.3;
 
-/// Returns the joint whose ball is at a point of the viewport, otherwise the head joint of the nearest bone. x and y are from −1 (left,
-/// bottom) to 1; `tolerance` is the maximum distance in the units of y. Hidden bones count too.
+/// Returns the joint whose ball is at a point of the viewport, otherwise the head joint of the nearest bone. x and y are from −1
+/// (left, bottom) to 1; `tolerance` is the maximum distance in the units of y. Hidden bones count too.
 pub fn pick_joint(frame: &Frame, point: Vec2, tolerance: f32) -> Option<PickedJoint> {
     let projection = frame.view.projection_from_view;
     let projection_from_world = projection * frame.view.view_from_world;

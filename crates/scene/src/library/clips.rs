@@ -449,9 +449,9 @@ impl Clips {
         Titles::taken(others.chain([REST_POSE])).unique(name.to_owned())
     }
 
-    /// Returns the names of clips in a copy of the model's file that `added` is added to; `None` if nothing is. A renamed clip that the
-    /// file has is called so there. The file has the originals of changed clips under their own names, with a number if those are
-    /// taken now.
+    /// Returns the names of clips in a copy of the model's file that `added` is added to; `None` if nothing is. A renamed clip that
+    /// the file has is called so there. The file has the originals of changed clips under their own names, with a number if those
+    /// are taken now.
     pub fn saved_names(&self, added: Option<&ClipId>) -> SavedNames {
         let is_added = |clip: &ModelClip| added == Some(&clip.id);
         // The name of the clip is not that of its original, which the file has.

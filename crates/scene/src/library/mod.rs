@@ -240,7 +240,8 @@ impl Library {
         self.motions.iter().find(|motion| motion.id() == id)
     }
 
-    /// Replaces the files that clips are borrowed from. Those that were in the list before, or are opened again, keep their identity.
+    /// Replaces the files that clips are borrowed from. Those that were in the list before, or are opened again, keep their
+    /// identity.
     pub fn set_motions(&mut self, mut motions: Vec<Motion>) {
         for motion in motions.iter_mut().filter(|motion| motion.stage_id == ModelId::default()) {
             self.next_id += 1;
@@ -317,8 +318,8 @@ impl Library {
         model.set_borrowed(&borrowed);
     }
 
-    /// Replaces what the user has done to the active model's clips: copies, names and changes. Only clips whose changes or originals
-    /// differ from before are computed again; returns whether any edit differs from before.
+    /// Replaces what the user has done to the active model's clips: copies, names and changes. Only clips whose changes or
+    /// originals differ from before are computed again; returns whether any edit differs from before.
     pub fn edit_clips(&mut self, edits: &ClipEdits) -> bool {
         self.active_mut().is_some_and(|model| model.edit_clips(edits))
     }

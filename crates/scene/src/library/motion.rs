@@ -18,7 +18,7 @@ pub struct Motion {
     pub is_own: bool,
     /// The file's content.
     pub asset: Arc<Asset>,
-    /// What it was read from. `None` for generated samples.
+    /// The files it was read from. `None` for generated samples.
     pub files: Option<ModelFiles>,
     /// Humanoid slots recognized in `asset`; empty if it is not a human body.
     pub slots: Humanoid,

@@ -5,15 +5,16 @@ use gaitway_character::asset::Asset;
 use gaitway_character::mesh::Bounds;
 use glam::{Affine3A, Vec3};
 
-/// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh,
-/// all but cameras, lights and what is hidden. Computed once per model.
+/// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh, all but
+/// containers and what is far from the body. Cameras, lights and hidden nodes are none unless they are in a skin. Computed once per
+/// model.
 #[derive(Debug, Default)]
 pub struct Rig {
     real: Vec<bool>,
     bones: Vec<RigBone>,
     roots: Vec<Option<JointIndex>>,
     skin_joints: usize,
-    /// Joints to report if there is neither a skin nor a mesh.
+    /// Number of joints to report if there is neither a skin nor a mesh.
     bare_joints: usize,
 }
 
@@ -87,7 +88,7 @@ impl Rig {
         self.skin_joints
     }
 
-    /// Number of joints to report: those of the skins, or all of a skeleton without a mesh.
+    /// Number of joints to report: those of the skins, or all of a skeleton without a mesh but cameras, lights and hidden nodes.
     pub fn joint_count(&self, asset: &Asset) -> usize {
         if self.skin_joints == 0 && asset.instances.is_empty() { self.bare_joints } else { self.skin_joints }
     }
@@ -98,7 +99,7 @@ impl Rig {
     }
 }
 
-/// Finds the nodes that are no joints: hidden ones, and those of cameras and lights. Nothing is one if nothing else is there.
+/// Flags nodes that aren't joints: hidden ones, and those of cameras and lights. Flags none if there is nothing else.
 fn helpers(asset: &Asset) -> Vec<bool> {
     let skeleton = &asset.skeleton;
     let mut helpers = vec![false; skeleton.len()];
@@ -138,12 +139,12 @@ fn drop_containers(asset: &Asset, animated: &[bool], real: &mut [bool]) {
     }
 }
 
-/// A bone this many times as long as the median is none: it leads to something beside the body.
-const LONGEST_BONE: f32 = 20.0;
-
-/// What is this many body sizes away, with fewer joints than this share of the body's, isn't part of it.
-const FAR: f32 = 2.0;
-const SMALL: f32 = 0.25;
+/// Maximum length of a bone, in median bone lengths. A longer one leads to something that isn't part of the body.
+const MAX_BONE_LENGTH: f32 = 20.0;
+/// Maximum distance of a few joints from the body they are part of, in body sizes.
+const MAX_DISTANCE: f32 = 2.0;
+/// A group of joints with at least this share of the body's counts at any distance.
+const MIN_SHARE: f32 = 0.25;
 
 /// Unmarks cameras, lights and the like in a skeleton without a mesh: a few joints far from the body.
 fn drop_distant(asset: &Asset, real: &mut [bool]) {
@@ -164,24 +165,24 @@ fn drop_distant(asset: &Asset, real: &mut [bool]) {
         .collect();
     lengths.sort_by(f32::total_cmp);
     let Some(&median) = lengths.get(lengths.len() / 2) else { return };
-    // Joints connected by bones, as the first joint of each group.
+    // Of each joint, the first one of those that bones connect it to.
     let mut group: Vec<JointIndex> = skeleton.joints().collect();
     let mut sizes = vec![0_usize; skeleton.len()];
     for &joint in &joints {
-        if let Some((parent, _)) = bone(joint).filter(|(_, length)| *length <= LONGEST_BONE * median) {
+        if let Some((parent, _)) = bone(joint).filter(|(_, length)| *length <= MAX_BONE_LENGTH * median) {
             group[joint.get()] = group[parent.get()];
         }
         sizes[group[joint.get()].get()] += 1;
     }
     let Some(&body) = joints.iter().max_by_key(|joint| sizes[joint.get()]) else { return };
     let bounds = Bounds::of(joints.iter().filter(|joint| group[joint.get()] == body).map(|&joint| position(joint)));
-    let far = FAR * bounds.diagonal();
+    let far = MAX_DISTANCE * bounds.diagonal();
     let is_near = |joint: JointIndex| position(joint).clamp(bounds.min, bounds.max).distance(position(joint)) <= far;
     let mut has_near = vec![false; skeleton.len()];
     joints.iter().for_each(|&joint| has_near[group[joint.get()].get()] |= is_near(joint));
     for joint in joints {
         let first = group[joint.get()].get();
-        real[joint.get()] = has_near[first] || sizes[first] as f32 >= SMALL * sizes[body.get()] as f32;
+        real[joint.get()] = has_near[first] || sizes[first] as f32 >= MIN_SHARE * sizes[body.get()] as f32;
     }
 }
 
@@ -323,7 +324,7 @@ mod tests {
         assert_eq!((rig.bones().len(), rig.has_controls()), (3, false));
     }
 
-    /// A body of ten joints, and a camera 150 m away with its target: in a tree of its own, or below what carries the body; still or
+    /// A body of ten joints, and a camera with its target 150 m away: in a tree of its own or below the body's root, still or
     /// animated.
     #[test]
     fn far_cameras_are_not_part_of_a_motions_body() {

@@ -32,7 +32,8 @@ pub(super) fn unknown_name(model: &Model, clip: &ClipId) -> UnknownName {
     UnknownName { kind: NameKind::Clip, name, names }
 }
 
-/// Returns what people can call a clip in a link: its name if that is unambiguous, otherwise its title, or its index if it is renamed.
+/// Returns what people can call a clip in a link: its name if that is unambiguous, otherwise its title, or its index if it is
+/// renamed.
 fn name_in_link(model: &Model, clip: &ModelClip) -> String {
     let refers = |name: &str| clip_called(model, name).is_some_and(|found| found.id() == clip.id());
     let name = clip.unchanged().name();
@@ -49,8 +50,8 @@ pub fn unknown_layers(model: &Model, layers: &[LayeredClip]) -> impl Iterator<It
 }
 
 /// Returns what a link calls a clip of the active model: its name if that is unambiguous, otherwise its index, or its title if
-/// another clip is called like the index. A clip whose motion lends none, since its map has no pairs, is called as in its file. `None`
-/// if no text would mean the clip.
+/// another clip is called like the index. A clip whose motion lends none, since its map has no pairs, is called as in its file.
+/// `None` if no text would mean the clip.
 fn link_clip_name(library: &Library, edits: &ClipEdits, id: &ClipId) -> Option<String> {
     let Some(model) = library.active().filter(|_| id.name().is_none()) else { return id.name().map(str::to_owned) };
     let Some(at) = model.clips().iter().position(|clip| clip.id() == id) else {
@@ -122,8 +123,8 @@ pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerSt
     state
 }
 
-/// Finds the clips of a view that are still only called by a name, and makes the active model's clips those that the view edits. What
-/// the model lacks keeps its name, since its file may be still to come. Returns whether the model's clips have changed.
+/// Finds the clips of a view that are still only called by a name, and makes the active model's clips those that the view edits.
+/// What the model lacks keeps its name, since its file may be still to come. Returns whether the model's clips have changed.
 pub fn resolve_clips(state: &mut ViewerState, library: &mut Library) -> bool {
     let Some(model) = library.active() else { return false };
     for copy in &mut state.character.edits.clips.copies {

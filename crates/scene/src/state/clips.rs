@@ -30,8 +30,8 @@ pub enum ClipEdit {
     Copy(Box<ClipChanges>),
     /// Removes it, if it is a copy. If it is active, the original plays.
     RemoveCopy,
-    /// Renames it, with a number if another clip or the rest pose has the name; an empty name restores the file's. Control characters are
-    /// removed, and everything after [`MAX_NAME_CHARS`](super::MAX_NAME_CHARS).
+    /// Renames it, with a number if another clip or the rest pose has the name; an empty name restores the file's. Control
+    /// characters are removed, and everything after [`MAX_NAME_CHARS`](super::MAX_NAME_CHARS).
     Rename(String),
 }
 

@@ -153,7 +153,7 @@ pub enum Command {
     SetKeyLight(Option<KeyLight>),
     /// Sets what is behind the scene.
     SetBackground(Background),
-    /// Sets whether the page shows only the viewport and the transport.
+    /// Sets how much of the page is shown.
     SetEmbed(Embed),
     /// Replaces the joint map of a motion in the library, and of all that share its skeleton; `None` restores the proposed map.
     SetMap {

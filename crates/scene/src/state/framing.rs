@@ -17,8 +17,8 @@ const AUTO_PITCH_RADIANS: f32 = 0.17;
 /// Margin around the framed bounds.
 const MARGIN: f32 = 1.08;
 
-/// Returns the world-space bounds of what plays for the camera, the grid and the shadow: without root travel while the camera follows,
-/// and with the source if that is visible too. A unit box if there is nothing.
+/// Returns the world-space bounds of what plays for the camera, the grid and the shadow: without root travel while the camera
+/// follows, and with the source if that is visible too. A unit box if there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let follows = state.camera_options.follow;
     let bounds = library.active().map_or(Bounds::EMPTY, |model| {

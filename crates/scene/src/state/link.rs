@@ -472,9 +472,9 @@ pub fn to_object(state: &ViewerState, library: &Library) -> Value {
     Value::Object(object)
 }
 
-/// Returns a state with some keys of the link replaced; null resets a key to its default, which is that of the current version unless
-/// the object names another. Bad values are reported and skipped. The
-/// library has the clips that `base` refers to; the returned state calls them as links do.
+/// Returns a state with some keys of the link replaced; null resets a key to its default, which is that of the current version
+/// unless the object names another. Bad values are reported and skipped. The library has the clips that `base` refers to; the
+/// returned state calls them as links do.
 pub fn from_object(base: &ViewerState, library: &Library, partial: &Value) -> (ViewerState, Vec<LinkError>) {
     let mut state = with_link_names(base, library);
     let mut errors = Vec::new();

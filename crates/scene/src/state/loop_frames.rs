@@ -16,7 +16,7 @@ pub struct LoopFrames {
 }
 
 impl LoopFrames {
-    /// Most frames that are worth drawing: a damaged file may have a clip of a thousand years.
+    /// Maximum number of frames to draw: a damaged file may have a clip of a thousand years.
     pub const MAX_COUNT: u32 = MAX_VIDEO_FRAMES;
 
     /// Starts at the in point, with the loop mode and speed of the view; `None` if there is nothing to play. `aspect` is the

@@ -2,6 +2,7 @@
 
 mod apply;
 mod camera;
+mod camera_moves;
 mod channel;
 mod clip_names;
 mod clips;

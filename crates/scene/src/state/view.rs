@@ -43,8 +43,8 @@ pub struct ViewerState {
     pub camera_options: CameraOptions,
     /// What the page does with the view.
     pub page: PageOptions,
-    /// Some of its values were set while the user's own files were shown, and may say something about them: names of joints and
-    /// clips, a pose, a joint map. Copies of the state are private as well, whatever is shown by then. Links don't have it.
+    /// Whether values may reveal something about the user's local files, because they were set while these were shown: names of
+    /// joints and clips, a pose, a joint map. Copies of the state are private as well, whatever is shown by then. Not in links.
     #[serde(skip)]
     pub is_private: bool,
 }
@@ -55,7 +55,7 @@ impl ViewerState {
         let Self { playback, display, lighting, camera_options, page, .. } = self;
         let playhead = Playhead { fade: None, ..model.character.playhead };
         let character = CharacterView { playhead, ..model.character };
-        // A light may be called like a file of the user's.
+        // The light may be one of the user's local files.
         let names_file = matches!(&lighting.environment, EnvironmentChoice::File(origin) if !origin.contains("://"));
         let is_private = model.is_private || self.is_private && names_file;
         Self { character, playback, display, lighting, camera_options, page, is_private, ..model }
@@ -394,7 +394,7 @@ impl Embed {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PageOptions {
-    /// How much is left out because another page embeds the view.
+    /// How much of the page is shown where another page embeds the view.
     pub embed: Embed,
     /// Unknown link keys with all their values, preserved when the link is written again; for `show`, its unknown words.
     pub unknown: BTreeMap<String, Vec<String>>,

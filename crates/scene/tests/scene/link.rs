@@ -271,7 +271,8 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     ]
 }
 
-/// The path of each field in the state: group and name. The camera is both a group and a field, and the character has groups of its own.
+/// The path of each field in the state: group and name. The camera is both a group and a field, and the character has groups of its
+/// own.
 fn fields() -> Vec<String> {
     let state = serde_json::to_value(ViewerState::default()).expect("plain data");
     let groups = state.as_object().expect("a struct").iter();

@@ -1,5 +1,6 @@
 //! Tests of the converter, on text made here and on real files.
 
+mod ascii;
 mod data;
 #[path = "../../../../tests/support/data_folder.rs"]
 mod data_folder;

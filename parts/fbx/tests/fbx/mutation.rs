@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use crate::ascii;
 use crate::data;
 use crate::data_folder::data_folder;
 use crate::glb;
 use crate::random::Random;
-use crate::text;
 
 /// Mutations in an ordinary run; `GAITWAY_FBX_MUTATIONS` sets another number.
 const MUTATIONS: usize = 10_000;
@@ -19,7 +19,7 @@ const NUMBERS: [&str; 10] =
 
 /// Returns small files of all kinds: text made here, and real ones if available.
 fn seeds() -> Vec<Vec<u8>> {
-    let mut seeds = vec![text::character().into_bytes(), text::cube().into_bytes()];
+    let mut seeds = vec![ascii::character().into_bytes(), ascii::cube().into_bytes()];
     if let Some(folder) = data_folder() {
         let small = data::files(&folder).into_iter().map(|path| std::fs::read(path).unwrap());
         seeds.extend(small.filter(|bytes| bytes.len() < 60_000));

@@ -1,5 +1,5 @@
-//! Tests of the converter, on text made here. `crates/formats/tests/formats/x.rs` compares real files with what another program made
-//! of them.
+//! Tests of the converter, on text made here. `crates/formats/tests/formats/x.rs` compares real files with what another program
+//! made of them.
 
 #[path = "../../../../tests/support/damage.rs"]
 mod damage;

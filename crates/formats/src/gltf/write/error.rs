@@ -54,7 +54,7 @@ pub enum WriteError {
     TooLong {
         /// Name of the clip.
         clip: String,
-        /// Maximum number of frames for as many joints.
+        /// Maximum number of frames for a clip of that many joints.
         max: usize,
         /// Number of frames that it would have.
         found: usize,

@@ -2,7 +2,8 @@
 //! VRM animation.
 //!
 //! A glTF model is not re-exported: its JSON is kept as text, member by member, and only grows where clips need it, or gets other
-//! names of clips. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the new one.
+//! names of clips. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the
+//! new one.
 
 mod asset;
 mod clip;

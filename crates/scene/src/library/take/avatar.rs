@@ -40,7 +40,8 @@ pub(super) struct AvatarPose {
 }
 
 impl AvatarPose {
-    /// Applies the avatar to the pose that the take has after `elapsed_secs`. `eye` is the camera's position in world space, if known.
+    /// Applies the avatar to the pose that the take has after `elapsed_secs`. `eye` is the camera's position in world space, if
+    /// known.
     pub fn apply(
         &mut self,
         take: &Take<'_>,

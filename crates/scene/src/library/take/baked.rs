@@ -20,8 +20,9 @@ pub struct BakedTake<'a> {
 }
 
 impl<'a> Take<'a> {
-    /// Bakes the whole clip, with what plays below it, layers, held values and pins, but not the avatar, whose file has its own gaze,
-    /// constraints and springs. `loops` is how many loops of the clip to write; without it, as few as let the layers end with it. The rest pose is a clip without keys.
+    /// Bakes the whole clip, with what plays below it, layers, held values and pins, but not the avatar, whose file has its own
+    /// gaze, constraints and springs. `loops` is how many loops of the clip to write; without it, as few as let the layers end with
+    /// it. The rest pose is a clip without keys.
     /// `eye` is the camera's position in world space, which pinned gazes at the camera keep.
     pub fn bake(&self, loops: Option<usize>, eye: Option<Vec3>) -> BakedTake<'a> {
         let (skeleton, over) = (&self.model.asset.skeleton, self.stacked());

@@ -17,9 +17,9 @@ impl Take<'_> {
     /// Of a long clip, or of layers that need many loops to end together, not every movement is seen.
     const MAX_SAMPLES: f64 = 240.0;
 
-    /// World-space bounds of the whole take in a scene, without springs and gazes: all that its layers do to it, in as many loops as they
-    /// need to end together. `in_place` removes the root's ground-plane travel, and `hidden` the meshes on these joints and their
-    /// descendants.
+    /// World-space bounds of the whole take in a scene, without springs and gazes: all that its layers do to it, in as many loops
+    /// as they need to end together. `in_place` removes the root's ground-plane travel, and `hidden` the meshes on these joints and
+    /// their descendants.
     pub fn bounds(&self, scene: Option<usize>, in_place: bool, hidden: &[JointIndex]) -> Bounds {
         let (take, model, skeleton) = (self.without_play(), self.model, &self.model.asset.skeleton);
         let scene = model.scene(scene);

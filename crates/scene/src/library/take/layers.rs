@@ -32,8 +32,8 @@ struct LayerState {
 }
 
 impl LayerSampler {
-    /// Changes the pose that the clip has after `elapsed_secs`. Allocates only when a layer's mask, the number of layers or the model
-    /// changes.
+    /// Changes the pose that the clip has after `elapsed_secs`. Allocates only when a layer's mask, the number of layers or the
+    /// model changes.
     pub fn apply(&mut self, take: &Take<'_>, elapsed_secs: f64, pose: &mut Pose) {
         if self.states.len() < take.layers.len() {
             self.states.resize_with(take.layers.len(), LayerState::default);

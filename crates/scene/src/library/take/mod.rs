@@ -1,8 +1,8 @@
-//! What plays: a clip of a model with everything that is laid over it, as one value. Pictures, springs, the camera's framing and files
-//! are made from it and from nothing else, so that all of them show the same.
+//! What plays: a clip of a model with everything that is laid over it, as one value. Pictures, springs, the camera's framing and
+//! files are made from it and from nothing else, so that all of them show the same.
 //!
-//! The order: the rest pose, what plays below the clip, the clip, a crossfade from the one before, layers, joints that are held, pins,
-//! the avatar (gaze, expressions, constraints, springs), then morph weights that are held.
+//! The order: the rest pose, what plays below the clip, the clip, a crossfade from the one before, layers, joints that are held,
+//! pins, the avatar (gaze, expressions, constraints, springs), then morph weights that are held.
 
 mod avatar;
 mod baked;

@@ -52,8 +52,9 @@ impl TakeSampler {
         self.apply_avatar(take, moment.elapsed_secs, eye);
     }
 
-    /// Samples the rest pose, layers below the clip, the clip, a crossfade, the layers over it, then joints that are held. A crossfade
-    /// doesn't blend properties but switches them halfway, and layers leave them alone. Allocates nothing once the buffers have grown.
+    /// Samples the rest pose, layers below the clip, the clip, a crossfade, the layers over it, then joints that are held. A
+    /// crossfade doesn't blend properties but switches them halfway, and layers leave them alone. Allocates nothing once the
+    /// buffers have grown.
     pub fn sample_motion(&mut self, take: &Take<'_>, Moment { elapsed_secs, from }: Moment<'_>) {
         let time_secs = take.clip_secs(elapsed_secs);
         take.sample_clip(time_secs, elapsed_secs, &mut self.cursor, &mut self.pose);

@@ -1,6 +1,6 @@
 //! The keys of edited clips: `mirror=CLIP`, `change=CLIP:trim:0.5:1.5,reverse` and `rename=CLIP:NAME`, one each per clip, and
-//! `copy=NAME:CLIP`. Mirroring comes first whatever else changes, so it needs no place in the list. Names are escaped as joint names
-//! are.
+//! `copy=NAME:CLIP`. Mirroring comes first whatever else changes, so it needs no place in the list. Names are escaped as joint
+//! names are.
 
 use gaitway_character::anim::TimeRange;
 use gaitway_retarget::ClipChanges;

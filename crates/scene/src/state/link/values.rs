@@ -62,7 +62,7 @@ pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("-z", UpAxis::MinusZ),
 ];
 
-/// Embedding was a flag at first; scripts still get its first two values as one.
+/// `embed` was a flag at first: its first two values are still written as one.
 pub(super) fn read_embed(text: &str) -> Option<Embed> {
     match text {
         "transport" => Some(Embed::Transport),

@@ -1,8 +1,8 @@
-//! What a page around this one may read of the state never depends on the user's own files: not on those that are shown, and not on
+//! What an embedding page can read of the state never depends on the user's local files, neither on those that are shown nor on
 //! those that were.
 //!
-//! The same calls and the same clicks run beside two versions of the user's files. As long as nothing is private, both states say the
-//! same; both are private at the same times.
+//! The same calls and clicks run beside two versions of the user's files. As long as nothing is private, both states are equal, and
+//! both are private at the same times.
 
 use gaitway_character::asset::Panorama;
 use gaitway_formats::{FileSet, load};
@@ -19,7 +19,7 @@ use super::{any, contents, motion};
 use crate::random::Random;
 use crate::walk_bvh::BVH;
 
-/// One of the two versions of the user's files, and an editor that opens them.
+/// An editor that opens one of the two versions of the user's files.
 struct World {
     editor: Editor,
     /// In all names of files, joints and clips.
@@ -40,7 +40,7 @@ impl World {
         let _ = self.editor.open(contents, None, &mut any);
     }
 
-    /// A walk whose joints and bone lengths are the user's.
+    /// Returns a walk whose joint names and bone lengths are the user's.
     fn own_walk(&self) -> Motion {
         let text = BVH.replace("JOINT ", &format!("JOINT {}:", self.word));
         let text = text.replace("OFFSET 0 45 0", &format!("OFFSET 0 {} 0", 40.0 + self.number));
@@ -56,7 +56,7 @@ impl World {
         Environment { origin, panorama: panorama.into(), file: Default::default(), is_own: false }
     }
 
-    /// The user does something with a file.
+    /// Opens a file of the user's.
     fn drop_file(&mut self, choice: usize, is_by_hand: bool) {
         let walk = self.own_walk();
         let dropped = match choice {
@@ -70,7 +70,7 @@ impl World {
         self.open(Contents { is_by_hand, ..dropped.into_private() });
     }
 
-    /// The user edits what is shown, which says something about it.
+    /// Edits what is shown in a way that reveals something about it.
     fn edit(&mut self, choice: usize, joint: usize) {
         let clip = ClipId::Own(0);
         let first =
@@ -93,7 +93,7 @@ impl World {
         self.editor.apply(command);
     }
 
-    /// A page around this one sets some keys, as `web::calls::apply` does.
+    /// Sets some keys on behalf of an embedding page, as `web::calls::apply` does.
     fn apply(&mut self, partial: &Value) {
         let before = self.editor.shared_state();
         let (state, errors) = from_object(&before, self.editor.library(), partial);
@@ -126,7 +126,7 @@ impl World {
         let _ = self.editor.open(opened, Some(state), &mut any);
     }
 
-    /// Does one of sixteen things, which the other numbers choose from.
+    /// Does one of sixteen things; the other arguments choose the details.
     fn act(&mut self, action: usize, choice: usize, joint: usize, is_by_hand: bool) {
         const LINKS: [&str; 2] = ["v=2&model=sample:walker", "v=2&model=sample:pilot&motion=dance.glb"];
         let models = self.editor.library().models();
@@ -147,7 +147,7 @@ impl World {
         }
     }
 
-    /// What `state` and `toLink` answer, if they do.
+    /// Returns what `state` and `toLink` return to an embedding page; `None` if they refuse.
     fn read(&self) -> Option<[String; 2]> {
         let (state, library) = (self.editor.state(), self.editor.library());
         (!self.editor.is_private()).then(|| [to_object(state, library).to_string(), to_link(state, library)])
@@ -158,7 +158,7 @@ fn public_motion(name: &String) -> Option<Motion> {
     (name == "dance.glb").then(|| motion(name))
 }
 
-/// Calls of the page around this one.
+/// States that an embedding page sets.
 fn partials() -> [Value; 12] {
     [
         json!({ "motion": [] }),
