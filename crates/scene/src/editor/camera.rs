@@ -6,9 +6,19 @@ use super::Editor;
 use crate::frame::{current_orbit, travelled};
 use crate::library::ClipId;
 use crate::state::{
-    CameraChoice, Command, OrbitCamera, ViewerState, active_clip, automatic_camera, comparison, comparison_ratio,
-    frame_all,
+    CameraChoice, CameraOptions, Command, OrbitCamera, ViewerState, active_clip, automatic_camera, comparison,
+    comparison_ratio, frame_all, looks_past, resolved_bounds, sees_all,
 };
+
+/// What a camera that the user has moved looks at.
+pub(super) struct LookedAt {
+    /// The active clip.
+    clip: Option<ClipId>,
+    /// See [`Editor::body_place`].
+    body: Vec3,
+    /// See [`Editor::followed_travel`].
+    travel: Vec3,
+}
 
 impl Editor {
     /// Returns what the viewport shows if the camera is automatic, or stands in for an automatic one.
@@ -22,12 +32,26 @@ impl Editor {
     }
 
     /// Holds the view of an automatic camera when an option changes what it would frame. The camera becomes automatic
-    /// again as soon as that is the same.
-    pub(super) fn hold_view(&mut self, before: Option<OrbitCamera>) {
-        let Some(before) = before else { return };
+    /// again as soon as that is the same, or if what plays has left the view.
+    pub(super) fn hold_view(&mut self, before: OrbitCamera) {
         let is_same = automatic_camera(&self.library, &self.state, self.aspect) == before;
-        self.held_camera = (!is_same).then_some(before);
-        let camera = self.held_camera.map_or(CameraChoice::Auto, CameraChoice::Orbit);
+        let holds = !is_same && sees_all(&before, &self.library, &self.state, self.aspect);
+        self.hold(holds.then_some(before));
+        if !is_same && !holds {
+            self.suit_automatic_follow();
+        }
+    }
+
+    /// Holds it even if what is dragged by hand leaves the view.
+    pub(super) fn hold_still(&mut self, before: OrbitCamera) {
+        let is_same = automatic_camera(&self.library, &self.state, self.aspect) == before;
+        self.hold((!is_same).then_some(before));
+    }
+
+    /// Holds this view of an automatic camera; none: it frames what plays.
+    pub(super) fn hold(&mut self, held: Option<OrbitCamera>) {
+        self.held_camera = held;
+        let camera = held.map_or(CameraChoice::Auto, CameraChoice::Orbit);
         if self.state.camera != camera {
             self.record(Command::SetCamera(camera));
         }
@@ -94,34 +118,53 @@ impl Editor {
         }
     }
 
-    /// Returns the active clip and where a camera that the user has moved and that follows the character finds it there. The
-    /// automatic camera finds it anyway.
-    pub(super) fn followed_place(&self) -> Option<(Option<ClipId>, Vec3)> {
-        let follows = self.state.camera_options.follow && matches!(self.state.camera, CameraChoice::Orbit(_));
-        follows.then(|| (self.active_clip(), self.automatic_target()))
+    /// Returns what a camera that the user has moved looks at.
+    pub(super) fn looked_at(&self) -> Option<LookedAt> {
+        match self.state.camera {
+            CameraChoice::Orbit(orbit) if self.held_camera != Some(orbit) => {
+                let (clip, body, travel) = (self.active_clip(), self.body_place(), self.followed_travel());
+                Some(LookedAt { clip, body, travel })
+            }
+            _ => None,
+        }
     }
 
-    /// Moves such a camera along if another clip is somewhere else: otherwise, it follows the character within a clip only.
-    pub(super) fn follow_to_place(&mut self, before: Option<(Option<ClipId>, Vec3)>) {
+    /// Moves such a camera along if another clip is somewhere else, or if an edit has moved the body out of its view: its direction
+    /// and distance from the character stay.
+    pub(super) fn keep_looking(&mut self, before: LookedAt) {
         /// Of the camera's distance: what moves by less stays in view.
         const MIN_SHIFT: f32 = 0.25;
-        let (Some((clip, before)), CameraChoice::Orbit(orbit)) = (before, self.state.camera) else { return };
-        if self.active_clip() == clip {
+        let CameraChoice::Orbit(orbit) = self.state.camera else { return };
+        let is_other_clip = self.active_clip() != before.clip;
+        if !is_other_clip && !looks_past(&self.library, &self.state, self.aspect) {
             return;
         }
-        let shift = (self.automatic_target() - before) * Vec3::new(1.0, 0.0, 1.0);
-        if shift.length() > MIN_SHIFT * orbit.distance && self.held_camera != Some(orbit) {
+        if is_other_clip && self.suits_follow {
+            self.suit_follow();
+        }
+        let shift = (self.body_place() - before.body) * Vec3::new(1.0, 0.0, 1.0);
+        let shift = if shift.length() > MIN_SHIFT * orbit.distance { shift } else { Vec3::ZERO };
+        let shift = shift + before.travel - self.followed_travel();
+        if shift != Vec3::ZERO {
             let target = orbit.target + shift;
             self.record(Command::SetCamera(CameraChoice::Orbit(OrbitCamera { target, ..orbit })));
         }
     }
 
-    fn active_clip(&self) -> Option<ClipId> {
-        Some(active_clip(self.library.active()?, &self.state)?.id().clone())
+    /// Returns the travel that is added to an orbit camera.
+    fn followed_travel(&self) -> Vec3 {
+        if self.state.camera_options.follow { travelled(&self.library, &self.state) } else { Vec3::ZERO }
     }
 
-    fn automatic_target(&self) -> Vec3 {
-        automatic_camera(&self.library, &self.state, self.aspect).target
+    /// Returns the middle of the body's space in the active clip, where the body is now.
+    fn body_place(&self) -> Vec3 {
+        let camera_options = CameraOptions { follow: true, ..self.state.camera_options };
+        let following = ViewerState { camera_options, ..self.state.clone() };
+        resolved_bounds(&self.library, &following).center() + travelled(&self.library, &self.state)
+    }
+
+    fn active_clip(&self) -> Option<ClipId> {
+        Some(active_clip(self.library.active()?, &self.state)?.id().clone())
     }
 
     pub(super) fn notify_follow(&mut self, command: &Command) {

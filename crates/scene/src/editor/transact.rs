@@ -1,9 +1,7 @@
 //! Changes of the view, and what the editor does about them: whatever changes it, what has changed decides what follows.
 
-use glam::Vec3;
-
 use super::Editor;
-use crate::library::ClipId;
+use super::camera::LookedAt;
 use crate::state::{Command, OrbitCamera, ViewerState};
 
 /// What a change is.
@@ -20,8 +18,8 @@ struct Before {
     state: ViewerState,
     /// What the viewport shows if the camera is automatic.
     view: Option<OrbitCamera>,
-    /// See [`Editor::followed_place`].
-    place: Option<(Option<ClipId>, Vec3)>,
+    /// See [`Editor::looked_at`].
+    looked_at: Option<LookedAt>,
 }
 
 impl Editor {
@@ -29,7 +27,7 @@ impl Editor {
     pub(super) fn transact(&mut self, kind: Change, change: impl FnOnce(&mut Self)) -> Vec<String> {
         let before = match kind {
             Change::Edit => {
-                Some(Before { state: self.state.clone(), view: self.automatic_view(), place: self.followed_place() })
+                Some(Before { state: self.state.clone(), view: self.automatic_view(), looked_at: self.looked_at() })
             }
             Change::View => None,
         };
@@ -43,7 +41,7 @@ impl Editor {
         problems
     }
 
-    fn react(&mut self, Before { state: before, view, place }: Before) -> Vec<String> {
+    fn react(&mut self, Before { state: before, view, looked_at }: Before) -> Vec<String> {
         let (old, new) = (&before.character.edits, &self.state.character.edits);
         let is_retargeted = before.character.retarget != self.state.character.retarget || old.clips != new.clips;
         let is_moved = is_retargeted || !old.overrides_like(new);
@@ -53,12 +51,18 @@ impl Editor {
         if has_turned {
             self.apply(Command::FrameAll);
         }
-        if has_chosen_clip && view.is_some() {
-            self.suit_automatic_follow();
-        } else if is_moved {
-            self.hold_view(view);
+        match view {
+            Some(_) if has_chosen_clip => {
+                self.hold(None);
+                self.suit_automatic_follow();
+            }
+            Some(view) if is_retargeted => self.hold_view(view),
+            Some(view) if is_moved => self.hold_still(view),
+            _ => {}
         }
-        self.follow_to_place(place);
+        if let Some(looked_at) = looked_at {
+            self.keep_looking(looked_at);
+        }
         problems
     }
 }

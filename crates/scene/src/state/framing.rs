@@ -107,14 +107,33 @@ pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCa
 /// the picture.
 pub fn looks_past(library: &Library, state: &ViewerState, aspect: f32) -> bool {
     let CameraChoice::Orbit(orbit) = state.camera else { return false };
-    let (towards_eye, right, up) = axes(&orbit);
+    let corners = corners_from(&orbit, library, state);
+    outwards(&orbit, library, state, aspect)
+        .iter()
+        .any(|outward| corners.iter().all(|corner| corner.dot(*outward) > 0.0))
+}
+
+/// Whether a camera sees all corners of [`resolved_bounds`].
+pub fn sees_all(orbit: &OrbitCamera, library: &Library, state: &ViewerState, aspect: f32) -> bool {
+    let corners = corners_from(orbit, library, state);
+    outwards(orbit, library, state, aspect)
+        .iter()
+        .all(|outward| corners.iter().all(|corner| corner.dot(*outward) <= 0.0))
+}
+
+/// Returns the corners of [`resolved_bounds`] as seen from the camera's eye.
+fn corners_from(orbit: &OrbitCamera, library: &Library, state: &ViewerState) -> [Vec3; 8] {
+    resolved_bounds(library, state).corners().map(|corner| corner - orbit.eye())
+}
+
+/// Returns the outward normals of the planes through the eye that bound what a camera sees: those of the picture's edges, and the
+/// one that separates what is behind it.
+fn outwards(orbit: &OrbitCamera, library: &Library, state: &ViewerState, aspect: f32) -> [Vec3; 5] {
+    let (towards_eye, right, up) = axes(orbit);
     let tan_up = (0.5 * state.camera_options.fov_degrees.to_radians()).tan();
     let tan_right = tan_up * pane_aspect(comparison(library, state), aspect);
-    let corners = resolved_bounds(library, state).corners().map(|corner| corner - orbit.eye());
-    let sides = [right, -right].map(|side| side + tan_right * towards_eye);
-    let ends = [up, -up].map(|end| end + tan_up * towards_eye);
-    let outwards = [towards_eye].into_iter().chain(sides).chain(ends);
-    outwards.into_iter().any(|outward| corners.iter().all(|corner| corner.dot(outward) > 0.0))
+    let (across, along) = (tan_right * towards_eye, tan_up * towards_eye);
+    [towards_eye, right + across, across - right, up + along, along - up]
 }
 
 /// Returns the unit vectors from the target towards the eye, to the right and up.

@@ -37,7 +37,7 @@ pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, 
 pub use edited::Edited;
 pub use framing::{
     DEFAULT_ASPECT, automatic_camera, camera_eye, frame_all, front_yaw_radians, looks_past, resolve_camera,
-    resolved_bounds, world_from_file_camera,
+    resolved_bounds, sees_all, world_from_file_camera,
 };
 pub use hidden::{Hidden, joints_with_content, used_materials};
 pub use history::History;

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use gaitway_character::anim::{ClipBuilder, Interpolation, Keys};
 use gaitway_character::asset::Asset;
-use gaitway_retarget::{ClipLayer, Feet, LayerMode, RootOptions, RootPart};
+use gaitway_retarget::{ClipChanges, ClipLayer, Feet, LayerMode, RootOptions, RootPart};
 use gaitway_scene::editor::{Contents, Editor, Event};
 use gaitway_scene::library::{ClipId, LayeredClip, Model};
 use gaitway_scene::samples;
 use gaitway_scene::state::{
-    CameraChoice, ClipChoice, Command, MapEdit, OrbitCamera, ViewerState, active_clip, from_link, resolve_camera,
-    to_link,
+    CameraChoice, ClipChoice, ClipEdit, Command, MapEdit, OrbitCamera, ViewerState, active_clip, from_link,
+    resolve_camera, to_link,
 };
 use glam::Vec3;
 
@@ -78,12 +78,12 @@ fn open_by_hand(editor: &mut Editor, file: &str) -> Vec<Event> {
 }
 
 /// The walker with a clip that moves it this far.
-fn runner(metres: f32) -> Contents {
+pub fn runner(metres: f32) -> Contents {
     runner_from(0.0, metres)
 }
 
 /// The same from somewhere along X.
-fn runner_from(x: f32, metres: f32) -> Contents {
+pub fn runner_from(x: f32, metres: f32) -> Contents {
     let asset = Arc::try_unwrap(samples::load("walker").expect("is generated").asset).expect("nobody else has it");
     let mut parts = asset.into_parts();
     let hips = parts.skeleton.find("Hips").expect("it has hips");
@@ -149,7 +149,7 @@ fn the_camera_follows_what_travels_far_unless_the_user_says_otherwise() {
 }
 
 #[test]
-fn a_camera_that_follows_goes_where_another_clip_is() {
+fn a_camera_that_was_moved_goes_where_another_clip_is() {
     let mut editor = editor("sample:pilot");
     editor.open(Contents { is_by_hand: true, ..runner_from(6.0, 8.0) }, None, &mut any).expect("fits");
     editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
@@ -161,10 +161,43 @@ fn a_camera_that_follows_goes_where_another_clip_is() {
     assert_eq!(OrbitCamera { target: at_the_run.target, ..at_rest }, at_the_run, "nothing else changes");
     editor.apply(Command::SetClip(ClipChoice::First));
     assert!((orbit(&editor).target - at_the_run.target).length() < 1e-4);
+    // Whether it follows the character within a clip makes no difference.
     editor.apply(Command::SetFollow(false));
-    let still = orbit(&editor);
     editor.apply(Command::SetClip(ClipChoice::RestPose));
-    assert_eq!(orbit(&editor), still);
+    assert!((orbit(&editor).target - at_rest.target).length() < 1e-4, "{:?}", orbit(&editor));
+}
+
+/// Also if the user has moved it.
+#[test]
+fn whether_a_camera_follows_is_decided_for_each_clip() {
+    let mut editor = editor("sample:pilot");
+    editor.open(Contents { is_by_hand: true, ..runner(8.0) }, None, &mut any).expect("fits");
+    editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
+    let before = orbit(&editor);
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    assert!(!editor.state().camera_options.follow);
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert!(editor.state().camera_options.follow);
+    assert!((orbit(&editor).target - before.target).length() < 0.25 * before.distance, "{:?}", orbit(&editor));
+}
+
+#[test]
+fn a_camera_that_was_moved_goes_along_if_an_edit_moves_the_body_out_of_its_view() {
+    let mut editor = editor("sample:pilot");
+    editor.open(runner(8.0), None, &mut any).expect("fits");
+    editor.apply(Command::SetCamera(CameraChoice::Orbit(OrbitCamera { distance: 2.0, ..view(&editor) })));
+    editor.apply(Command::Pan { right: 0.0, up: 0.0 });
+    let before = orbit(&editor);
+    let moved = |metres: f64| {
+        let changes = Box::new(ClipChanges { offset: [metres, 0.0], ..ClipChanges::default() });
+        Command::EditClip { clip: ClipId::Own(0), edit: ClipEdit::Change(changes) }
+    };
+    editor.apply(moved(0.2));
+    assert_eq!(orbit(&editor), before);
+    editor.apply(moved(9.0));
+    let after = orbit(&editor);
+    assert!((after.target - before.target - 9.0 * Vec3::X).length() < 0.3, "{before:?} {after:?}");
+    assert_eq!(OrbitCamera { target: before.target, ..after }, before, "nothing else changes");
 }
 
 #[test]

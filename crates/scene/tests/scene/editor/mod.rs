@@ -4,6 +4,7 @@ mod camera;
 mod copies;
 mod environments;
 mod identity;
+mod in_view;
 mod maps;
 mod motions;
 mod open;
