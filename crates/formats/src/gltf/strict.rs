@@ -6,9 +6,7 @@
 use std::cell::Cell;
 use std::fmt;
 
-use serde::de::{
-    Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
-};
+use serde::de::{Deserialize, DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, Visitor};
 
 /// The number of objects that a material counts as: two bytes of text become more than a kilobyte.
 const OBJECTS_OF_MATERIAL: usize = 16;
@@ -24,15 +22,13 @@ pub enum Error {
 pub fn from_str<'a, T: Deserialize<'a>>(text: &'a str, max_objects: usize) -> Result<T, Error> {
     let left = Cell::new(max_objects);
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    let parsed = T::deserialize(Strict { inner: &mut deserializer, is_struct: false, left: &left })
+    let parsed = T::deserialize(Strict { inner: &mut deserializer, left: &left })
         .and_then(|value| deserializer.end().map(|()| value));
     parsed.map_err(|problem| if left.get() == 0 { Error::TooManyObjects } else { Error::Json(problem) })
 }
 
 struct Strict<'c, T> {
     inner: T,
-    /// Whether a visitor builds a struct.
-    is_struct: bool,
     /// How many more structs and values are allowed; 0 once the limit is exceeded.
     left: &'c Cell<usize>,
 }
@@ -45,7 +41,7 @@ impl<'c, T> Strict<'c, T> {
     }
 
     fn around<U>(&self, inner: U) -> Strict<'c, U> {
-        Strict { inner, is_struct: false, left: self.left }
+        Strict { inner, left: self.left }
     }
 }
 
@@ -68,7 +64,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
         visitor: V,
     ) -> Result<V::Value, Self::Error> {
         self.count::<D::Error>(if name == "Material" { OBJECTS_OF_MATERIAL } else { 1 })?;
-        let visitor = Strict { is_struct: true, ..self.around(visitor) };
+        let visitor = StructVisitor(self.around(visitor));
         self.inner.deserialize_struct(name, fields, visitor)
     }
 
@@ -165,9 +161,6 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<'_, V> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, sequence: A) -> Result<Self::Value, A::Error> {
-        if self.is_struct {
-            return Err(A::Error::invalid_type(Unexpected::Seq, &self));
-        }
         let sequence = self.around(sequence);
         self.inner.visit_seq(sequence)
     }
@@ -180,6 +173,22 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<'_, V> {
     // No enum of a glTF contains anything.
     fn visit_enum<A: EnumAccess<'de>>(self, variants: A) -> Result<Self::Value, A::Error> {
         self.inner.visit_enum(variants)
+    }
+}
+
+/// Builds a struct, from an object alone. How its visitor would read an array isn't compiled: a tenth of what the crate's
+/// types take in the page's program.
+struct StructVisitor<'c, V>(Strict<'c, V>);
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for StructVisitor<'_, V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+        self.0.visit_map(map)
     }
 }
 
