@@ -94,6 +94,12 @@ export function send(event) {
 }
 
 /**
+ * Returns an event in the form that the program reads.
+ * @param {SessionEvent} event
+ */
+const textOf = ({ event, ...held }) => JSON.stringify(Object.keys(held).length > 0 ? { [event]: held } : event);
+
+/**
  * @param {Bindings} bindings
  * @param {string} session
  * @param {SessionEvent} event
@@ -102,7 +108,7 @@ function handle(bindings, session, event) {
   /** @type {{ session: string, effects: Effect[], facts: Facts }} */
   let after;
   try {
-    after = JSON.parse(bindings.session_after(session, JSON.stringify(event)));
+    after = JSON.parse(bindings.session_after(session, textOf(event)));
   } catch (error) {
     // The event is lost. An instance that has trapped may do so again: the next one goes on.
     if (error instanceof WebAssembly.RuntimeError) maker = null;

@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Item, Link, RequestId, TaskId};
 
-/// Something that has happened.
+/// Something that has happened. Its text is its name, or an object with what it holds under that name: with the name among
+/// the rest, reading it takes twice as much of the page's program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "event", rename_all = "camelCase", rename_all_fields = "camelCase")]
+#[serde(rename_all = "camelCase", rename_all_fields = "camelCase")]
 pub enum Event {
     /// The page looks for a back end that works. A program that ran has ended.
     Launch,

@@ -2,6 +2,7 @@
 
 mod awaited;
 mod cases;
+mod events;
 mod history;
 mod latest;
 mod opening;
