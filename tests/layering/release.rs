@@ -108,3 +108,110 @@ fn archives_are_found_by_the_names_that_the_workflow_gives_them() {
     // Cargo finds the order of the packages.
     assert!(workflow.contains("cargo publish --workspace"));
 }
+
+/// Returns the workflows and the action by their paths.
+fn workflows() -> BTreeMap<String, String> {
+    let folder = fs::read_dir(".github/workflows").expect("workflows");
+    let paths = folder.map(|entry| entry.expect("an entry").path().to_str().expect("a path").to_owned());
+    paths.chain(["action.yml".to_owned()]).map(|path| (path.clone(), read(&path))).collect()
+}
+
+/// Returns the jobs of a workflow by their names.
+fn jobs(workflow: &str) -> BTreeMap<&str, &str> {
+    let is_name = |line: &str| line.starts_with("  ") && !line.starts_with("   ") && line.ends_with(':');
+    let body = workflow.split("\njobs:\n").nth(1).expect("jobs");
+    let starts: Vec<usize> = body
+        .match_indices('\n')
+        .map(|(at, _)| at + 1)
+        .chain([0])
+        .filter(|&at| is_name(body[at..].lines().next().unwrap_or_default()))
+        .collect();
+    let end = |start: usize| starts.iter().copied().filter(|&other| other > start).min().unwrap_or(body.len());
+    let job = |&start: &usize| body[start..end(start)].split_once(":\n").expect("a job");
+    starts.iter().map(job).map(|(name, job)| (name.trim(), job)).collect()
+}
+
+#[test]
+fn actions_are_pinned_by_commit() {
+    let mut pins = BTreeMap::new();
+    for (path, workflow) in workflows() {
+        for line in workflow.lines().filter(|line| line.trim_start_matches([' ', '-']).starts_with("uses: ")) {
+            let used = line.split_once("uses: ").map(|(_, used)| used).unwrap_or_default();
+            if used.starts_with("./") {
+                continue;
+            }
+            let (action, pin) = used.split_once('@').unwrap_or_else(|| panic!("{path}: {used}"));
+            let (commit, version) = pin.split_once(" # v").unwrap_or_else(|| panic!("{path}: {used}: no version"));
+            assert!(commit.len() == 40 && commit.chars().all(|digit| digit.is_ascii_hexdigit()), "{path}: {used}");
+            assert_eq!(version.split('.').count(), 3, "{path}: {used}");
+            assert_eq!(pins.entry(action.to_owned()).or_insert_with(|| pin.to_owned()), pin, "{path}: {action}");
+        }
+    }
+    assert!(pins.len() > 10, "{pins:?}");
+}
+
+#[test]
+fn what_may_publish_runs_no_code_of_the_dependencies() {
+    let mut count = 0;
+    for (path, workflow) in workflows() {
+        if !workflow.contains("\njobs:\n") {
+            continue;
+        }
+        let (outside, _) = workflow.split_once("\njobs:\n").expect("jobs");
+        assert!(outside.contains("permissions:\n  contents: read\n"), "{path}: what its jobs may do by default");
+        for (name, job) in jobs(&workflow) {
+            if job.contains(": write") {
+                count += 1;
+                for command in ["cargo ", "npm ci", "npm install", "pip install", "npx "] {
+                    assert!(!job.contains(command), "{path}: {name} runs {command}");
+                }
+            }
+        }
+    }
+    assert!(count >= 5, "{count}");
+}
+
+#[test]
+fn a_release_says_what_it_is_made_of_and_by_what() {
+    let workflow = read(".github/workflows/release.yml");
+    let release = jobs(&workflow)["release"];
+    let attested = release.find("actions/attest-build-provenance@").expect("an attestation");
+    assert!(attested < release.find("gh release create").expect("a release"));
+    for needed in ["subject-path: files/*", "attestations: write", "{program-*,page,sbom}"] {
+        assert!(release.contains(needed), "{needed}");
+    }
+    assert_eq!(workflow.matches("push: true").count(), workflow.matches("sbom: true").count());
+    let script = std::process::Command::new("node").arg(".github/sbom.mjs").output().expect("node");
+    assert!(script.status.success(), "{}", String::from_utf8_lossy(&script.stderr));
+    let materials: serde_json::Value = serde_json::from_slice(&script.stdout).expect("JSON");
+    assert_eq!(materials["bomFormat"], "CycloneDX");
+    let materials = materials["components"].as_array().expect("components");
+    let has = |kind: &str, name: &str| {
+        let start = format!("pkg:{kind}/{name}@");
+        materials.iter().any(|found| found["purl"].as_str().is_some_and(|purl| purl.starts_with(&start)))
+    };
+    for name in ["wgpu", "ufbx", "basisu", "pyo3"] {
+        assert!(has("cargo", name), "{name} is in no list of materials");
+    }
+    for name in ["gltf-validator", "mediabunny"] {
+        assert!(has("npm", name), "{name} is in no list of materials");
+    }
+    // Of the build's tools, and of the tests.
+    for (kind, name) in [("npm", "esbuild"), ("npm", "playwright-core"), ("cargo", "gaitway")] {
+        assert!(!has(kind, name), "{name} ships with nothing");
+    }
+    assert!(materials.iter().all(|found| found["licenses"][0]["expression"].is_string()));
+}
+
+#[test]
+fn dependencies_are_checked_and_updated_every_week() {
+    let checks = read(".github/workflows/dependencies.yml");
+    for needed in ["schedule:\n    - cron:", "cargo-deny-action@", "npm audit --package-lock-only --omit dev"] {
+        assert!(checks.contains(needed), "{needed}");
+    }
+    let updates = read(".github/dependabot.yml");
+    for kind in ["cargo", "npm", "github-actions", "docker"] {
+        assert!(updates.contains(&format!("package-ecosystem: {kind}\n")), "{kind}");
+    }
+    assert_eq!(updates.matches("interval: weekly").count(), 4);
+}
