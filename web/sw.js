@@ -1,6 +1,7 @@
 // Keeps the page, its program and the samples for offline use. Names contain a hash of the content, so whatever has
-// such a name never changes; the page itself has a version, which this worker shares. A new version waits until a page
-// asks for it. Requests for anything else are left alone: other sites, files beside the page, ranges.
+// such a name never changes, and is stored only if the hash is right: a proxy may answer with a page of its own. The page itself has
+// a version, which this worker shares. A new version waits until a page asks for it. Requests for anything else are left alone: other
+// sites, files beside the page, ranges.
 
 /** The build sets these. */
 const VERSION = "";
@@ -23,8 +24,8 @@ const PREFIX = `gaitway ${scope} `;
 const CACHE = PREFIX + VERSION;
 /** What was shared with the app, until the page takes it (shell/offline.js). It belongs to no version. */
 const SHARED = `gaitway-shared ${scope}`;
-/** `_bg`: programs of earlier versions. */
-const HASHED = /-[0-9a-f]{16}(_bg)?\.\w+$/;
+/** `_bg`: programs of earlier versions, whose hashes were of another kind. */
+const HASHED = /-([0-9a-f]{16})(_bg)?\.\w+$/;
 
 worker.addEventListener("install", (event) => event.waitUntil(fill()));
 
@@ -36,11 +37,15 @@ async function fill() {
   // A redirected response can't answer a navigation, so the page is stored as a new one.
   await cache.put("./", new Response(text, { headers: page.headers }));
   await keep([...FILES, ...(await filesInUse())]);
+  // The page of such a version may never start, and so never asks for this one.
+  if (await isEarlierDamaged()) await worker.skipWaiting();
 }
+
+const earlierCaches = async () => (await caches.keys()).filter((name) => name.startsWith(PREFIX) && name !== CACHE);
 
 /** Files of the programs and parts that earlier versions stored: without them, this version would do less offline. */
 async function filesInUse() {
-  const earlier = (await caches.keys()).filter((name) => name.startsWith(PREFIX) && name !== CACHE);
+  const earlier = await earlierCaches();
   const stored = await Promise.all(earlier.map(async (name) => (await caches.open(name)).keys()));
   /** @param {Record<string, string[]>} table */
   const inUse = (table) => Object.keys(table).filter((name) => stored.flat().some(({ url }) => url.startsWith(`${scope}${name}-`)));
@@ -48,6 +53,39 @@ async function filesInUse() {
   // Versions with one program for both back ends don't tell which is used.
   const isUnknown = programs.length === 0 && earlier.length > 0;
   return [...(isUnknown ? Object.keys(PROGRAMS) : programs).flatMap((name) => PROGRAMS[name]), ...inUse(PARTS).flatMap((name) => PARTS[name])];
+}
+
+/** Whether an earlier version stored a file that isn't the one its name says. */
+async function isEarlierDamaged() {
+  for (const name of await earlierCaches()) {
+    const cache = await caches.open(name);
+    for (const { url } of await cache.keys()) {
+      const response = await cache.match(url);
+      if (response !== undefined && !(await isSound(url, response))) return true;
+    }
+  }
+  return false;
+}
+
+/**
+ * Whether a file has the hash that its name says, if it says one: the beginning of its SHA-256.
+ * @param {string} file
+ * @param {Response} response
+ */
+async function isSound(file, response) {
+  const [, expected, isOther] = HASHED.exec(file) ?? [];
+  if (expected === undefined || isOther !== undefined) return true;
+  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", await response.clone().arrayBuffer()));
+  return Array.from(digest.subarray(0, expected.length / 2), (byte) => byte.toString(16).padStart(2, "0")).join("") === expected;
+}
+
+/**
+ * Returns a file with a hash that any version has stored.
+ * @param {string} file
+ */
+async function held(file) {
+  const response = await caches.match(file);
+  return response !== undefined && (await isSound(file, response)) ? response : undefined;
 }
 
 /** @param {string[]} files */
@@ -63,11 +101,15 @@ async function keep(files) {
 /** @param {string} file */
 async function fetched(file) {
   const isHashed = HASHED.test(file);
-  const held = isHashed ? await caches.match(file) : undefined;
-  if (held !== undefined) return held;
-  const response = await fetch(file, { cache: isHashed ? "default" : "reload" });
-  if (!response.ok) throw new Error(`${file}: the server answered ${response.status}`);
-  return response;
+  const stored = isHashed ? await held(file) : undefined;
+  if (stored !== undefined) return stored;
+  // The browser's own cache may be what is wrong.
+  for (const cache of /** @type {RequestCache[]} */ (isHashed ? ["default", "reload"] : ["reload"])) {
+    const response = await fetch(file, { cache });
+    if (!response.ok) throw new Error(`${file}: the server answered ${response.status}`);
+    if (await isSound(file, response)) return response;
+  }
+  throw new Error(`${file}: what the server sent has another hash`);
 }
 
 worker.addEventListener("activate", (event) => event.waitUntil(tidy()));
@@ -118,5 +160,5 @@ async function share(request) {
  */
 async function answer(request, path) {
   const cache = await caches.open(CACHE);
-  return (await cache.match(path)) ?? (await caches.match(path)) ?? (await fetch(request));
+  return (await cache.match(path)) ?? (await held(path)) ?? (await fetch(request));
 }

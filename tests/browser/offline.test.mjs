@@ -33,6 +33,27 @@ const storedPrograms = (page) =>
     return files.flat().flatMap(({ url }) => url.match(/(webgpu|webgl2)-[0-9a-f]{16}\.wasm$/)?.[1] ?? []);
   });
 
+/**
+ * Copies the page, without the compressed copies, which would stay at the old version.
+ * @param {string} folder
+ */
+const copyTo = (folder) => fs.cpSync(dist, folder, { recursive: true, filter: (file) => !/\.(br|gz)$/.test(file) });
+
+/**
+ * Makes a folder's page another version. Returns that.
+ * @param {string} folder
+ */
+function renameVersion(folder) {
+  const [index, worker] = ["index.html", "sw.js"].map((name) => path.join(folder, name));
+  const [, version] = fs.readFileSync(index, "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/) ?? [];
+  const next = "0123456789abcdef";
+  for (const file of [index, worker]) fs.writeFileSync(file, fs.readFileSync(file, "utf8").replaceAll(version, next));
+  return next;
+}
+
+/** @param {import("playwright-core").Page} page */
+const shownVersion = (page) => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content"));
+
 describe("after a visit", () => {
   /** @type {import("./browser.mjs").Browser} */
   let browser;
@@ -102,17 +123,13 @@ describe("after a visit", () => {
 
   for (const renderer of BACK_ENDS)
     test(`a new version is offered and waits (${renderer})`, async () => {
-      // Without the compressed copies, which would stay at the old version.
-      fs.cpSync(dist, folder, { recursive: true, filter: (file) => !/\.(br|gz)$/.test(file) });
+      copyTo(folder);
       const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
       const { context, page } = await visit(`${site.origin}${FOLDER}?renderer=${renderer}#model=sample:walker&play=0`);
       assert.equal(await page.locator("#update").isVisible(), false);
-      /** @param {string} name */
-      const file = (name) => path.join(folder, name);
-      const [, version] = fs.readFileSync(file("index.html"), "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/) ?? [];
-      const next = "0123456789abcdef";
-      for (const name of ["index.html", "sw.js"]) fs.writeFileSync(file(name), fs.readFileSync(file(name), "utf8").replaceAll(version, next));
-      const shown = () => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content"));
+      const shown = () => shownVersion(page);
+      const version = await shown();
+      const next = renameVersion(folder);
       await page.reload();
       await whenReady(page);
       assert.equal(await shown(), version, "the stored version is shown at once");
@@ -134,6 +151,71 @@ describe("after a visit", () => {
       await context.close();
       await site.close();
     });
+
+  /** What a proxy answers to any request. */
+  const PROXY_PAGE = "<!doctype html><title>Sign in</title>";
+
+  /**
+   * Stores a proxy's page as the shell's script, as service workers did that compared no hashes.
+   * @param {import("playwright-core").Page} page
+   */
+  const damageShell = (page) =>
+    page.evaluate(async (text) => {
+      const script = /** @type {HTMLScriptElement} */ (document.querySelector('script[type="module"]')).src;
+      await (await caches.open((await caches.keys())[0])).put(script, new Response(text, { headers: { "content-type": "text/javascript" } }));
+    }, PROXY_PAGE);
+
+  test("a page whose stored script is damaged can be cleared and then starts", async () => {
+    const site = await serve({ [FOLDER]: dist });
+    const { context, page } = await visit(`${site.origin}${FOLDER}#model=sample:walker&play=0`);
+    await damageShell(page);
+    await page.reload();
+    await page.locator("#not-started").waitFor({ state: "visible" });
+    assert.equal(await page.locator("#loading").isVisible(), false);
+    await page.locator("#not-started-clear").click();
+    await until(page, () => "gaitway" in window);
+    await whenReady(page);
+    await whenStored(page);
+    await context.close();
+    await site.close();
+  });
+
+  test("a new version takes over from one that doesn't start, without its damaged script", async () => {
+    copyTo(folder);
+    const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
+    const { context, page } = await visit(`${site.origin}${FOLDER}#model=sample:walker&play=0`);
+    await damageShell(page);
+    const next = renameVersion(folder);
+    await page.reload();
+    await until(page, async (next) => (await caches.keys()).length === 1 && (await caches.keys())[0].endsWith(next), next);
+    await page.reload();
+    await whenReady(page);
+    assert.equal(await shownVersion(page), next);
+    await context.close();
+    await site.close();
+  });
+
+  test("what the server sends under another file's name isn't stored", async () => {
+    copyTo(folder);
+    const sample = fs.readdirSync(path.join(folder, "samples")).find((name) => name.startsWith("pilot-")) ?? "";
+    const damaged = path.join(folder, "samples", sample);
+    const content = fs.readFileSync(damaged);
+    fs.writeFileSync(damaged, PROXY_PAGE);
+    const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
+    const context = await browser.newContext({ viewport: VIEWPORT, deviceScaleFactor: PIXEL_RATIO, reducedMotion: "reduce" });
+    const page = await context.newPage();
+    await page.goto(`${site.origin}${FOLDER}#model=sample:walker&play=0`);
+    await whenReady(page);
+    // The worker is given up.
+    await until(page, async () => (await caches.keys()).length > 0 && (await navigator.serviceWorker.getRegistration()) === undefined);
+    assert.equal(await page.evaluate((url) => caches.match(url).then((response) => response === undefined), `samples/${sample}`), true);
+    fs.writeFileSync(damaged, content);
+    await page.reload();
+    await whenReady(page);
+    await whenStored(page);
+    await context.close();
+    await site.close();
+  });
 
   // Tests only the worker's URL rules, which don't depend on the program.
   test("other sites, ranges and frames are left alone", async () => {

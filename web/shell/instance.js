@@ -3,6 +3,7 @@
 import { hasFullscreen, setTheme, shareFont, theme, toggleFullscreen } from "./appearance.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
+import { clearAndReload } from "./clear.js";
 import { button, byId, copyText, focusCanvas, frames, isDialogOpen, isGuest, messageOf, takeFocus } from "./dom.js";
 import { isEnclosed } from "./enclosed.js";
 import { codeOf, coded } from "./errors.js";
@@ -108,6 +109,8 @@ async function start(renderer) {
  */
 function cannotRun(code, problems, attempts) {
   showCannotRun(problems, attempts);
+  // The program may be damaged where the browser keeps it.
+  button("cannot-run-clear").hidden = code !== "not-found";
   const message = problems.join(" ");
   reportProblem(message, code);
   send({ event: "cannotRun", failure: { code, message } });
@@ -331,3 +334,4 @@ button("stopped-copy").addEventListener("click", async () => {
   byId("stopped-said").textContent = isCopied ? "Report copied." : "Couldn't copy the report. It is selected: copy it with the keyboard.";
 });
 for (const id of ["stopped-reload", "cannot-run-reload"]) button(id).addEventListener("click", () => location.reload());
+button("cannot-run-clear").addEventListener("click", clearAndReload);
