@@ -12,6 +12,8 @@
   const images = JSON.parse(still.dataset.images ?? "{}");
   /** The element around the frame has a poster of its own; see shell/viewer.js. */
   const isViewer = parent !== window && new URLSearchParams(location.search).has("viewer");
+  /** A link may name any number of models; the program holds as many at once (`Library::MAX_MODELS`). */
+  const MAX_PRELOADED = 8;
   /** The link of the first screen. */
   const first = still.dataset.link ?? "";
 
@@ -51,7 +53,7 @@
 
   /** @param {string} link */
   function preloadModels(link) {
-    preload(modelsOf(link).filter((model) => /^https?:/.test(model) && URL.canParse(model)));
+    preload(modelsOf(link).filter((model) => /^https?:/.test(model) && URL.canParse(model)).slice(0, MAX_PRELOADED));
   }
 
   /** @param {string[]} files */

@@ -63,21 +63,25 @@ pub enum OpenError {
         url: String,
     },
     /// The server answered with a status other than success.
-    #[error("{url}: the server answered {status}{}", status_hint(*status))]
+    #[error("{url}: the server answered {status}{}", status_hint(*status, *may_drop))]
     Status {
         /// The requested file.
         url: String,
         /// HTTP status code.
         status: u16,
+        /// The user may drop files, so the message advises that.
+        may_drop: bool,
     },
     /// The fetch failed although the site answers: CORS, or an error page without CORS headers.
     #[error(
-        "{url}: the site is there, but does not allow other pages to read this file (CORS), or there is no such file; \
-         download the file and drop it here instead"
+        "{url}: the site is there, but does not allow other pages to read this file (CORS), or there is no such file{}",
+        if *may_drop { "; download the file and drop it here instead" } else { "" }
     )]
     Refused {
         /// The requested file.
         url: String,
+        /// The user may drop files, so the message advises that.
+        may_drop: bool,
     },
     /// The fetch failed and the site does not answer.
     #[error("{url}: the site cannot be reached; check the URL and the connection")]
@@ -87,13 +91,16 @@ pub enum OpenError {
     },
     /// The site sent nothing for too long, before or during the transfer.
     #[error(
-        "{url}: nothing has come from the site for {secs} seconds; try again later, or download the file and drop it here"
+        "{url}: nothing has come from the site for {secs} seconds; try again later{}",
+        if *may_drop { ", or download the file and drop it here" } else { "" }
     )]
     Silent {
         /// The requested file.
         url: String,
         /// How long, in seconds.
         secs: u32,
+        /// The user may drop files, so the message advises that.
+        may_drop: bool,
     },
     /// Browsers block http URLs on https pages, except those of the same machine.
     #[error("{url}: a page loaded over https cannot read http URLs; try the same URL with https")]
@@ -197,10 +204,33 @@ fn memory_hint() -> &'static str {
     }
 }
 
-fn status_hint(status: u16) -> &'static str {
+fn status_hint(status: u16, may_drop: bool) -> &'static str {
     match status {
-        401 | 403 => " (not allowed); download the file and drop it here instead",
+        401 | 403 if may_drop => " (not allowed); download the file and drop it here instead",
+        401 | 403 => " (not allowed)",
         404 | 410 => " (there is no such file)",
         _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_those_who_may_drop_files_are_advised_to() {
+        let url = "https://example.org/fox.glb";
+        let errors = |may_drop| {
+            let url = || url.to_owned();
+            let status = |status| OpenError::Status { url: url(), status, may_drop };
+            let silent = OpenError::Silent { url: url(), secs: 20, may_drop };
+            [status(401), status(403), OpenError::Refused { url: url(), may_drop }, silent]
+                .map(|error| error.to_string())
+        };
+        for (advised, plain) in errors(true).iter().zip(errors(false)) {
+            assert!(advised.contains("download the file and drop it here"), "{advised}");
+            assert!(!plain.contains("drop"), "{plain}");
+            assert!(advised.starts_with(&plain), "{plain}");
+        }
     }
 }

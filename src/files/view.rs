@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 
 use gaitway_retarget::JointMapFile;
 use gaitway_scene::editor::Contents;
-use gaitway_scene::library::{Environment, Model, Motion, container_of};
+use gaitway_scene::library::{Environment, Library, Model, Motion, container_of};
 use gaitway_scene::state::{
     CharacterView, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring,
 };
@@ -14,7 +14,7 @@ use gaitway_scene::state::{
 use super::open::{open_items, open_read};
 use super::read::{Item, read_available};
 use super::source::{Content, Progress, Reading, Source};
-use super::{OpenError, Role, read_map};
+use super::{OpenError, Role, SortError, read_map};
 
 /// Loaded files that need not be opened again, identified by their origin.
 #[derive(Debug, Clone, Copy, Default)]
@@ -52,14 +52,14 @@ pub(super) async fn open_view<S: Source>(
     }
     let Sources { model: mut models, motion: motions, scene } = view.character.sources;
     let RetargetEdits { map: maps, .. } = view.character.retarget;
-    let map_files = maps.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
+    let map_files = maps.iter().take(Library::MAX_MOTIONS).filter(|map| matches!(map, MotionMap::File(_))).count();
     let light = match &view.lighting.environment {
         EnvironmentChoice::File(origin) if !held.environments.iter().any(|held| held.origin == *origin) => Some(origin),
         _ => None,
     };
     let parts = usize::from(with_model)
         + usize::from(light.is_some())
-        + motions.iter().filter(|origin| !held.has_motion(origin)).count()
+        + motions.iter().take(Library::MAX_MOTIONS).filter(|origin| !held.has_motion(origin)).count()
         + map_files;
     let part = Cell::new(0);
     let next_part = || part.set(part.get() + 1);
@@ -78,7 +78,12 @@ pub(super) async fn open_view<S: Source>(
     };
     let mut opened = contents.motions.take().unwrap_or_default();
     opened.extend(held.motions.iter().filter(is_of_model).cloned());
-    for origin in &motions {
+    for (index, origin) in motions.iter().enumerate() {
+        if index == Library::MAX_MOTIONS {
+            // A link may list thousands, and none of them would fit.
+            omit(source, "motion", &SortError::TooManyMotions { max: index }.into(), &mut contents);
+            break;
+        }
         if held.has_motion(origin) {
             opened.extend(held.motions_of(origin).cloned());
         } else {
@@ -92,7 +97,8 @@ pub(super) async fn open_view<S: Source>(
     }
     contents.motions = Some(opened);
     let mut read_maps = Vec::new();
-    for map in maps {
+    // One for each motion.
+    for map in maps.into_iter().take(Library::MAX_MOTIONS) {
         if matches!(map, MotionMap::File(_)) {
             next_part();
         }

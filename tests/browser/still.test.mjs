@@ -54,3 +54,8 @@ test("the script that runs first finds what the program will load", () => {
     assert.equal(found.image, isKnown ? `${model.slice("sample:".length)}.webp` : null, link);
   }
 });
+
+test("a link can't have it load any number of files", () => {
+  const models = Array.from({ length: 1000 }, (_, index) => `https://a.example/${index}.glb`);
+  assert.deepEqual(early(models.map((model) => `model=${model}`).join("&")).models, models.slice(0, 8));
+});

@@ -290,6 +290,18 @@ fn a_view_opens_the_files_it_lists() {
 }
 
 #[test]
+fn a_view_opens_no_more_motions_than_it_holds() {
+    let motions: String =
+        (0..1000).map(|index| format!("&motion=nowhere-{index}.bvh&map=nowhere-{index}.json")).collect();
+    let (state, _) = from_link(&format!("v=1&model=sample:walker{motions}"));
+    let (contents, view) = Disk::beside(Vec::new()).open_view(state, false, Held::default()).expect("a view");
+    let about = |text: &str| contents.problems.iter().filter(|problem| problem.contains(text)).count();
+    assert_eq!((about(".bvh"), about(".json"), contents.problems.len()), (64, 64, 129), "{:?}", contents.problems);
+    assert_eq!(about("more than 64 motions at once"), 1);
+    assert_eq!(view.character.sources.motion.len(), 1000, "the link stays as it is");
+}
+
+#[test]
 fn one_of_several_models_that_cannot_be_read_is_left_out() {
     let folder = temporary_folder("models");
     let model = write(&folder, "m.gltf", MESH.as_bytes()).to_str().expect("Unicode").to_owned();

@@ -4,6 +4,7 @@ import { parts } from "./parts.js";
 import { program, running, unlessEnded, whenComplete } from "./running.js";
 import { facts, send } from "./session.js";
 import { addressOf } from "./share.js";
+import { allowsFiles } from "./viewer.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 
@@ -22,6 +23,7 @@ function ask(name) {
 export const gaitway = {
   samples: JSON.parse(samples),
   parts,
+  allowsFiles: () => allowsFiles,
   get ready() {
     return whenComplete();
   },

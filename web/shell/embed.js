@@ -8,7 +8,6 @@ import { LOADING_PROGRAM } from "./panels.js";
 import { isStageEmpty, whenComplete } from "./running.js";
 import { facts } from "./session.js";
 import { drawingFor } from "./sight.js";
-import { allowsFiles } from "./viewer.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
 /**
@@ -25,12 +24,6 @@ const CALLS = {
   apply: (partial) => window.gaitway.apply(partial),
   ...Object.fromEntries(READS.map((call) => [call, () => window.gaitway[call]()])),
 };
-
-/**
- * Returns an error's message without the advice to drop a file if files can't be dropped here.
- * @param {string} message
- */
-const advised = (message) => (allowsFiles ? message : message.replace(/[;,](?: or)? download the file and drop it here(?: instead)?/g, ""));
 
 /**
  * @param {string} call
@@ -87,12 +80,12 @@ export function answerParent() {
     try {
       reply({ result: await answer(data.call, Array.isArray(data.arguments) ? data.arguments : []) });
     } catch (error) {
-      reply({ error: advised(messageOf(error)), code: codeOf(error) });
+      reply({ error: messageOf(error), code: codeOf(error) });
     }
   });
   addEventListener("gaitway:change", () => announce("change"));
   addEventListener("gaitway:progress", ({ detail }) => facts().isPrivate || announceProgress(detail));
-  addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || announce("error", { error: advised(message), code }));
+  addEventListener("gaitway:problem", ({ detail: { message, code } }) => facts().isPrivate || announce("error", { error: message, code }));
   // Later, since the first instance is yet to be launched.
   const complete = Promise.resolve().then(whenComplete);
   drawingFor(complete).then(

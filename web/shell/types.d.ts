@@ -269,6 +269,8 @@ export interface Gaitway {
     convert(name: string, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
     run(name: string, module: Uint8Array<ArrayBuffer>, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
   };
+  /** For the program: whether the user may drop files. */
+  allowsFiles(): boolean;
   /** Resolves once the first image is on screen, with all of its model that could be loaded; a new promise after each restart. */
   readonly ready: Promise<void>;
   open(items: Openable | Openable[] | FileList, options?: { as?: Role }): Promise<InspectDocument>;
