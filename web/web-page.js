@@ -17,23 +17,23 @@
 const PICTURE_WIDTH = 800;
 /** JPEG has no transparency. */
 const STUDIO = "#a3a6ab";
-/** Bytes that are encoded in base64 at once: a multiple of three, so that the parts can be joined. */
-const CHUNK = 3 * 8192;
 
 /** @param {string} text */
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
 
-/** @param {Uint8Array} bytes */
-function base64(bytes) {
-  let text = "";
-  for (let start = 0; start < bytes.length; start += CHUNK) text += btoa(String.fromCharCode(...bytes.subarray(start, start + CHUNK)));
-  return text;
-}
-
-/** @param {Uint8Array<ArrayBuffer>} bytes */
-async function deflated(bytes) {
+/**
+ * Returns bytes compressed and in base64. The browser does both beside the page, which a large file would block.
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ */
+async function packed(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("deflate-raw"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const content = await new Response(stream).blob();
+  const reader = new FileReader();
+  const read = new Promise((resolve, reject) => Object.assign(reader, { onload: resolve, onerror: () => reject(reader.error) }));
+  reader.readAsDataURL(content);
+  await read;
+  const url = /** @type {string} */ (reader.result);
+  return url.slice(url.indexOf(",") + 1);
 }
 
 /**
@@ -42,8 +42,7 @@ async function deflated(bytes) {
  */
 async function blocksOf({ model, motion }) {
   const block = (/** @type {string} */ role) => async (/** @type {PageFile} */ [name, bytes]) => {
-    const content = base64(await deflated(bytes));
-    return `<script type="application/octet-stream" data-name="${escaped(name)}" data-role="${role}" data-coding="deflate">${content}</script>\n`;
+    return `<script type="application/octet-stream" data-name="${escaped(name)}" data-role="${role}" data-coding="deflate">${await packed(bytes)}</script>\n`;
   };
   return await Promise.all([...model.map(block("model")), ...motion.map(block("motion"))]);
 }
@@ -96,6 +95,22 @@ const DIALOG = `
     <button id="page-save" type="button" class="chief">Save</button>
   </form>`;
 
+/**
+ * Returns a function that does a task once, and again if it has failed.
+ * @template T
+ * @param {string} failure What to say then.
+ * @param {() => Promise<T>} task
+ */
+function once(failure, task) {
+  /** @type {Promise<T> | undefined} */
+  let done;
+  return () =>
+    (done ??= Promise.resolve().then(task).catch((error) => {
+      done = undefined;
+      throw new Error(`${failure} (${error instanceof Error ? error.message : error})`, { cause: error });
+    }));
+}
+
 /** @type {(parent: Element, selector: string) => any} */
 const find = (parent, selector) => parent.querySelector(selector);
 
@@ -114,14 +129,22 @@ export async function showDialog(scene, host) {
   dialog.showModal();
   const [name, size, save] = ["#page-name", "#page-size", "#page-save"].map((selector) => find(dialog, selector));
   name.value = scene.title;
-  const [blocks, picture] = [blocksOf(scene), host.screenshot().then(pictureOf)];
-  /** @type {Record<string, Promise<string>>} */
-  const templates = {};
+  const blocks = once("Couldn't compress the files.", () => blocksOf(scene));
+  const picture = once("Couldn't draw the picture.", async () => pictureOf(await host.screenshot()));
+  const template = (/** @type {Backend} */ backend) => once("Couldn't download the program. Check the connection.", () => host.template(backend));
+  const templates = { webgl2: template("webgl2"), webgpu: template("webgpu") };
   /** @type {() => Promise<Blob>} */
   const page = async () => {
+    /** @type {Backend} */
     const backend = find(dialog, ":checked").value;
-    const template = await (templates[backend] ??= host.template(backend));
-    return pageOf(template, { ...scene, title: name.value, blocks: await blocks, picture: await picture });
+    const [program, files, image] = await Promise.all([templates[backend](), blocks(), picture()]);
+    return pageOf(program, { ...scene, title: name.value, blocks: files, picture: image });
+  };
+  const write = async () => {
+    const file = `${scene.title.replace(/\.\w+$/, "")}.html`;
+    host.save(file, await page());
+    dialog.close();
+    host.notify(`Saved ${file}.`);
   };
   const measure = async () => {
     save.disabled = true;
@@ -129,18 +152,13 @@ export async function showDialog(scene, host) {
     try {
       const { size: bytes } = await page();
       size.textContent = `Size: ${(bytes / 1e6).toFixed(1)} MB`;
-      save.disabled = false;
+      [save.textContent, save.onclick] = ["Save", write];
     } catch (error) {
-      for (const backend of Object.keys(templates)) delete templates[backend];
-      size.textContent = `It can't be loaded. Check the connection and try again. (${error instanceof Error ? error.message : error})`;
+      size.textContent = /** @type {Error} */ (error).message;
+      [save.textContent, save.onclick] = ["Try again", measure];
     }
+    save.disabled = false;
   };
   for (const choice of dialog.querySelectorAll("input[type=radio]")) choice.addEventListener("change", measure);
-  save.addEventListener("click", async () => {
-    const file = `${scene.title.replace(/\.\w+$/, "")}.html`;
-    host.save(file, await page());
-    dialog.close();
-    host.notify(`Saved ${file}.`);
-  });
   await measure();
 }

@@ -73,6 +73,42 @@ describe("a saved page", () => {
     });
   }
 
+  it("says what couldn't be made, and makes it when asked again", async () => {
+    const page = await site.page({ renderer: "webgl2", link: LINK });
+    await page.evaluate(() => {
+      const broken = () => {
+        throw new Error("none left");
+      };
+      const { CompressionStream, createImageBitmap } = window;
+      Object.assign(window, { CompressionStream: class { constructor() { broken(); } }, createImageBitmap: broken, restored: { CompressionStream, createImageBitmap } });
+    });
+    await page.route(/standalone-webgl2/, (route) => route.abort());
+    await control(page, "button", "Export").press("Enter");
+    await control(page, "button", /web page/).press("Enter");
+    const dialog = page.locator("#web-page");
+    const restore = (/** @type {string} */ name) => page.evaluate((name) => void Object.assign(window, { [name]: /** @type {any} */ (window).restored[name] }), name);
+    const again = () => dialog.locator("#page-save:enabled", { hasText: "Try again" });
+    // One after the other, the first that fails.
+    const failures = /** @type {const} */ ([
+      [/^Couldn't draw the picture\. \(none left\)$/, () => restore("createImageBitmap")],
+      [/^Couldn't compress the files\. \(none left\)$/, () => restore("CompressionStream")],
+      [/^Couldn't download the program\. Check the connection\. \(.+\)$/, () => page.unroute(/standalone-webgl2/)],
+    ]);
+    const seen = new Set();
+    while (seen.size < failures.length) {
+      await again().waitFor();
+      const said = (await dialog.locator("#page-size").textContent()) ?? "";
+      const at = failures.findIndex(([message]) => message.test(said));
+      assert.ok(at >= 0 && !seen.has(at), said);
+      seen.add(at);
+      await failures[at][1]();
+      await again().click();
+    }
+    await dialog.locator("#page-save:enabled", { hasText: "Save" }).waitFor();
+    assert.match((await dialog.locator("#page-size").textContent()) ?? "", /^Size: /);
+    await page.finish();
+  });
+
   it("allows nothing but what is inside", () => {
     const page = fs.readFileSync(path.join(folder, "webgl2.html"), "utf8");
     const policy = /Content-Security-Policy" content="([^"]*)"/.exec(page)?.[1] ?? "";
