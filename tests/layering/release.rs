@@ -172,6 +172,21 @@ fn what_may_publish_runs_no_code_of_the_dependencies() {
 }
 
 #[test]
+fn what_is_published_names_its_repository() {
+    // The box about Gaitway leads there.
+    let (page, workflow) = (read(".github/workflows/ci.yml"), read(".github/workflows/release.yml"));
+    let builds = [&page, &workflow].into_iter().flat_map(|workflow| jobs(workflow)).filter(|(name, job)| {
+        *name != "test" && ["cargo xtask build", "cargo build", "maturin build"].iter().any(|build| job.contains(build))
+    });
+    let mut count = 0;
+    for (name, job) in builds {
+        assert!(job.contains(".github/name-repository.sh \"$REPOSITORY\""), "{name}");
+        count += 1;
+    }
+    assert_eq!(count, 4, "two of the page, the programs and the wheels");
+}
+
+#[test]
 fn a_release_says_what_it_is_made_of_and_by_what() {
     let workflow = read(".github/workflows/release.yml");
     let release = jobs(&workflow)["release"];

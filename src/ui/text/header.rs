@@ -46,6 +46,8 @@ pub const PRIVACY: &str = "Gaitway asks nothing and tracks nothing: no account, 
 pub const DOCUMENTATION: &str = "Documentation";
 /// Link in that box.
 pub const SOURCE_CODE: &str = "Source code";
+/// Link in that box.
+pub const LICENCES: &str = "Licences";
 /// Button that closes that box.
 pub const CLOSE_ABOUT: &str = "Close";
 /// Button that undoes the last step, whatever it was, with its key.

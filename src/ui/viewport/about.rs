@@ -29,9 +29,11 @@ fn contents(ui: &mut Ui, out: &mut Output) -> bool {
     ui.add(egui::Label::new(RichText::new(text::PRIVACY).color(weak)).wrap());
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
-        for (label, url) in
-            [(text::DOCUMENTATION, concat!(env!("CARGO_PKG_REPOSITORY"), "#readme")), (text::SOURCE_CODE, REPOSITORY)]
-        {
+        for (label, url) in [
+            (text::DOCUMENTATION, concat!(env!("CARGO_PKG_REPOSITORY"), "#readme")),
+            (text::SOURCE_CODE, REPOSITORY),
+            (text::LICENCES, concat!(env!("CARGO_PKG_REPOSITORY"), "#licence")),
+        ] {
             // Cargo.toml may not name a repository.
             if !REPOSITORY.is_empty() && ui.link(label).clicked() {
                 out.actions.push(UiAction::OpenUrl(url));
