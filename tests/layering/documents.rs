@@ -108,7 +108,7 @@ fn paths_are_found_in_text() {
 
 #[test]
 fn what_documents_name_exists() {
-    for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
+    for name in ["ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md"] {
         let text = without_blocks(&read(name));
         let paths = paths(&text);
         assert!(paths.len() > 20, "{name}: {paths:?}");
