@@ -36,6 +36,13 @@ class File:
 
 class Model(File):
     def write(self, path: _Path, clips: Sequence[Clip] = ...) -> None: ...
+    def export(
+        self,
+        path: _Path,
+        motions: Sequence[Motion] = ...,
+        map: dict[str, Any] | _Path | None = None,
+        **options: Unpack[ExportOptions],
+    ) -> dict[str, Any]: ...
 
 class Motion(File):
     @staticmethod
@@ -73,6 +80,12 @@ class Scene:
     @property
     def html(self) -> str: ...
     def write(self, path: _Path) -> None: ...
+
+class ExportOptions(TypedDict, total=False):
+    clips: str | list[str] | None
+    rename: dict[str, str] | None
+    for_: Literal["unity", "unreal", "godot", "blender", "web", "vrm", "as-is"] | None
+    format: Literal["glb", "bvh", "vrma"] | None
 
 class RetargetOptions(TypedDict, total=False):
     clip: str | int | None

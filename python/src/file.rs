@@ -10,11 +10,12 @@ use gaitway_character::asset::{Asset, AssetParts};
 use gaitway_scene::library::{self, inspect};
 use numpy::{Ix2, PyArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{Arrays, KeysLike, Sampled, Scratch, Space, TimesLike, array, clip_of, read_times};
 use crate::clip::{Clip, Which};
 use crate::error::{argument_error, raised};
-use crate::retarget::to_python;
+use crate::retarget::{arguments, read_map, to_python};
 
 /// Where clips and joints come from.
 #[derive(Clone)]
@@ -141,6 +142,32 @@ impl Model {
             let clips: Vec<&CoreClip> = clips.iter().map(|clip| clip.core()).collect();
             functions::save_model(&path, &self.0.content, &clips, &self.0.files_read)
         }))
+    }
+
+    /// Writes the model with its clips and those of motions, as `gaitway export` does: as one .glb, or each clip as a file of a folder or
+    /// .zip. Clips of the model's own rig keep their keys, others are retargeted.
+    ///
+    /// `map` is a joint map for all motions; without one it is proposed for each. Options are those of `gaitway export`:
+    /// `clips=["walk", "run"]`, `rename={"walk": "Walk"}`, `for_="godot"`, `format="bvh"`. Returns the document of its `--json`: clips,
+    /// files, and warnings, such as what the files can't hold. Files that were read are never overwritten.
+    #[pyo3(signature = (path, motions = Vec::new(), map = None, **options))]
+    fn export(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        motions: Vec<PyRef<'_, Motion>>,
+        map: Option<&Bound<'_, PyAny>>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<PyAny>> {
+        let map = map.map(read_map).transpose()?;
+        let options = options.map(arguments).transpose()?.unwrap_or_default();
+        let motions: Vec<Arc<Loaded<library::Motion>>> = motions.iter().map(|motion| motion.0.clone()).collect();
+        let read = motions.iter().flat_map(|motion| &motion.files_read).chain(&self.0.files_read).cloned().collect::<Vec<_>>();
+        let document = py.detach(|| {
+            let motions = motions.iter().map(|motion| motion.content.clone()).collect();
+            functions::export(&path, &self.0.content, motions, map, &options, &read)
+        });
+        to_python(py, &raised(document)?)
     }
 }
 

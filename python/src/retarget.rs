@@ -85,17 +85,22 @@ pub fn read_map(map: &Bound<'_, PyAny>) -> PyResult<OpenedMap> {
     raised(map.py().detach(|| functions::load_map(&path)))
 }
 
-/// Writes keyword arguments as the command line has them: a flag is `True`, several numbers are a tuple, and a list repeats the option.
-fn arguments(options: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+/// Writes keyword arguments as the command line has them: a flag is `True`, several numbers are a tuple, and a list or a dictionary
+/// repeats the option. A name that Python reserves has `_` at its end.
+pub fn arguments(options: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
     let mut arguments = Vec::new();
     for (name, value) in options {
-        let name = format!("--{}", name.cast::<PyString>()?.to_string().replace('_', "-"));
+        let name = format!("--{}", name.cast::<PyString>()?.to_string().trim_end_matches('_').replace('_', "-"));
         if let Ok(flag) = value.cast::<PyBool>() {
             arguments.extend(flag.is_true().then_some(name));
         } else if let Ok(numbers) = value.cast::<PyTuple>() {
             arguments.push(format!("{name}={}", texts(numbers)?.join(",")));
         } else if let Ok(values) = value.cast::<PyList>() {
             arguments.extend(texts(values)?.iter().map(|value| format!("{name}={value}")));
+        } else if let Ok(values) = value.cast::<PyDict>() {
+            for (key, value) in values {
+                arguments.push(format!("{name}={}={}", key.str()?, value.str()?));
+            }
         } else if !value.is_none() {
             arguments.push(format!("{name}={}", value.str()?));
         }

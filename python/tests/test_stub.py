@@ -12,7 +12,7 @@ import gaitway
 
 STUB = ast.parse((REPOSITORY / "python" / "gaitway.pyi").read_text())
 # Only for type checkers.
-TYPES = {"RetargetOptions"}
+TYPES = {"ExportOptions", "RetargetOptions"}
 
 
 def declared(body: list[ast.stmt]) -> dict[str, ast.stmt]:
@@ -62,7 +62,9 @@ def test_signatures_and_docstrings(name: str, node: ast.stmt, found: object) -> 
 
 
 def test_options_are_those_of_the_command_line() -> None:
-    of_files = {"model", "motion", "map", "out", "out_dir", "format", "jobs", "clip_only", "json", "help"}
-    options = re.findall(r"^ *(?:-\w, )?--([a-z-]+)", text_of_cli("retarget", "--help"), flags=re.MULTILINE)
-    keys = [node.target.id for node in declared(STUB.body)["RetargetOptions"].body]
-    assert {option.replace("-", "_") for option in options} - of_files == set(keys)
+    of_files = {"model", "motion", "map", "out", "out_dir", "jobs", "clip_only", "json", "help"}
+    commands = {"retarget": ("RetargetOptions", of_files | {"format"}), "export": ("ExportOptions", of_files)}
+    for command, (name, others) in commands.items():
+        options = re.findall(r"^ *(?:-\w, )?--([a-z-]+)", text_of_cli(command, "--help"), flags=re.MULTILINE)
+        keys = [node.target.id.removesuffix("_") for node in declared(STUB.body)[name].body]
+        assert {option.replace("-", "_") for option in options} - others == set(keys)

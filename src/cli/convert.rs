@@ -2,7 +2,7 @@
 //! written by [`web_page`].
 
 use gaitway_character::asset::Asset;
-use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_renamed_model};
+use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_edited_model};
 use gaitway_retarget::ChangedClip;
 use gaitway_scene::editor::{ClipFormat, Export, write_clip};
 use gaitway_scene::library::{ClipEdits, ClipId, Library, Model, ModelClip};
@@ -95,7 +95,7 @@ fn edited(set: &FileSet, name: String, asset: Asset, arguments: &ConvertArgument
         warn(&format!("{name}: another clip is called “{asked}”; this one is written as “{title}”"));
     }
     if arguments.edits.is_name_only() {
-        return Ok(write_renamed_model(set, name, &model.asset.skeleton, &clips.saved_names(None).own, &[])?);
+        return Ok(write_edited_model(set, name, &model.asset.skeleton, &clips.saved_names(None).own, &[])?);
     }
     let names = clips.saved_names(Some(&clip));
     let added = changed_clip(model, arguments)?.clip.with_name(names.added);
@@ -104,7 +104,7 @@ fn edited(set: &FileSet, name: String, asset: Asset, arguments: &ConvertArgument
             "{name}: only joints and morph weights are animated in the changed clip, not materials, lights or visibility"
         ));
     }
-    Ok(write_renamed_model(set, name, &model.asset.skeleton, &names.own, &[&added])?)
+    Ok(write_edited_model(set, name, &model.asset.skeleton, &names.own, &[&added])?)
 }
 
 /// Writes one clip with its skeleton.

@@ -9,17 +9,18 @@ use gaitway_scene::editor::{ClipFormat, OpenedMap, write_clip};
 use gaitway_scene::library::{Model, Motion};
 use serde_json::Value;
 
+use super::export::{self, ExportChoices, Place};
 use super::RetargetChoices;
 pub use super::failure::{Failure, Outcome};
 use super::map::Proposed;
-use super::motion::{MotionArguments, open_map, read_motion};
+use super::motion::{MotionArguments, open_editor, open_map, read_motion};
 use super::output::save_output;
 pub use super::retarget::Made;
 use super::retarget::{clip_format_of, make, model_extensions, model_file};
 use super::usage_message;
 use super::web_page::{self, View, editor_of};
 pub use crate::files::Backend;
-use crate::files::{Disk, Opened, read_map};
+use crate::files::{Disk, Opened, STANDARD_STREAM, read_map};
 
 /// A loaded file and the paths of all files that were read for it, none of which is overwritten.
 #[derive(Debug)]
@@ -110,6 +111,43 @@ pub fn save_model(out: &Path, opened: &Opened, clips: &[&Clip], inputs: &[PathBu
     save_output(out, &bytes, &extensions, inputs)
 }
 
+/// Writes a model with its clips and those of motions, as `gaitway export` does, and returns the document that its `--json`
+/// prints. `options` are those of the command that don't name files. `inputs` are files that must not be overwritten.
+///
+/// # Errors
+/// If an option, the map or a motion doesn't fit, the plan is refused, or the output cannot be written.
+pub fn export(
+    out: &Path,
+    model: &Opened,
+    motions: Vec<Motion>,
+    map: Option<OpenedMap>,
+    options: &[String],
+    inputs: &[PathBuf],
+) -> Outcome<Value> {
+    #[derive(Parser)]
+    #[command(no_binary_name = true, disable_help_flag = true)]
+    struct Options {
+        #[command(flatten)]
+        choices: ExportChoices,
+    }
+    let options = Options::try_parse_from(options).map_err(|error| Failure::from(usage_message(&error)))?;
+    // Here, `-` is a file like any other.
+    let place = if out == STANDARD_STREAM { Place::Folder } else { Place::of(out)? };
+    let opened = copy_of(model, [model.motions.clone(), motions].concat(), map);
+    let editor = open_editor(opened, &MotionArguments::default(), &Disk::default())?;
+    let made = export::make(&editor, &options.choices, place)?;
+    export::write(out, place, &made.files, inputs)?;
+    Ok(made.document())
+}
+
+/// Returns the model without its decoded images, which only drawing needs, with other motions and another map.
+fn copy_of(opened: &Opened, motions: Vec<Motion>, map: Option<OpenedMap>) -> Opened {
+    let Opened { model, model_files, .. } = opened;
+    let mut copy = Model::new(model.source.clone(), model.asset.clone(), vec![None; model.asset.images.len()]);
+    copy.origin.clone_from(&model.origin);
+    Opened { model: copy, model_files: model_files.clone(), motions, map, files: Vec::new() }
+}
+
 /// How [`page`] shows a scene. By default its first clip plays.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PageOptions<'a> {
@@ -141,16 +179,8 @@ pub fn page(
     options: PageOptions<'_>,
 ) -> Outcome<String> {
     let template = web_page::template(options.backend, options.folder, options.prefix)?;
-    let Opened { model, model_files, motions, .. } = model;
-    let mut shown = Model::new(model.source.clone(), model.asset.clone(), vec![None; model.asset.images.len()]);
-    shown.origin.clone_from(&model.origin);
-    let opened = Opened {
-        model: shown,
-        model_files: model_files.clone(),
-        motions: motion.map_or_else(|| motions.clone(), |motion| vec![motion.clone()]),
-        map,
-        files: Vec::new(),
-    };
+    let motions = motion.map_or_else(|| model.motions.clone(), |motion| vec![motion.clone()]);
+    let opened = copy_of(model, motions, map);
     let view = View { link: options.view, clip: options.clip };
     let editor = editor_of(opened, &MotionArguments::default(), view, &Disk::beside(options.files_read.to_vec()))?;
     web_page::page_of(&editor, &template, options.title, None)

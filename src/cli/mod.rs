@@ -5,6 +5,7 @@ mod card;
 mod change;
 mod convert;
 mod edit;
+mod export;
 mod failure;
 pub mod functions;
 mod inputs;
@@ -42,6 +43,7 @@ use serde_json::json;
 use crate::files::{Disk, Opened};
 use card::CardArguments;
 use edit::EditOptions;
+use export::ExportArguments;
 use failure::{Failure, Outcome};
 use moment::Moment;
 use motion::MotionArguments;
@@ -71,6 +73,8 @@ enum Action {
     Retarget(Box<RetargetArguments>),
     /// Converts any supported model to a single .glb, one of its clips to .bvh or .vrma, or a scene to a page that shows it.
     Convert(ConvertArguments),
+    /// Writes a model with many clips, its own and those of other files, as one .glb, or each clip as a file.
+    Export(ExportArguments),
     /// Writes a page with a title and a picture of its own, for previews, that leads to a link.
     Card(CardArguments),
     /// Renders the same image as the page, or the frames of a clip, without a window.
@@ -385,6 +389,7 @@ fn check_usage(arguments: Arguments) -> Result<Arguments, clap::Error> {
     let is_used_twice = match &arguments.action {
         Some(Action::Map(map)) => map.json && map.out.as_deref().is_some_and(is_standard_output),
         Some(Action::Retarget(retarget)) => retarget.json && retarget.out.as_deref().is_some_and(is_standard_output),
+        Some(Action::Export(export)) => export.json && is_standard_output(&export.out),
         _ => false,
     };
     if is_used_twice {
@@ -402,6 +407,7 @@ fn run(arguments: Arguments) -> Outcome {
         Some(Action::Pose(arguments)) => pose::run(&arguments, &disk),
         Some(Action::Retarget(arguments)) => retarget::run(&arguments, &disk),
         Some(Action::Convert(arguments)) => convert::run(&arguments, &disk),
+        Some(Action::Export(arguments)) => export::run(&arguments, &disk),
         Some(Action::Card(arguments)) => card::run(&arguments, &disk),
         #[cfg(feature = "render")]
         Some(Action::Render(arguments)) => render::run(&arguments, &disk),

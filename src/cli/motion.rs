@@ -76,17 +76,23 @@ pub(super) fn open_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
 
 /// Opens one motion.
 pub(super) fn read_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
-    let contents = disk.read_paths(&[path.to_owned()], Role::Motion)?;
-    let mut motions = contents.motions.unwrap_or_default();
-    if let Some(member) = member_of(path) {
-        motions.retain(|motion| motion.source == member);
-    }
+    let motions = read_motions(path, disk)?;
     let names: Vec<&str> = motions.iter().map(|motion| motion.source.as_str()).collect();
     let found = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     let Ok([motion]) = <[Motion; 1]>::try_from(motions) else {
         return Err(Failure::expected("one motion", found).in_file(path.display()));
     };
     Ok(motion)
+}
+
+/// Opens all motions of a file; an archive may have several.
+pub(super) fn read_motions(path: &Path, disk: &Disk) -> Outcome<Vec<Motion>> {
+    let contents = disk.read_paths(&[path.to_owned()], Role::Motion)?;
+    let mut motions = contents.motions.unwrap_or_default();
+    if let Some(member) = member_of(path) {
+        motions.retain(|motion| motion.source == member);
+    }
+    Ok(motions)
 }
 
 pub(super) fn open_map(path: &Path, disk: &Disk) -> Outcome<OpenedMap> {

@@ -25,6 +25,8 @@ mod view;
 mod web;
 #[cfg(not(target_arch = "wasm32"))]
 mod web_page;
+#[cfg(not(target_arch = "wasm32"))]
+mod zip;
 
 pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
@@ -50,3 +52,5 @@ pub use view::Held;
 pub use web::{OnImage, open_items, open_view, within};
 #[cfg(not(target_arch = "wasm32"))]
 pub use web_page::{Backend, NoTemplate, PAGE_VARIABLE, WebPage, escaped, read_template};
+#[cfg(not(target_arch = "wasm32"))]
+pub use zip::zip;

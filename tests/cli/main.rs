@@ -15,6 +15,7 @@ mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
 mod exercise;
+mod export;
 #[cfg(feature = "render")]
 mod gallery;
 mod motion;

@@ -38,11 +38,11 @@ mod obj;
 mod part;
 mod prepare;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
-pub use gltf::{Early, WriteError, early, pointer_to};
+pub use gltf::{Early, OwnClips, WriteError, early, pointer_to};
 pub use hdr::{HdrError, is_hdr, read_hdr};
 pub use part::Part;
 #[cfg(not(target_arch = "wasm32"))]
@@ -160,30 +160,31 @@ pub fn load_noticing_images(
 /// first buffer is the beginning of the new one, and its JSON only grows. Other formats take joint names and rest pose from
 /// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    write_renamed_model(files, name, skeleton, &BTreeMap::new(), clips)
+    write_edited_model(files, name, skeleton, &OwnClips::default(), clips)
 }
 
-/// Like [`write_model`], with other names for some of the model's own clips, by their index.
-pub fn write_renamed_model(
+/// Like [`write_model`], with some of the model's own clips renamed or left out.
+pub fn write_edited_model(
     files: &FileSet,
     name: &str,
     skeleton: &Skeleton,
-    clip_names: &BTreeMap<usize, String>,
+    own: &OwnClips,
     clips: &[&Clip],
 ) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, name)?;
     if !is_converted(name, bytes) {
-        return gltf::write_model(files, name, skeleton, clip_names, clips);
+        return gltf::write_model(files, name, skeleton, own, clips);
     }
     let asset = read(files, name, bytes, &LoadOptions::default(), &mut |_| ())?;
     check_skeleton(name, &asset, skeleton)?;
-    let renamed = |(index, clip): (usize, &Clip)| match clip_names.get(&index) {
+    let renamed = |(index, clip): (usize, &Clip)| match own.names.get(&index) {
         Some(name) => clip.clone().with_name(name.clone()),
         None => clip.clone(),
     };
-    let own: Vec<Clip> = asset.clips.iter().enumerate().map(renamed).collect();
-    let all: Vec<&Clip> = own.iter().chain(clips.iter().copied()).collect();
-    gltf::write_asset(&asset, skeleton, &all)
+    let kept = asset.clips.iter().enumerate().filter(|(index, _)| !own.left_out.contains(index));
+    let kept: Vec<Clip> = kept.map(renamed).collect();
+    let all: Vec<&Clip> = kept.iter().chain(clips.iter().copied()).collect();
+    gltf::write_asset(&asset, skeleton, kept.len(), &all)
 }
 
 /// Whether a model of this format is written from the asset: it has no JSON that could be kept.
@@ -240,9 +241,9 @@ pub fn convert_named(files: &FileSet, name: &str, options: &LoadOptions) -> Resu
     let bytes = named(files, name)?;
     let asset = read(files, name, bytes, options, &mut |_| ())?;
     if is_converted(name, bytes) {
-        return gltf::write_asset(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
+        return gltf::write_asset(&asset, &asset.skeleton, asset.clips.len(), &asset.clips.iter().collect::<Vec<_>>());
     }
-    gltf::write_model(files, name, &asset.skeleton, &BTreeMap::new(), &[])
+    gltf::write_model(files, name, &asset.skeleton, &OwnClips::default(), &[])
 }
 
 fn read(

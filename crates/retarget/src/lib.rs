@@ -47,6 +47,7 @@ mod limit;
 mod map;
 mod math;
 mod measure;
+mod merge;
 mod pins;
 mod pose;
 mod recognize;
@@ -69,6 +70,7 @@ pub use map::{
     Unmapped, UpChoice, has_expressions_alone, opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
+pub use merge::merged_clip;
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize, words};
 pub use retargeting::Retargeting;

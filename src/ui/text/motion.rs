@@ -313,6 +313,8 @@ pub const LOAD_MAP: &str = "Load map…";
 pub const REMOVE_MOTION: &str = "Remove motion";
 /// Button that saves the model's file with the current clip.
 pub const SAVE_GLB: &str = "Save GLB";
+/// Entry of the export menu that saves the model's file with all clips.
+pub const SAVE_ALL_CLIPS: &str = "Save all clips (GLB)";
 /// Button that shows the motion's skeleton.
 pub const SHOW_SOURCE: &str = "Show source beside the model";
 /// The same button while the skeleton is shown.

@@ -19,6 +19,7 @@ mod meshopt;
 mod mtoon;
 mod npz;
 mod obj;
+mod own_clips;
 mod playback;
 mod pointer;
 mod sweep;

@@ -4,14 +4,16 @@
 use std::borrow::Cow;
 
 use gaitway_character::anim::Clip;
-use gaitway_formats::{write_model, write_motion, write_renamed_model};
+use gaitway_formats::{OwnClips, write_edited_model, write_model, write_motion};
+use gaitway_retarget::merged_clip;
 use glam::Vec3;
 
-use super::names::stem;
-use super::{ClipFormat, Editor, ModelFiles, write_clip};
+use super::in_file::{is_derived, is_in_file};
+use super::names::{plain_name, stem};
+use super::{ClipFormat, Editor, ExportPlan, ModelFiles, Packaging, PlannedClip, write_clip};
 use crate::frame::{Frame, evaluate};
 use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
-use crate::state::{ViewerState, active_clip, active_map, take_of, written_skeleton};
+use crate::state::{active_clip, active_map, take_of, written_skeleton};
 
 /// Why a model without its images isn't written or recorded.
 pub const AWAITS_IMAGES: &str =
@@ -42,6 +44,8 @@ pub enum Export {
         /// Makes the current pose the rest pose of the file.
         posed: bool,
     },
+    /// The whole model with the clips of a plan, in one file.
+    Plan(ExportPlan),
 }
 
 /// An exported file, with a remark for the user.
@@ -71,23 +75,9 @@ fn about_properties(clip: &Clip) -> Option<&'static str> {
     (!clip.properties().is_empty()).then_some(lost)
 }
 
-/// Returns the active clip unless the model's file already contains it as it plays.
-pub fn derived_clip<'a>(model: &'a Model, state: &ViewerState) -> Option<&'a ModelClip> {
-    active_clip(model, state).filter(|clip| is_derived(model, state, clip))
-}
-
-/// Whether a clip as it plays is not in the model's file, or under another name.
-fn is_derived(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
-    clip.is_renamed() || !is_in_file(model, state, clip)
-}
-
-/// Whether a clip as it plays is in the model's file, perhaps under another name: it is not retargeted, changed, below layers or
-/// what is set manually, nor pinned.
-fn is_in_file(model: &Model, state: &ViewerState, clip: &ModelClip) -> bool {
-    clip.is_in_file() && !take_of(model, Some(clip), state).is_more_than_clip()
-}
-
 const NO_SUCH_CLIP: &str = "there is no such clip";
+
+const NO_FILE: &str = "Skeleton and clip only: this model has no file to add a clip to.";
 
 /// A clip with its layers, what is set manually, and its pins baked in.
 struct BakedClip {
@@ -106,7 +96,77 @@ impl Editor {
             Export::Model { clip } => self.export_model(clip),
             Export::Clip { clip, format } => self.export_clip(clip, *format),
             Export::FullModel { posed } => self.export_whole(*posed),
+            Export::Plan(plan) => self.export_plan(plan)?.pop().ok_or_else(|| "there is nothing to write".to_owned()),
         }
+    }
+
+    /// Writes the files of a plan: the only one, or one for each clip, in the plan's order.
+    ///
+    /// # Errors
+    /// The message for the user if the plan is refused or writing fails.
+    pub fn export_plan(&self, plan: &ExportPlan) -> Result<Vec<ExportedFile>, String> {
+        let model = self.model()?;
+        plan.check(model)?;
+        match plan.packaging {
+            Packaging::OneFile => Ok(vec![self.export_together(plan)?]),
+            Packaging::FilePerClip(format) => {
+                plan.clips.iter().map(|planned| self.export_planned(model, planned, format)).collect()
+            }
+        }
+    }
+
+    /// Writes one clip of a plan with its skeleton.
+    fn export_planned(
+        &self,
+        model: &Model,
+        PlannedClip { clip, name }: &PlannedClip,
+        format: ClipFormat,
+    ) -> Result<ExportedFile, String> {
+        let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
+        let BakedClip { clip, remarks } = self.merged_or_baked_clip(model, source);
+        let (clip, skeleton) = (clip.with_name(name.clone()), written_skeleton(model, &self.state, None));
+        let bytes = write_clip(model, &skeleton, &clip, source.frames_per_sec(), format);
+        let name = format!("{}.{}", plain_name(name), format.extension());
+        Ok(ExportedFile::new(name, bytes.map_err(|error| error.to_string())?).with_remarks(&remarks))
+    }
+
+    /// Writes the model's own file with the clips of a plan and no others; without a file, only skeleton and clips.
+    fn export_together(&self, plan: &ExportPlan) -> Result<ExportedFile, String> {
+        let model = self.complete_model()?;
+        let mut own = OwnClips { left_out: (0..model.asset.clips.len()).collect(), ..OwnClips::default() };
+        let (mut added, mut remarks) = (Vec::new(), Vec::new());
+        let files = self.files_of(model);
+        for PlannedClip { clip, name } in &plan.clips {
+            let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
+            match source.id() {
+                ClipId::Own(index) if files.is_some() && is_in_file(model, &self.state, source) => {
+                    own.left_out.remove(index);
+                    if model.asset.clips[*index].name() != name {
+                        own.names.insert(*index, name.clone());
+                    }
+                }
+                _ => {
+                    let baked = self.merged_or_baked_clip(model, source);
+                    remarks.extend(baked.remarks.into_iter().map(|remark| format!("{name}: {remark}").into()));
+                    added.push(baked.clip.with_name(name.clone()));
+                }
+            }
+        }
+        let (added, skeleton): (Vec<&Clip>, _) = (added.iter().collect(), written_skeleton(model, &self.state, None));
+        let bytes = match files {
+            Some(ModelFiles { set, name }) => write_edited_model(set, name, &skeleton, &own, &added),
+            None => {
+                remarks.push(NO_FILE.into());
+                write_motion(&model.asset, &skeleton, &added)
+            }
+        };
+        let name = format!("{}.glb", plain_name(&stem(&model.source)));
+        Ok(ExportedFile::new(name, bytes.map_err(|error| error.to_string())?).with_remarks(&remarks))
+    }
+
+    /// What the files of a plan lack of its clips, by name.
+    pub fn plan_losses(&self, plan: &ExportPlan) -> Vec<String> {
+        self.library.active().map_or(Vec::new(), |model| plan.losses(model, &self.state))
     }
 
     /// Returns a file name for the current view, without extension: the model's and, if one is active, the clip's.
@@ -117,9 +177,7 @@ impl Editor {
     fn stem_with_clip(&self, clip: Option<&ModelClip>) -> String {
         let model = self.library.active().map(|model| stem(&model.source));
         let parts = [model, clip.map(|clip| clip.title().to_owned())];
-        let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
-        let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ()".contains(letter);
-        name.chars().map(|letter| if is_plain(letter) { letter } else { '-' }).collect()
+        plain_name(&parts.into_iter().flatten().collect::<Vec<_>>().join("-"))
     }
 
     fn model(&self) -> Result<&Model, String> {
@@ -190,7 +248,7 @@ impl Editor {
         let mut remarks = Vec::new();
         let bytes = match files {
             Some(ModelFiles { set, name }) if is_in_file(model, &self.state, clip) => {
-                write_renamed_model(set, name, &skeleton, &model.clips().saved_names(None).own, &[])
+                write_edited_model(set, name, &skeleton, &model.clips().saved_names(None).own, &[])
             }
             _ => {
                 let names = model.clips().saved_names(Some(clip.id()));
@@ -199,9 +257,9 @@ impl Editor {
                 remarks = baked.remarks;
                 remarks.extend(about_properties(&added).map(Cow::from));
                 match files {
-                    Some(ModelFiles { set, name }) => write_renamed_model(set, name, &skeleton, &names.own, &[&added]),
+                    Some(ModelFiles { set, name }) => write_edited_model(set, name, &skeleton, &names.own, &[&added]),
                     None => {
-                        remarks.push("Skeleton and clip only: this model has no file to add a clip to.".into());
+                        remarks.push(NO_FILE.into());
                         write_motion(&model.asset, &skeleton, &[&added])
                     }
                 }
@@ -224,6 +282,22 @@ impl Editor {
         remarks.extend(seam.map(|why| format!("The loop has a seam: {why}.").into()));
         remarks.extend(is_posed.then_some("Manually posed joints hold their pose in it.".into()));
         BakedClip { clip: clip.into_owned().with_name(source.file_name().to_owned()), remarks }
+    }
+
+    /// The same with the keys of a borrowed clip's motion, bit for bit, if that is what it shows.
+    fn merged_or_baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
+        let mut baked = self.baked_clip(model, source);
+        if !take_of(model, Some(source), &self.state).is_more_than_clip() {
+            baked.clip = self.merged_clip(model, source).unwrap_or(baked.clip);
+        }
+        baked
+    }
+
+    fn merged_clip(&self, model: &Model, source: &ModelClip) -> Option<Clip> {
+        let borrowed = source.borrowed().filter(|borrowed| source.changed().is_none() && borrowed.layers.is_empty())?;
+        let motion = &self.library.motion(&borrowed.motion)?.asset;
+        let clip = motion.clips.get(borrowed.source_clip)?;
+        merged_clip(&model.asset.skeleton, &motion.skeleton, clip, &borrowed.clip)
     }
 
     /// The camera's position in the current view.

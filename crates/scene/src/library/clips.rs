@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use gaitway_character::anim::{Clip, JointIndex};
 use gaitway_character::asset::Asset;
+use gaitway_formats::OwnClips;
 use gaitway_retarget::{ChangedClip, ClipChanges, ClipOverLayers, LayerClip, Symmetry, change_clip};
 use serde::{Deserialize, Serialize};
 
@@ -318,8 +319,8 @@ impl ModelClip {
 /// What clips are called in a copy of the model's file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SavedNames {
-    /// The names that replace those in the file, by the indices of its clips.
-    pub own: BTreeMap<usize, String>,
+    /// The names that replace those in the file.
+    pub own: OwnClips,
     /// The name of the clip that is added; empty if none is.
     pub added: String,
 }
@@ -458,18 +459,18 @@ impl Clips {
         let has_original = |clip: &ModelClip| clip.is_renamed && (!clip.is_in_file() || is_added(clip));
         let is_taken = |clip: &&ModelClip| is_added(clip) || (clip.is_from_file() && !has_original(clip));
         let mut taken = Titles::taken(self.list.iter().filter(is_taken).map(ModelClip::file_name));
-        let mut own = BTreeMap::new();
+        let mut own = OwnClips::default();
         for clip in &self.list {
             let ClipId::Own(index) = clip.id else { continue };
             if clip.is_renamed && !has_original(clip) {
-                own.insert(index, clip.title.clone());
+                own.names.insert(index, clip.title.clone());
             }
         }
         for clip in self.list.iter().filter(|clip| has_original(clip)) {
             let (ClipId::Own(index), name) = (&clip.id, clip.original.name()) else { continue };
             let free = if name.is_empty() { String::new() } else { taken.unique(name.to_owned()) };
             if free != name {
-                own.insert(*index, free);
+                own.names.insert(*index, free);
             }
         }
         let added =

@@ -24,10 +24,10 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// Writes `asset` with the joints of `skeleton`, which may have other names and another rest pose; the bind pose stays. `clips` are
-/// its own and those that are added. Nodes are numbered as in the source file. Skinned meshes get nodes of their own after these,
+/// Writes `asset` with the joints of `skeleton`, which may have other names and another rest pose; the bind pose stays. The first
+/// `own` of the clips are its own, the others are added. Nodes are numbered as in the source file. Skinned meshes get nodes of their own after these,
 /// since the transform of such a node has no effect. Influences are written in sets of four.
-pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+pub fn asset(asset: &Asset, skeleton: &Skeleton, own: usize, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let mut root = nodes_and_scenes(asset, skeleton);
     let mut data = Data::default();
     let meshes: Vec<Value> = asset.meshes.iter().map(|written| mesh(written, &mut data)).collect();
@@ -51,7 +51,7 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<
     let materials: Vec<Value> = asset.materials.iter().map(material).collect();
     let counts = clip::Counts { accessors: data.accessors.len(), buffer_views: data.views.len() };
     let Data { mut binary, mut views, mut accessors } = data;
-    let added = clip::add(clips, asset.clips.len(), skeleton, false, counts, &mut binary)?;
+    let added = clip::add(clips, own, skeleton, false, counts, &mut binary)?;
     accessors.extend(added.accessors.iter().map(|accessor| json!(accessor)));
     views.extend(added.buffer_views.iter().map(|view| json!(view)));
     let lists = [

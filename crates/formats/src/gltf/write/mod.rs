@@ -1,8 +1,8 @@
 //! Writes GLB: a glTF model with clips added, a model of another format, a skeleton with clips and nothing else, or a
 //! VRM animation.
 //!
-//! A glTF model is not re-exported: its JSON is kept as text, member by member, and only grows where clips need it, or gets other
-//! names of clips. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the
+//! A glTF model is not re-exported: its JSON is kept as text, member by member, and only grows where clips need it, or
+//! where clips get other names or are left out. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the
 //! new one.
 
 mod asset;
@@ -11,6 +11,7 @@ mod error;
 mod glb;
 mod model;
 mod motion;
+mod own_clips;
 mod vrma;
 
 pub use asset::asset;
@@ -19,4 +20,5 @@ pub(crate) use error::check_frames;
 pub(super) use glb::glb;
 pub use model::model;
 pub use motion::motion;
+pub use own_clips::OwnClips;
 pub use vrma::vrma;

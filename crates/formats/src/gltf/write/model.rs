@@ -1,7 +1,6 @@
-//! Writes a glTF model as one GLB, with clips added after its own, which may get other names.
+//! Writes a glTF model as one GLB, with clips added after its own, which may get other names or be left out.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 use base64::Engine;
 use gaitway_character::anim::{Clip, JointIndex, Skeleton};
@@ -12,6 +11,7 @@ use serde_json::json;
 use serde_json::value::RawValue;
 
 use super::clip::{self, Counts};
+use super::own_clips::{self, OwnClips};
 use super::{WriteError, glb};
 use crate::gltf::accessor::Bytes;
 use crate::gltf::document::{Document, as_text, json_error, size};
@@ -24,15 +24,15 @@ use crate::{FileSet, extension, named};
 const BASISU: &str = "KHR_texture_basisu";
 
 /// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the
-/// same file) added after its own, of which some get the `names` at their indices. Its first buffer is the beginning of
-/// the new one; indices, numbers and everything unknown are preserved. Only nodes whose matrix an added clip animates get
-/// translation, rotation and scale instead, because the specification forbids animating a matrix. A GLB without anything
-/// to add, rename or embed is returned unchanged.
+/// same file) added after its `own`. Its first buffer is the beginning of the new one unless keys are left out; indices,
+/// numbers and everything unknown are preserved. Only nodes whose matrix an added clip animates get translation, rotation and
+/// scale instead, because the specification forbids animating a matrix. A GLB without anything to change or embed is returned
+/// unchanged.
 pub fn model(
     files: &FileSet,
     file: &str,
     skeleton: &Skeleton,
-    names: &BTreeMap<usize, String>,
+    own: &OwnClips,
     clips: &[&Clip],
 ) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, file)?;
@@ -46,7 +46,7 @@ pub fn model(
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
     }
     let outside = Outside::new(&root, container.is_glb);
-    let is_unchanged = clips.is_empty() && names.is_empty();
+    let is_unchanged = clips.is_empty() && own.are_unchanged();
     if container.is_glb && is_unchanged && !outside.buffers && outside.images.is_empty() {
         return Ok(bytes.to_vec());
     }
@@ -59,11 +59,11 @@ pub fn model(
     let (chunk, json_views) = (binary.len(), json.count("bufferViews"));
     join_buffers(&mut json, &root, &buffers, &outside, &mut binary);
     embed_images(files, file, &mut json, &root, &outside, &mut binary);
+    own_clips::edit(&mut json, &root, own, Some(&mut binary).filter(|_| matches!(buffers.first(), Some(Some(_)))));
     let counts = Counts { accessors: json.count("accessors"), buffer_views: json.count("bufferViews") };
     let added = clip::add(clips, 0, skeleton, true, counts, &mut binary)?;
     json.extend("accessors", added.accessors);
     json.extend("bufferViews", added.buffer_views);
-    rename_animations(&mut json, names);
     json.extend("animations", added.animations);
     for clip in clips {
         split_matrices(&mut json, clip, skeleton);
@@ -77,7 +77,7 @@ pub fn model(
     // A GLB's chunk is up to three bytes longer than its buffer. Other files may be longer than their buffer says, and
     // views may reach beyond it.
     let byte_length = match root.buffers.first() {
-        Some(first) if container.is_glb && binary.len() == chunk => size(first.byte_length),
+        Some(first) if container.is_glb && binary.len() == chunk && own.left_out.is_empty() => size(first.byte_length),
         _ => binary.len(),
     };
     set_first_buffer(&mut json, byte_length);
@@ -233,19 +233,6 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
         _ => "application/octet-stream",
     };
     by_content.map(str::to_owned).or(said).or_else(in_uri).unwrap_or_else(|| by_extension().to_owned())
-}
-
-fn rename_animations(json: &mut Object, names: &BTreeMap<usize, String>) {
-    if names.is_empty() {
-        return;
-    }
-    let mut animations: Vec<Object> = json.read("animations").unwrap_or_default();
-    for (index, name) in names {
-        if let Some(animation) = animations.get_mut(*index) {
-            animation.set("name", name);
-        }
-    }
-    json.set("animations", &animations);
 }
 
 /// Inserts the GLB's binary chunk before the first buffer, which has no data and must stay that way: only the file's

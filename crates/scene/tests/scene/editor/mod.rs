@@ -8,6 +8,7 @@ mod in_view;
 mod maps;
 mod motions;
 mod open;
+mod plan;
 mod privacy;
 mod reduced_motion;
 mod saved_names;

@@ -1,0 +1,169 @@
+//! What leaves: which clips, under which names, in which files. The page, the command line and Python make one [`ExportPlan`] and
+//! have it written by the same code, so that a bad plan is refused in the same words, before anything is written.
+
+use std::collections::BTreeMap;
+
+use gaitway_character::anim::{Clip, Keys, PropertyTarget};
+
+use super::ClipFormat;
+use super::in_file::is_in_file;
+use super::names::plain_name;
+use crate::library::{ClipId, Model, ModelClip};
+use crate::state::ViewerState;
+
+/// Whom an export is for, which decides what suits them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Recipient {
+    /// The Unity editor.
+    Unity,
+    /// Unreal Engine.
+    Unreal,
+    /// Godot, which imports glTF.
+    Godot,
+    /// Blender, which imports glTF.
+    Blender,
+    /// A web page: three.js, Babylon.js, `<model-viewer>`.
+    Web,
+    /// A VRM avatar.
+    Vrm,
+    /// The file as it is, with the chosen clips.
+    #[default]
+    AsIs,
+}
+
+impl Recipient {
+    /// Why nothing suits them yet; `None` if something does.
+    fn refusal(self) -> Option<&'static str> {
+        let fbx = "they import FBX, which Gaitway can't write yet; choose “as it is” for a .glb";
+        match self {
+            Self::Unity | Self::Unreal => Some(fbx),
+            Self::Vrm => Some("Gaitway can't make a VRM avatar yet; choose “as it is” for a .glb, or a .vrm of a model that is one"),
+            Self::Godot | Self::Blender | Self::Web | Self::AsIs => None,
+        }
+    }
+}
+
+/// How clips are divided among files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Packaging {
+    /// A .glb with the model and all clips.
+    OneFile,
+    /// A file for each clip, with the skeleton and without meshes.
+    FilePerClip(ClipFormat),
+}
+
+/// A clip that is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedClip {
+    /// One of the active model's.
+    pub clip: ClipId,
+    /// What it is called in the file; with a file per clip, what that is called.
+    pub name: String,
+}
+
+/// What to write of the active model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExportPlan {
+    /// The clips, each at most once. Those that the model's file has as they play come first in one file, in its order.
+    pub clips: Vec<PlannedClip>,
+    /// How they are divided among files.
+    pub packaging: Packaging,
+    /// Whom it is for.
+    pub recipient: Recipient,
+}
+
+impl ExportPlan {
+    /// All clips of a model in one file, under the names that lists show.
+    pub fn all_clips(model: &Model) -> Self {
+        let planned = |clip: &ModelClip| PlannedClip { clip: clip.id().clone(), name: clip.title().to_owned() };
+        let clips = model.clips().listed().map(planned).collect();
+        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs }
+    }
+
+    /// Refuses a plan that can't be carried out, or whose files would not have what it says.
+    ///
+    /// # Errors
+    /// The message for the user.
+    pub fn check(&self, model: &Model) -> Result<(), String> {
+        if let Some(refusal) = self.recipient.refusal() {
+            return Err(refusal.to_owned());
+        }
+        if self.clips.is_empty() {
+            return Err("no clip is chosen; choose at least one".to_owned());
+        }
+        if let Packaging::FilePerClip(format) = self.packaging
+            && !format.fits(model)
+        {
+            return Err(format!("a .{} holds a human body, and this model has none with hips", format.extension()));
+        }
+        let mut chosen: BTreeMap<&ClipId, &str> = BTreeMap::new();
+        let mut taken: BTreeMap<String, &str> = BTreeMap::new();
+        for PlannedClip { clip, name } in &self.clips {
+            let title = model.clip(clip).ok_or("there is no such clip")?.title();
+            if chosen.insert(clip, name).is_some() {
+                return Err(format!("clip “{title}” is chosen twice; make a copy of it"));
+            }
+            if name.trim().is_empty() {
+                return Err(format!("clip “{title}” has no name; give it one"));
+            }
+            // Some file systems don't tell capitals apart.
+            let key = match self.packaging {
+                Packaging::OneFile => name.clone(),
+                Packaging::FilePerClip(_) => plain_name(name).to_lowercase(),
+            };
+            if let Some(other) = taken.insert(key, title) {
+                return Err(format!("clips “{other}” and “{title}” would both be called “{name}”; rename one of them"));
+            }
+        }
+        Ok(())
+    }
+
+    /// What the files can't hold of the clips, by name: for each kind, such as `scale`, the clips that lose it.
+    pub fn losses(&self, model: &Model, state: &ViewerState) -> Vec<String> {
+        let mut lost: BTreeMap<&'static str, Vec<&str>> = BTreeMap::new();
+        for PlannedClip { clip, name } in &self.clips {
+            let Some(clip) = model.clip(clip) else { continue };
+            // The model's own file keeps all of it.
+            if self.packaging == Packaging::OneFile && is_in_file(model, state, clip) {
+                continue;
+            }
+            for kind in lost_kinds(clip.clip(), self.packaging) {
+                let names = lost.entry(kind).or_default();
+                if names.last() != Some(&name.as_str()) {
+                    names.push(name);
+                }
+            }
+        }
+        let sentence = |(kind, names): (&str, Vec<&str>)| format!("not in the file: {kind} of “{}”", names.join("”, “"));
+        lost.into_iter().map(sentence).collect()
+    }
+}
+
+/// What a clip animates that these files can't hold.
+fn lost_kinds(clip: &Clip, packaging: Packaging) -> Vec<&'static str> {
+    let format = match packaging {
+        Packaging::OneFile => None,
+        Packaging::FilePerClip(format) => Some(format),
+    };
+    let mut kinds = Vec::new();
+    for channel in clip.channels() {
+        match channel.keys {
+            Keys::MorphWeights { .. } if format.is_some() => kinds.push("morph weights"),
+            Keys::Scale(_) if matches!(format, Some(ClipFormat::Bvh | ClipFormat::Vrma)) => kinds.push("scale"),
+            _ => {}
+        }
+    }
+    kinds.extend(clip.properties().iter().filter_map(|property| match property.target {
+        PropertyTarget::Expression(_) | PropertyTarget::LookAt if format == Some(ClipFormat::Vrma) => None,
+        PropertyTarget::Expression(_) => Some("expressions"),
+        PropertyTarget::LookAt => Some("gaze"),
+        PropertyTarget::MorphWeight(..) => Some("single morph weights"),
+        PropertyTarget::Material(..) => Some("materials"),
+        PropertyTarget::Light(..) => Some("lights"),
+        PropertyTarget::Camera(..) => Some("cameras"),
+        PropertyTarget::Visibility(_) => Some("visibility"),
+    }));
+    kinds.sort_unstable();
+    kinds.dedup();
+    kinds
+}

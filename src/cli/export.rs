@@ -1,0 +1,262 @@
+//! `gaitway export`: writes a model with many clips, its own and those retargeted from other files, as one file or a file for each.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use gaitway_scene::editor::{ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient};
+use gaitway_scene::library::{ClipId, Model, ModelClip};
+use gaitway_scene::state::{NameKind, UnknownName};
+use serde_json::{Value, json};
+
+use super::failure::{Failure, Outcome};
+use super::motion::{MotionArguments, open_editor, read_motions};
+use super::output::{extension_of, is_standard_output, print_bytes, print_error, print_json, print_lines, warn};
+use super::{Files, FormatArgument, inputs, open, print_warnings};
+use crate::files::{Disk, refuse_input, save_file, zip};
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    #[command(flatten)]
+    input: Files,
+    /// Motions to add: any number of files (.glb, .gltf, .vrma, .fbx, .x, .bvh, .npz), folders, archives and patterns. Clips of the
+    /// model's own rig keep their keys, others are retargeted.
+    #[arg(long, value_name = "FILE|DIR", num_args = 1..)]
+    motion: Vec<PathBuf>,
+    /// The joint map for all motions [default: for each as `gaitway map` proposes].
+    #[arg(long, value_name = "MAP.json")]
+    map: Option<PathBuf>,
+    #[command(flatten)]
+    choices: ExportChoices,
+    /// The file to write, a .glb with the model and the clips (`-` for standard output); or a .zip or a folder with a file for each
+    /// clip, without meshes.
+    #[arg(long, value_name = "OUT.glb|.zip|DIR")]
+    pub out: PathBuf,
+    /// Prints the clips, the files and the warnings as a JSON document.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the plan depends on besides the files.
+#[derive(Debug, Args)]
+pub(super) struct ExportChoices {
+    /// The clips to write: `all`, or names or indices as the page lists them, with commas between them; can be repeated [default: all].
+    #[arg(long, value_name = "all|NAME,…", allow_negative_numbers = true)]
+    clips: Vec<String>,
+    /// Another name for a clip in the file; can be repeated.
+    #[arg(long, value_name = "CLIP=NAME")]
+    rename: Vec<String>,
+    /// Whom it is for, which decides what suits them [default: as-is].
+    #[arg(long = "for", value_enum)]
+    recipient: Option<RecipientArgument>,
+    /// The format of the files in a folder or .zip [default: glb].
+    #[arg(long, value_enum)]
+    format: Option<FormatArgument>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum RecipientArgument {
+    Unity,
+    Unreal,
+    Godot,
+    Blender,
+    Web,
+    Vrm,
+    AsIs,
+}
+
+impl From<RecipientArgument> for Recipient {
+    fn from(argument: RecipientArgument) -> Self {
+        match argument {
+            RecipientArgument::Unity => Self::Unity,
+            RecipientArgument::Unreal => Self::Unreal,
+            RecipientArgument::Godot => Self::Godot,
+            RecipientArgument::Blender => Self::Blender,
+            RecipientArgument::Web => Self::Web,
+            RecipientArgument::Vrm => Self::Vrm,
+            RecipientArgument::AsIs => Self::AsIs,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &ExportArguments, disk: &Disk) -> Outcome {
+    let place = Place::of(&arguments.out)?;
+    let mut opened = open(&arguments.input.files, disk)?;
+    for input in inputs::motions(&arguments.motion, &arguments.out)? {
+        let motions = read_motions(&input.file, disk)?;
+        motions.iter().for_each(|motion| print_warnings(&motion.source, &motion.asset.warnings));
+        opened.motions.extend(motions);
+    }
+    let motion_arguments = MotionArguments { motion: None, map: arguments.map.clone() };
+    let editor = open_editor(opened, &motion_arguments, disk)?;
+    let made = make(&editor, &arguments.choices, place)?;
+    made.warnings.iter().for_each(|warning| warn(warning));
+    write(&arguments.out, place, &made.files, &disk.files_read())?;
+    if arguments.json {
+        return print_json(&made.document());
+    }
+    let lines = made.lines();
+    if is_standard_output(&arguments.out) {
+        lines.iter().for_each(|line| print_error(line));
+        return Ok(());
+    }
+    print_lines(lines)
+}
+
+/// What is at the path of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    File,
+    Archive,
+    Folder,
+}
+
+impl Place {
+    pub(super) fn of(out: &Path) -> Outcome<Self> {
+        let extension = extension_of(out).filter(|_| !out.is_dir());
+        match extension.as_deref() {
+            _ if is_standard_output(out) => Ok(Self::File),
+            None => Ok(Self::Folder),
+            Some("glb" | "vrm") => Ok(Self::File),
+            Some("zip") => Ok(Self::Archive),
+            Some(other) => {
+                let hint = match other {
+                    "fbx" => "Gaitway can't write FBX yet",
+                    "bvh" | "vrma" => "those hold a single clip, so choose a folder and --format",
+                    _ => "a name without an extension is a folder",
+                };
+                let failure = Failure::expected("a .glb, a .zip or a folder", format!(".{other}")).with_hint(hint);
+                Err(failure.at("file extension").in_file(out.display()))
+            }
+        }
+    }
+}
+
+/// What a plan became.
+pub(super) struct MadeFiles {
+    plan: ExportPlan,
+    durations_secs: Vec<f64>,
+    pub files: Vec<ExportedFile>,
+    /// What the files can't hold, and remarks about them.
+    warnings: Vec<String>,
+}
+
+/// Makes the plan that the choices describe, and its files.
+pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Outcome<MadeFiles> {
+    let Some(model) = editor.library().active() else { return Err(Failure::new("there is no model")) };
+    let packaging = match (place, choices.format) {
+        (Place::File, None) => Packaging::OneFile,
+        (Place::File, Some(_)) => {
+            return Err(Failure::expected("a .zip or a folder for files of another format", "one file").at("--format"));
+        }
+        (Place::Archive | Place::Folder, format) => {
+            Packaging::FilePerClip(format.map_or(ClipFormat::Glb, Into::into))
+        }
+    };
+    let plan = plan(model, choices, packaging)?;
+    plan.check(model).map_err(Failure::new)?;
+    let durations_secs = plan.clips.iter().filter_map(|planned| model.clip(&planned.clip));
+    let durations_secs = durations_secs.map(ModelClip::duration_secs).collect();
+    let mut warnings = editor.plan_losses(&plan);
+    let files = editor.export_plan(&plan)?;
+    let remarks = files.iter().filter_map(|file| file.remark.as_ref().map(|remark| format!("{}: {remark}", file.name)));
+    warnings.extend(remarks);
+    Ok(MadeFiles { plan, durations_secs, files, warnings })
+}
+
+fn plan(model: &Model, choices: &ExportChoices, packaging: Packaging) -> Outcome<ExportPlan> {
+    let recipient = choices.recipient.map_or(Recipient::AsIs, Into::into);
+    let mut plan = ExportPlan { packaging, recipient, ..ExportPlan::all_clips(model) };
+    if !choices.clips.is_empty() && choices.clips != ["all"] {
+        let clips: Vec<ClipId> = choices.clips.iter().map(|text| chosen(model, text)).collect::<Outcome<Vec<_>>>()?.concat();
+        plan.clips = clips.into_iter().filter_map(|clip| planned(model, clip)).collect();
+    }
+    for text in &choices.rename {
+        // Either name may contain the sign.
+        let mut splits = text.match_indices('=').map(|(at, _)| (&text[..at], &text[at + 1..]));
+        let renamed = splits.find_map(|(clip, name)| Some((find(model, clip)?.id(), name)));
+        let Some((clip, name)) = renamed else {
+            let name = text.split('=').next().unwrap_or_default();
+            return Err(Failure::from(unknown(model, name)).at("--rename"));
+        };
+        let planned = plan.clips.iter_mut().find(|planned| planned.clip == *clip);
+        let Some(planned) = planned else {
+            return Err(Failure::expected("one of the clips that are written", format!("“{text}”")).at("--rename"));
+        };
+        name.clone_into(&mut planned.name);
+    }
+    Ok(plan)
+}
+
+fn planned(model: &Model, clip: ClipId) -> Option<PlannedClip> {
+    let name = model.clip(&clip)?.title().to_owned();
+    Some(PlannedClip { clip, name })
+}
+
+/// Finds the clips of a list, or the only one of a name with commas in it.
+fn chosen(model: &Model, text: &str) -> Outcome<Vec<ClipId>> {
+    if let Some(clip) = find(model, text) {
+        return Ok(vec![clip.id().clone()]);
+    }
+    let found = |name: &str| find(model, name.trim()).map(|clip| clip.id().clone()).ok_or_else(|| unknown(model, name));
+    text.split(',').map(found).collect::<Result<_, _>>().map_err(|unknown| Failure::from(unknown).at("--clips"))
+}
+
+/// Finds a clip by the name that lists show, the one in its file, or its index in the list.
+fn find<'a>(model: &'a Model, name: &str) -> Option<&'a ModelClip> {
+    let clips = model.clips();
+    let by_title = clips.listed().find(|clip| clip.title() == name);
+    let by_name = || clips.listed().find(|clip| clip.name() == name);
+    by_title.or_else(by_name).or_else(|| clips.listed().nth(name.parse().ok()?))
+}
+
+fn unknown(model: &Model, name: &str) -> UnknownName {
+    let names = model.clips().listed().map(|clip| clip.title().to_owned()).collect();
+    UnknownName { kind: NameKind::Clip, name: name.trim().to_owned(), names }
+}
+
+/// Writes the files, or an archive of them.
+pub(super) fn write(out: &Path, place: Place, files: &[ExportedFile], inputs: &[PathBuf]) -> Outcome {
+    let named = files.iter().map(|file| (file.name.as_str(), file.bytes.as_slice()));
+    match (place, files) {
+        (Place::File, [file]) if is_standard_output(out) => print_bytes(&file.bytes),
+        (Place::File, [file]) => Ok(save_file(out, &file.bytes, inputs)?),
+        (Place::File, _) => Err(Failure::new("the plan has several files").in_file(out.display())),
+        (Place::Archive, _) => {
+            let Some(bytes) = zip(named) else {
+                return Err(Failure::new("the archive would be too large; write a folder").in_file(out.display()));
+            };
+            Ok(save_file(out, &bytes, inputs)?)
+        }
+        (Place::Folder, _) => {
+            for (name, _) in named.clone() {
+                refuse_input(&out.join(name), inputs)?;
+            }
+            let problem = |error: std::io::Error| Failure::new(crate::files::describe(&error)).in_file(out.display());
+            fs::create_dir_all(out).map_err(problem)?;
+            named.into_iter().try_for_each(|(name, bytes)| Ok(save_file(&out.join(name), bytes, &[])?))
+        }
+    }
+}
+
+impl MadeFiles {
+    /// The document of `--json`.
+    pub(super) fn document(&self) -> Value {
+        let clips = self.plan.clips.iter().zip(&self.durations_secs);
+        let clips: Vec<Value> =
+            clips.map(|(clip, duration_secs)| json!({ "name": clip.name, "duration_secs": duration_secs })).collect();
+        let files: Vec<Value> =
+            self.files.iter().map(|file| json!({ "name": file.name, "bytes": file.bytes.len() })).collect();
+        json!({ "clips": clips, "files": files, "warnings": self.warnings })
+    }
+
+    /// The same for people.
+    fn lines(&self) -> Vec<String> {
+        let clips = self.plan.clips.iter().zip(&self.durations_secs);
+        let mut lines: Vec<String> = clips.map(|(clip, secs)| format!("{secs:8.2} s  {}", clip.name)).collect();
+        let bytes: usize = self.files.iter().map(|file| file.bytes.len()).sum();
+        let files = if self.files.len() == 1 { "1 file".to_owned() } else { format!("{} files", self.files.len()) };
+        lines.push(format!("{} clips in {files}, {:.1} MB", self.plan.clips.len(), bytes as f64 / 1e6));
+        lines
+    }
+}

@@ -1,0 +1,151 @@
+//! `gaitway export`: many clips in one file, or a file for each.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::motion::folder;
+use crate::program::{check_fails, document, run};
+
+/// A folder for one test.
+struct Desk(PathBuf);
+
+impl Desk {
+    fn new(name: &str) -> Self {
+        Self(folder(&format!("export-{name}")).0)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().expect("a plain path").to_owned()
+    }
+
+    fn files(&self, name: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.0.join(name)).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("a file").file_name().into_string().expect("a plain name")).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        // A leftover folder does no harm.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn names(document: &Value, key: &str) -> Vec<String> {
+    let list = document[key].as_array().expect("a list").iter();
+    list.map(|entry| entry["name"].as_str().expect("a name").to_owned()).collect()
+}
+
+fn clips_of(file: &str) -> Vec<String> {
+    names(&document(&["inspect", file, "--json"]), "clips")
+}
+
+/// The pilot's clips as files of their own, added to the pilot without clips again, play as before.
+#[test]
+fn clips_of_files_are_merged_into_one() {
+    let desk = Desk::new("merge");
+    let (parts, bare, out) = (desk.path("parts"), desk.path("bare.glb"), desk.path("hero.glb"));
+    let made = document(&["export", "sample:pilot", "--out", &parts, "--json"]);
+    let clips = names(&made, "clips");
+    assert_eq!(clips, clips_of("sample:pilot"));
+    let mut files: Vec<String> = clips.iter().map(|clip| format!("{clip}.glb")).collect();
+    assert_eq!(names(&made, "files"), files);
+    files.sort();
+    assert_eq!(desk.files("parts"), files);
+
+    let run_alone = ["export", "sample:pilot", "--clips", "idle", "--rename", "idle=Stand", "--out", &bare, "--json"];
+    assert_eq!(names(&document(&run_alone), "clips"), ["Stand"]);
+    assert_eq!(clips_of(&bare), ["Stand"]);
+
+    let merged = document(&["export", &bare, "--motion", &parts, "--clips", "all", "--for", "godot", "--out", &out, "--json"]);
+    files.iter_mut().for_each(|file| file.truncate(file.len() - ".glb".len()));
+    assert_eq!(clips_of(&out), [vec!["Stand".to_owned()], files].concat());
+    assert_eq!(names(&merged, "clips"), clips_of(&out));
+    assert_eq!(merged["files"][0]["bytes"].as_u64(), Some(fs::metadata(&out).expect("a file").len()));
+    for clip in ["walk", "wave"] {
+        let pose = |file: &str| document(&["pose", file, "--clip", clip, "--time", "0.37", "--json"])["nodes"].clone();
+        assert_eq!(pose(&out), pose("sample:pilot"), "{clip}");
+    }
+}
+
+#[test]
+fn motions_of_other_bodies_are_retargeted() {
+    let desk = Desk::new("retarget");
+    let out = desk.path("out.glb");
+    let walk = desk.path("walk.bvh");
+    let call = ["export", "sample:pilot", "--motion", &walk, "--clips", "walk (2),idle", "--out", &out];
+    let done = run(&call);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(String::from_utf8_lossy(&done.stdout).contains("2 clips in 1 file"));
+    assert_eq!(clips_of(&out), ["idle", "walk (2)"]);
+    let alone = desk.path("alone.glb");
+    let retargeted = run(&["retarget", "--model", "sample:pilot", "--motion", &walk, "--out", &alone]);
+    assert!(retargeted.status.success());
+    let pose = |file: &str, clip: &str| document(&["pose", file, "--clip", clip, "--time", "0.3", "--json"])["nodes"].clone();
+    assert_eq!(pose(&out, "walk (2)"), pose(&alone, "6"));
+}
+
+#[test]
+fn an_archive_has_a_file_for_each_clip() {
+    let desk = Desk::new("zip");
+    let out = desk.path("clips.zip");
+    let made = document(&["export", "sample:pilot", "--format", "bvh", "--out", &out, "--json"]);
+    let file = fs::File::open(&out).expect("a file");
+    let mut archive = zip::ZipArchive::new(file).expect("an archive");
+    let found: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    let mut expected = names(&made, "files");
+    assert!(expected.iter().all(|name| name.ends_with(".bvh")));
+    let mut sorted = found.clone();
+    sorted.sort();
+    expected.sort();
+    assert_eq!(sorted, expected);
+    let mut walk = String::new();
+    let mut member = archive.by_name("walk.bvh").expect("a member");
+    std::io::Read::read_to_string(&mut member, &mut walk).expect("with the right checksum");
+    assert!(walk.starts_with("HIERARCHY"));
+    let inside = format!("{out}#!/walk.bvh");
+    assert_eq!(clips_of(&inside), ["walk"]);
+}
+
+/// Nothing is written.
+#[test]
+fn bad_plans_are_refused() {
+    let desk = Desk::new("refused");
+    let (out, walk) = (desk.path("out.glb"), desk.path("walk.bvh"));
+    let check = |arguments: &[&str], says: &str| {
+        check_fails(&[&["export", "sample:pilot", "--motion", &walk], arguments].concat(), 1, says);
+        assert_eq!(desk.files(""), ["walk.bvh"], "{arguments:?}");
+    };
+    check(&["--clips", "idle,fly", "--out", &out], "“fly”");
+    check(&["--rename", "idle=run", "--out", &out], "“idle” and “run” would both be called “run”");
+    check(&["--rename", "fly=run", "--out", &out], "--rename");
+    check(&["--clips", "idle", "--rename", "run=fast", "--out", &out], "one of the clips that are written");
+    check(&["--for", "unreal", "--out", &out], "FBX, which Gaitway can't write yet");
+    check(&["--for", "vrm", "--out", &out], "VRM avatar yet");
+    check(&["--out", &desk.path("out.fbx")], "Gaitway can't write FBX yet");
+    check(&["--out", &desk.path("out.bvh")], "choose a folder and --format");
+    check(&["--format", "bvh", "--out", &out], "--format");
+    check(&["--map", "no.json", "--out", &out], "no.json");
+    check_fails(&["export", "assets/samples/mannequin.glb", "--out", &out], 1, "no clip is chosen");
+    check_fails(&["export", "sample:pilot", "--for", "maya", "--out", &out], 2, "unreal");
+    check_fails(&["export", "sample:pilot", "--json", "--out", "-"], 2, "standard output");
+    assert_eq!(desk.files(""), ["walk.bvh"]);
+}
+
+#[test]
+fn an_input_is_never_overwritten() {
+    let desk = Desk::new("inputs");
+    let (parts, model) = (desk.path("parts"), desk.path("hero.glb"));
+    assert!(run(&["export", "sample:pilot", "--clips", "run", "--out", &parts]).status.success());
+    assert!(run(&["export", "sample:pilot", "--out", &model]).status.success());
+    let before = fs::read(desk.0.join("parts/run.glb")).expect("a file");
+    let again = ["export", &model, "--motion", &format!("{parts}/run.glb"), "--clips", "run (2)", "--rename", "run (2)=run"];
+    check_fails(&[&again[..], &["--out", &parts]].concat(), 1, "one of the files that were read");
+    check_fails(&["export", &model, "--out", &model], 1, "one of the files that were read");
+    assert_eq!(fs::read(desk.0.join("parts/run.glb")).expect("a file"), before);
+}
