@@ -84,6 +84,9 @@ class Scene:
 class ExportOptions(TypedDict, total=False):
     clips: str | list[str] | None
     rename: dict[str, str] | None
+    root_bone: bool
+    root_height: bool
+    in_place: str | list[str] | None
     for_: Literal["unity", "unreal", "godot", "blender", "web", "vrm", "as-is"] | None
     format: Literal["glb", "bvh", "vrma"] | None
 

@@ -162,7 +162,8 @@ impl Model {
         let map = map.map(read_map).transpose()?;
         let options = options.map(arguments).transpose()?.unwrap_or_default();
         let motions: Vec<Arc<Loaded<library::Motion>>> = motions.iter().map(|motion| motion.0.clone()).collect();
-        let read = motions.iter().flat_map(|motion| &motion.files_read).chain(&self.0.files_read).cloned().collect::<Vec<_>>();
+        let read =
+            motions.iter().flat_map(|motion| &motion.files_read).chain(&self.0.files_read).cloned().collect::<Vec<_>>();
         let document = py.detach(|| {
             let motions = motions.iter().map(|motion| motion.content.clone()).collect();
             functions::export(&path, &self.0.content, motions, map, &options, &read)

@@ -12,9 +12,9 @@ PILOT = SAMPLES / "pilot.glb"
 
 def test_one_file(motion: gaitway.Motion, tmp_path: Path) -> None:
     ours, theirs = tmp_path / "ours.glb", tmp_path / "theirs.glb"
-    options = {"clips": ["idle", "walk (2)"], "rename": {"walk (2)": "March"}, "for_": "godot"}
+    options = {"clips": ["idle", "walk (2)"], "rename": {"walk (2)": "March"}, "for_": "godot", "root_bone": True}
     document = gaitway.load_model(PILOT).export(ours, [motion], **options)
-    arguments = ("--clips", "idle,walk (2)", "--rename", "walk (2)=March", "--for", "godot")
+    arguments = ("--clips", "idle,walk (2)", "--rename", "walk (2)=March", "--for", "godot", "--root-bone")
     assert document == cli("export", PILOT, "--motion", MOTION, *arguments, "--out", theirs)
     assert ours.read_bytes() == theirs.read_bytes()
     assert [clip.name for clip in gaitway.load_model(ours).clips] == ["idle", "March"]

@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use gaitway_scene::editor::{ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient};
-use gaitway_scene::library::{ClipId, Model, ModelClip};
+use gaitway_scene::editor::{
+    ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient, RootBone,
+};
+use gaitway_scene::library::{Model, ModelClip};
 use gaitway_scene::state::{NameKind, UnknownName};
 use serde_json::{Value, json};
 
@@ -46,6 +48,16 @@ pub(super) struct ExportChoices {
     /// Another name for a clip in the file; can be repeated.
     #[arg(long, value_name = "CLIP=NAME")]
     rename: Vec<String>,
+    /// Inserts a bone above the hips that carries the body over the ground and turns with it, for engines that move characters by
+    /// their root. A rig that has one keeps it.
+    #[arg(long)]
+    root_bone: bool,
+    /// Has the root bone carry the height of the hips as well.
+    #[arg(long, requires = "root_bone")]
+    root_height: bool,
+    /// The clips in which the body stays in its place: `all`, or names or indices, with commas between them; can be repeated.
+    #[arg(long, value_name = "all|NAME,…", requires = "root_bone", allow_negative_numbers = true)]
+    in_place: Vec<String>,
     /// Whom it is for, which decides what suits them [default: as-is].
     #[arg(long = "for", value_enum)]
     recipient: Option<RecipientArgument>,
@@ -149,9 +161,7 @@ pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Ou
         (Place::File, Some(_)) => {
             return Err(Failure::expected("a .zip or a folder for files of another format", "one file").at("--format"));
         }
-        (Place::Archive | Place::Folder, format) => {
-            Packaging::FilePerClip(format.map_or(ClipFormat::Glb, Into::into))
-        }
+        (Place::Archive | Place::Folder, format) => Packaging::FilePerClip(format.map_or(ClipFormat::Glb, Into::into)),
     };
     let plan = plan(model, choices, packaging)?;
     plan.check(model).map_err(Failure::new)?;
@@ -166,10 +176,16 @@ pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Ou
 
 fn plan(model: &Model, choices: &ExportChoices, packaging: Packaging) -> Outcome<ExportPlan> {
     let recipient = choices.recipient.map_or(Recipient::AsIs, Into::into);
-    let mut plan = ExportPlan { packaging, recipient, ..ExportPlan::all_clips(model) };
-    if !choices.clips.is_empty() && choices.clips != ["all"] {
-        let clips: Vec<ClipId> = choices.clips.iter().map(|text| chosen(model, text)).collect::<Outcome<Vec<_>>>()?.concat();
-        plan.clips = clips.into_iter().filter_map(|clip| planned(model, clip)).collect();
+    let root_bone = choices.root_bone.then_some(RootBone { vertical: choices.root_height });
+    let mut plan = ExportPlan { packaging, recipient, root_bone, ..ExportPlan::all_clips(model) };
+    if let Some(clips) = listed(model, &choices.clips, "--clips")? {
+        plan.clips = clips.into_iter().map(PlannedClip::of).collect();
+    }
+    if !choices.in_place.is_empty() {
+        let clips = listed(model, &choices.in_place, "--in-place")?;
+        for planned in &mut plan.clips {
+            planned.in_place = clips.as_ref().is_none_or(|clips| clips.iter().any(|clip| *clip.id() == planned.clip));
+        }
     }
     for text in &choices.rename {
         // Either name may contain the sign.
@@ -188,18 +204,21 @@ fn plan(model: &Model, choices: &ExportChoices, packaging: Packaging) -> Outcome
     Ok(plan)
 }
 
-fn planned(model: &Model, clip: ClipId) -> Option<PlannedClip> {
-    let name = model.clip(&clip)?.title().to_owned();
-    Some(PlannedClip { clip, name })
-}
-
-/// Finds the clips of a list, or the only one of a name with commas in it.
-fn chosen(model: &Model, text: &str) -> Outcome<Vec<ClipId>> {
-    if let Some(clip) = find(model, text) {
-        return Ok(vec![clip.id().clone()]);
+/// Finds the clips of lists; `None` stands for all.
+fn listed<'a>(model: &'a Model, lists: &[String], option: &str) -> Outcome<Option<Vec<&'a ModelClip>>> {
+    if lists.is_empty() || lists == ["all"] {
+        return Ok(None);
     }
-    let found = |name: &str| find(model, name.trim()).map(|clip| clip.id().clone()).ok_or_else(|| unknown(model, name));
-    text.split(',').map(found).collect::<Result<_, _>>().map_err(|unknown| Failure::from(unknown).at("--clips"))
+    let found = |name: &str| find(model, name.trim()).ok_or_else(|| Failure::from(unknown(model, name)).at(option));
+    let mut clips = Vec::new();
+    for list in lists {
+        match find(model, list) {
+            // A name may have commas in it.
+            Some(clip) => clips.push(clip),
+            None => clips.extend(list.split(',').map(found).collect::<Outcome<Vec<_>>>()?),
+        }
+    }
+    Ok(Some(clips))
 }
 
 /// Finds a clip by the name that lists show, the one in its file, or its index in the list.

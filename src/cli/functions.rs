@@ -9,8 +9,8 @@ use gaitway_scene::editor::{ClipFormat, OpenedMap, write_clip};
 use gaitway_scene::library::{Model, Motion};
 use serde_json::Value;
 
-use super::export::{self, ExportChoices, Place};
 use super::RetargetChoices;
+use super::export::{self, ExportChoices, Place};
 pub use super::failure::{Failure, Outcome};
 use super::map::Proposed;
 use super::motion::{MotionArguments, open_editor, open_map, read_motion};

@@ -62,7 +62,8 @@ fn clips_of_files_are_merged_into_one() {
     assert_eq!(names(&document(&run_alone), "clips"), ["Stand"]);
     assert_eq!(clips_of(&bare), ["Stand"]);
 
-    let merged = document(&["export", &bare, "--motion", &parts, "--clips", "all", "--for", "godot", "--out", &out, "--json"]);
+    let merged =
+        document(&["export", &bare, "--motion", &parts, "--clips", "all", "--for", "godot", "--out", &out, "--json"]);
     files.iter_mut().for_each(|file| file.truncate(file.len() - ".glb".len()));
     assert_eq!(clips_of(&out), [vec!["Stand".to_owned()], files].concat());
     assert_eq!(names(&merged, "clips"), clips_of(&out));
@@ -86,7 +87,8 @@ fn motions_of_other_bodies_are_retargeted() {
     let alone = desk.path("alone.glb");
     let retargeted = run(&["retarget", "--model", "sample:pilot", "--motion", &walk, "--out", &alone]);
     assert!(retargeted.status.success());
-    let pose = |file: &str, clip: &str| document(&["pose", file, "--clip", clip, "--time", "0.3", "--json"])["nodes"].clone();
+    let pose =
+        |file: &str, clip: &str| document(&["pose", file, "--clip", clip, "--time", "0.3", "--json"])["nodes"].clone();
     assert_eq!(pose(&out, "walk (2)"), pose(&alone, "6"));
 }
 
@@ -110,6 +112,24 @@ fn an_archive_has_a_file_for_each_clip() {
     assert!(walk.starts_with("HIERARCHY"));
     let inside = format!("{out}#!/walk.bvh");
     assert_eq!(clips_of(&inside), ["walk"]);
+}
+
+#[test]
+fn a_root_bone_carries_the_clips_that_travel() {
+    let desk = Desk::new("root");
+    let (plain, out) = (desk.path("plain.glb"), desk.path("out.glb"));
+    assert!(run(&["export", "sample:pilot", "--out", &plain]).status.success());
+    let rooted = ["export", "sample:pilot", "--root-bone", "--in-place", "run,jump", "--out", &out];
+    assert!(run(&rooted).status.success());
+    let nodes = |clip: &str, file: &str| {
+        let pose = document(&["pose", file, "--clip", clip, "--time", "0.4", "--json"]);
+        pose["nodes"].as_array().expect("nodes").clone()
+    };
+    let (before, after) = (nodes("wave", &plain), nodes("wave", &out));
+    assert_eq!(after.len(), before.len() + 1);
+    assert_eq!(after[before.len()]["name"], "root");
+    check_fails(&["export", "sample:pilot", "--in-place", "run", "--out", &out], 2, "--root-bone");
+    check_fails(&["export", "sample:pilot", "--root-bone", "--in-place", "fly", "--out", &out], 1, "--in-place");
 }
 
 /// Nothing is written.
@@ -144,7 +164,8 @@ fn an_input_is_never_overwritten() {
     assert!(run(&["export", "sample:pilot", "--clips", "run", "--out", &parts]).status.success());
     assert!(run(&["export", "sample:pilot", "--out", &model]).status.success());
     let before = fs::read(desk.0.join("parts/run.glb")).expect("a file");
-    let again = ["export", &model, "--motion", &format!("{parts}/run.glb"), "--clips", "run (2)", "--rename", "run (2)=run"];
+    let again =
+        ["export", &model, "--motion", &format!("{parts}/run.glb"), "--clips", "run (2)", "--rename", "run (2)=run"];
     check_fails(&[&again[..], &["--out", &parts]].concat(), 1, "one of the files that were read");
     check_fails(&["export", &model, "--out", &model], 1, "one of the files that were read");
     assert_eq!(fs::read(desk.0.join("parts/run.glb")).expect("a file"), before);

@@ -42,7 +42,7 @@ use std::collections::BTreeSet;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
-pub use gltf::{Early, OwnClips, WriteError, early, pointer_to};
+pub use gltf::{Early, OwnClips, WriteError, early, insert_root, pointer_to};
 pub use hdr::{HdrError, is_hdr, read_hdr};
 pub use part::Part;
 #[cfg(not(target_arch = "wasm32"))]

@@ -52,6 +52,7 @@ mod pins;
 mod pose;
 mod recognize;
 mod retargeting;
+mod root_bone;
 mod side;
 mod skin;
 mod stack;
@@ -70,10 +71,11 @@ pub use map::{
     Unmapped, UpChoice, has_expressions_alone, opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
-pub use merge::merged_clip;
+pub use merge::{clip_for, merged_clip};
 pub use pins::{Pin, PinGoal, PinTimes, Pinning};
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize, words};
 pub use retargeting::Retargeting;
+pub use root_bone::{RootError, RootTravel, with_root_motion};
 pub use side::Body;
 pub use stack::{BodyPart, ClipLayer, ClipOverLayers, LayerBuffers, LayerMask, LayerMode, StackedLayer, bake_stack};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -21,24 +21,33 @@ pub fn merged_clip(model: &Skeleton, motion: &Skeleton, clip: &Clip, retargeted:
     }
     let is_one = |source: JointIndex, target: JointIndex| {
         let parent = motion.parent(source).map(|parent| target_of[parent.get()]);
-        let has_its_parent = parent.map_or(model.parent(target).is_none(), |parent| {
-            parent.is_some() && parent == model.parent(target)
-        });
+        let has_its_parent =
+            parent.map_or(model.parent(target).is_none(), |parent| parent.is_some() && parent == model.parent(target));
         has_its_parent && tolerance.is_met(motion.rest().local(source), model.rest().local(target))
     };
-    let mut builder = ClipBuilder::new(clip.name(), model);
     for channel in clip.channels() {
         let mut above = Some(channel.joint);
         while let Some(source) = above {
             target_of[source.get()].filter(|&target| is_one(source, target))?;
             above = motion.parent(source);
         }
-        let times_secs = &clip.timelines()[channel.timeline as usize];
-        let target = target_of[channel.joint.get()]?;
-        builder.channel(target, channel.interpolation, times_secs, channel.keys.clone()).ok()?;
     }
-    let merged = builder.build().with_properties_of(retargeted, &Some);
+    let merged = clip_for(model, clip, |source| target_of[source.get()])?.with_properties_of(retargeted, &Some);
     tolerance.are_alike(model, &merged, retargeted).then_some(merged)
+}
+
+/// Returns a clip with the same keys for the joints of another skeleton. `None` if it lacks one of them, or its morph targets.
+pub fn clip_for(
+    skeleton: &Skeleton,
+    clip: &Clip,
+    target_of: impl Fn(JointIndex) -> Option<JointIndex>,
+) -> Option<Clip> {
+    let mut builder = ClipBuilder::new(clip.name(), skeleton);
+    for channel in clip.channels() {
+        let times_secs = &clip.timelines()[channel.timeline as usize];
+        builder.channel(target_of(channel.joint)?, channel.interpolation, times_secs, channel.keys.clone()).ok()?;
+    }
+    Some(builder.build())
 }
 
 struct Tolerance {

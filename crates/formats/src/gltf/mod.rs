@@ -47,7 +47,7 @@ pub(super) use data::find as find_file;
 pub use early::{Early, early};
 pub(super) use images::image_header;
 pub use pointer::pointer_to;
-pub use write::{OwnClips, WriteError};
+pub use write::{OwnClips, WriteError, insert_root};
 pub(super) use write::check_frames;
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion, vrma as write_vrma};
 

@@ -104,7 +104,8 @@ fn other_clips_are_added_after_those_that_stay() {
 fn keys_in_a_shared_view_stay() {
     let mut build = three_clips();
     let length = build.bytes.len();
-    let offsets: Vec<_> = build.json["bufferViews"].as_array().expect("views").iter().map(|view| view["byteOffset"].clone()).collect();
+    let offsets: Vec<_> =
+        build.json["bufferViews"].as_array().expect("views").iter().map(|view| view["byteOffset"].clone()).collect();
     for accessor in build.json["accessors"].as_array_mut().expect("accessors") {
         let view = accessor["bufferView"].as_u64().expect("an index") as usize;
         accessor["byteOffset"] = json!(offsets[view].as_u64().unwrap_or(0));

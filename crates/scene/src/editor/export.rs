@@ -5,12 +5,13 @@ use std::borrow::Cow;
 
 use gaitway_character::anim::Clip;
 use gaitway_formats::{OwnClips, write_edited_model, write_model, write_motion};
-use gaitway_retarget::merged_clip;
+use gaitway_retarget::{RootTravel, merged_clip};
 use glam::Vec3;
 
 use super::in_file::{is_derived, is_in_file};
 use super::names::{plain_name, stem};
-use super::{ClipFormat, Editor, ExportPlan, ModelFiles, Packaging, PlannedClip, write_clip};
+use super::rooted::{hips, own_root, rooted};
+use super::{ClipFormat, Editor, ExportPlan, ModelFiles, Packaging, PlannedClip, RootBone, write_clip};
 use crate::frame::{Frame, evaluate};
 use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
 use crate::state::{active_clip, active_map, take_of, written_skeleton};
@@ -119,7 +120,7 @@ impl Editor {
     fn export_planned(
         &self,
         model: &Model,
-        PlannedClip { clip, name }: &PlannedClip,
+        PlannedClip { clip, name, .. }: &PlannedClip,
         format: ClipFormat,
     ) -> Result<ExportedFile, String> {
         let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
@@ -136,10 +137,12 @@ impl Editor {
         let mut own = OwnClips { left_out: (0..model.asset.clips.len()).collect(), ..OwnClips::default() };
         let (mut added, mut remarks) = (Vec::new(), Vec::new());
         let files = self.files_of(model);
-        for PlannedClip { clip, name } in &plan.clips {
+        let has_new_root = plan.has_new_root(model);
+        for PlannedClip { clip, name, in_place } in &plan.clips {
             let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
+            let can_stay = files.is_some() && !has_new_root && is_in_file(model, &self.state, source);
             match source.id() {
-                ClipId::Own(index) if files.is_some() && is_in_file(model, &self.state, source) => {
+                ClipId::Own(index) if can_stay => {
                     own.left_out.remove(index);
                     if model.asset.clips[*index].name() != name {
                         own.names.insert(*index, name.clone());
@@ -148,20 +151,31 @@ impl Editor {
                 _ => {
                     let baked = self.merged_or_baked_clip(model, source);
                     remarks.extend(baked.remarks.into_iter().map(|remark| format!("{name}: {remark}").into()));
-                    added.push(baked.clip.with_name(name.clone()));
+                    added.push((baked.clip.with_name(name.clone()), *in_place));
                 }
             }
         }
-        let (added, skeleton): (Vec<&Clip>, _) = (added.iter().collect(), written_skeleton(model, &self.state, None));
-        let bytes = match files {
-            Some(ModelFiles { set, name }) => write_edited_model(set, name, &skeleton, &own, &added),
-            None => {
-                remarks.push(NO_FILE.into());
-                write_motion(&model.asset, &skeleton, &added)
-            }
+        let skeleton = written_skeleton(model, &self.state, None);
+        let of_file = |clips: &[&Clip]| match files {
+            Some(ModelFiles { set, name }) => write_edited_model(set, name, &skeleton, &own, clips),
+            None => write_motion(&model.asset, &skeleton, clips),
         };
+        let of_file = |clips: &[&Clip]| of_file(clips).map_err(|error| error.to_string());
+        let bytes = match (plan.root_bone.filter(|_| has_new_root), hips(model)) {
+            (Some(RootBone { vertical }), Some(hips)) => {
+                let travel = |(clip, in_place)| (clip, RootTravel { vertical, in_place });
+                let clips: Vec<(Clip, RootTravel)> = added.into_iter().map(travel).collect();
+                rooted(&of_file(&[])?, skeleton.source_index(hips), &skeleton, &clips)?
+            }
+            _ => of_file(&added.iter().map(|(clip, _)| clip).collect::<Vec<_>>())?,
+        };
+        remarks.extend(files.is_none().then_some(NO_FILE.into()));
+        if let Some(root) = own_root(model).filter(|_| plan.root_bone.is_some()) {
+            let root = skeleton.label(root);
+            remarks.push(format!("“{root}” is the root bone of this rig; clips keep their travel where it is.").into());
+        }
         let name = format!("{}.glb", plain_name(&stem(&model.source)));
-        Ok(ExportedFile::new(name, bytes.map_err(|error| error.to_string())?).with_remarks(&remarks))
+        Ok(ExportedFile::new(name, bytes).with_remarks(&remarks))
     }
 
     /// What the files of a plan lack of its clips, by name.

@@ -15,6 +15,7 @@ mod names;
 mod open;
 mod plan;
 mod reduced_motion;
+mod rooted;
 mod scene;
 mod steps;
 mod suit;
@@ -29,7 +30,7 @@ pub use export::{AWAITS_IMAGES, Export, ExportedFile};
 pub use in_file::derived_clip;
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
-pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient};
+pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient, RootBone};
 pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
 

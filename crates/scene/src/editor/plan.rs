@@ -8,6 +8,7 @@ use gaitway_character::anim::{Clip, Keys, PropertyTarget};
 use super::ClipFormat;
 use super::in_file::is_in_file;
 use super::names::plain_name;
+use super::rooted::{hips, own_root};
 use crate::library::{ClipId, Model, ModelClip};
 use crate::state::ViewerState;
 
@@ -37,7 +38,9 @@ impl Recipient {
         let fbx = "they import FBX, which Gaitway can't write yet; choose “as it is” for a .glb";
         match self {
             Self::Unity | Self::Unreal => Some(fbx),
-            Self::Vrm => Some("Gaitway can't make a VRM avatar yet; choose “as it is” for a .glb, or a .vrm of a model that is one"),
+            Self::Vrm => Some(
+                "Gaitway can't make a VRM avatar yet; choose “as it is” for a .glb, or a .vrm of a model that is one",
+            ),
             Self::Godot | Self::Blender | Self::Web | Self::AsIs => None,
         }
     }
@@ -59,6 +62,15 @@ pub struct PlannedClip {
     pub clip: ClipId,
     /// What it is called in the file; with a file per clip, what that is called.
     pub name: String,
+    /// With a root bone, whether the body stays in its place, so that the engine moves it.
+    pub in_place: bool,
+}
+
+/// A bone above the hips that carries the body: its way over the ground and its turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RootBone {
+    /// Whether it carries the height of the hips, too.
+    pub vertical: bool,
 }
 
 /// What to write of the active model.
@@ -70,14 +82,22 @@ pub struct ExportPlan {
     pub packaging: Packaging,
     /// Whom it is for.
     pub recipient: Recipient,
+    /// The root bone to insert. A rig that has one keeps it, and its clips.
+    pub root_bone: Option<RootBone>,
+}
+
+impl PlannedClip {
+    /// A clip under the name that lists show.
+    pub fn of(clip: &ModelClip) -> Self {
+        Self { clip: clip.id().clone(), name: clip.title().to_owned(), in_place: false }
+    }
 }
 
 impl ExportPlan {
     /// All clips of a model in one file, under the names that lists show.
     pub fn all_clips(model: &Model) -> Self {
-        let planned = |clip: &ModelClip| PlannedClip { clip: clip.id().clone(), name: clip.title().to_owned() };
-        let clips = model.clips().listed().map(planned).collect();
-        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs }
+        let clips = model.clips().listed().map(PlannedClip::of).collect();
+        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs, root_bone: None }
     }
 
     /// Refuses a plan that can't be carried out, or whose files would not have what it says.
@@ -96,9 +116,25 @@ impl ExportPlan {
         {
             return Err(format!("a .{} holds a human body, and this model has none with hips", format.extension()));
         }
+        let has_in_place = self.clips.iter().any(|clip| clip.in_place);
+        let refusal = match self.root_bone {
+            None if has_in_place => Some("clips in place need a root bone; choose one"),
+            None => None,
+            Some(_) if self.packaging != Packaging::OneFile => {
+                Some("a root bone is inserted in the model; choose one file")
+            }
+            Some(_) if hips(model).is_none() => Some("a root bone goes above the hips, and this model has none"),
+            Some(_) if has_in_place && own_root(model).is_some() => {
+                Some("this rig has a root bone, and its clips keep their travel; choose no clip in place")
+            }
+            Some(_) => None,
+        };
+        if let Some(refusal) = refusal {
+            return Err(refusal.to_owned());
+        }
         let mut chosen: BTreeMap<&ClipId, &str> = BTreeMap::new();
         let mut taken: BTreeMap<String, &str> = BTreeMap::new();
-        for PlannedClip { clip, name } in &self.clips {
+        for PlannedClip { clip, name, .. } in &self.clips {
             let title = model.clip(clip).ok_or("there is no such clip")?.title();
             if chosen.insert(clip, name).is_some() {
                 return Err(format!("clip “{title}” is chosen twice; make a copy of it"));
@@ -118,13 +154,19 @@ impl ExportPlan {
         Ok(())
     }
 
+    /// Whether a bone is inserted.
+    pub(super) fn has_new_root(&self, model: &Model) -> bool {
+        self.root_bone.is_some() && own_root(model).is_none()
+    }
+
     /// What the files can't hold of the clips, by name: for each kind, such as `scale`, the clips that lose it.
     pub fn losses(&self, model: &Model, state: &ViewerState) -> Vec<String> {
         let mut lost: BTreeMap<&'static str, Vec<&str>> = BTreeMap::new();
-        for PlannedClip { clip, name } in &self.clips {
+        for PlannedClip { clip, name, .. } in &self.clips {
             let Some(clip) = model.clip(clip) else { continue };
             // The model's own file keeps all of it.
-            if self.packaging == Packaging::OneFile && is_in_file(model, state, clip) {
+            let is_kept = self.packaging == Packaging::OneFile && !self.has_new_root(model);
+            if is_kept && is_in_file(model, state, clip) {
                 continue;
             }
             for kind in lost_kinds(clip.clip(), self.packaging) {
@@ -134,7 +176,8 @@ impl ExportPlan {
                 }
             }
         }
-        let sentence = |(kind, names): (&str, Vec<&str>)| format!("not in the file: {kind} of “{}”", names.join("”, “"));
+        let sentence =
+            |(kind, names): (&str, Vec<&str>)| format!("not in the file: {kind} of “{}”", names.join("”, “"));
         lost.into_iter().map(sentence).collect()
     }
 }

@@ -12,6 +12,7 @@ mod glb;
 mod model;
 mod motion;
 mod own_clips;
+mod root_joint;
 mod vrma;
 
 pub use asset::asset;
@@ -21,4 +22,5 @@ pub(super) use glb::glb;
 pub use model::model;
 pub use motion::motion;
 pub use own_clips::OwnClips;
+pub use root_joint::insert_root;
 pub use vrma::vrma;

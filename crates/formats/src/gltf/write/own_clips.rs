@@ -71,7 +71,8 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
     used_views.extend(root.images.iter().filter_map(|image| Some(image.buffer_view?.value())));
     for (index, accessor) in root.accessors.iter().enumerate() {
         let sparse = accessor.sparse.iter();
-        let of_sparse = sparse.flat_map(|sparse| [sparse.indices.buffer_view.value(), sparse.values.buffer_view.value()]);
+        let of_sparse =
+            sparse.flat_map(|sparse| [sparse.indices.buffer_view.value(), sparse.values.buffer_view.value()]);
         let of_accessor = accessor.buffer_view.map(|view| view.value()).into_iter().chain(of_sparse);
         if unused.contains(&index) { unused_views.extend(of_accessor) } else { used_views.extend(of_accessor) }
     }
@@ -86,8 +87,12 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
         let start = view.read("byteOffset").unwrap_or(0);
         start..view.read::<usize>("byteLength").unwrap_or(0).saturating_add(start)
     };
-    let kept: Vec<Range<usize>> =
-        views.iter().enumerate().filter(|(index, _)| !unused_views.contains(index)).map(|(_, view)| range(view)).collect();
+    let kept: Vec<Range<usize>> = views
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| !unused_views.contains(index))
+        .map(|(_, view)| range(view))
+        .collect();
     let cuts = cuts(unused_views.iter().map(|&index| range(&views[index])), &kept, binary.len());
     for (index, view) in views.iter_mut().enumerate() {
         let start = range(view).start;
@@ -146,7 +151,8 @@ fn cuts(unused: impl Iterator<Item = Range<usize>>, kept: &[Range<usize>], lengt
     let is_free = |range: &Range<usize>| {
         range.end <= length && !kept.iter().any(|kept| kept.start < range.end && range.start < kept.end)
     };
-    let mut ranges: Vec<Range<usize>> = unused.map(aligned).filter(|range| range.start < range.end).filter(is_free).collect();
+    let mut ranges: Vec<Range<usize>> =
+        unused.map(aligned).filter(|range| range.start < range.end).filter(is_free).collect();
     ranges.sort_by_key(|range| range.start);
     let mut cuts: Vec<Range<usize>> = Vec::new();
     for range in ranges {

@@ -11,6 +11,7 @@ mod open;
 mod plan;
 mod privacy;
 mod reduced_motion;
+mod root_bone;
 mod saved_names;
 mod undo;
 mod validation;

@@ -16,12 +16,12 @@ use crate::build_gltf::one;
 use crate::data::sampled;
 use crate::random::Random;
 
-fn model(editor: &Editor) -> &Model {
+pub fn model(editor: &Editor) -> &Model {
     editor.library().active().expect("a model")
 }
 
 /// A clip with odd key times and every interpolation, for all joints whose parent is a joint.
-fn clip(skeleton: &Skeleton, name: &str, seed: u64) -> Clip {
+pub fn clip(skeleton: &Skeleton, name: &str, seed: u64) -> Clip {
     let mut random = Random(seed);
     let mut builder = ClipBuilder::new(name, skeleton);
     for joint in skeleton.joints().filter(|&joint| skeleton.parent(joint).is_some()) {
@@ -36,12 +36,12 @@ fn clip(skeleton: &Skeleton, name: &str, seed: u64) -> Clip {
     builder.build()
 }
 
-fn motion(source: &str, skeleton: &Skeleton, clips: Vec<Clip>) -> Motion {
+pub fn motion(source: &str, skeleton: &Skeleton, clips: Vec<Clip>) -> Motion {
     let parts = AssetParts { format: "glb", skeleton: skeleton.clone(), clips, ..AssetParts::default() };
     Motion::new(source.to_owned(), Arc::new(Asset::new(parts).expect("a motion")))
 }
 
-fn borrow(editor: &mut Editor, motions: Vec<Motion>) {
+pub fn borrow(editor: &mut Editor, motions: Vec<Motion>) {
     let contents = Contents { motions: Some(motions), ..Contents::default() };
     editor.open(contents, None, &mut any).expect("fits");
     assert_eq!(editor.library().borrow_errors(), []);
@@ -59,7 +59,7 @@ fn pilot_with_five() -> (Editor, Vec<Clip>) {
     (editor, clips)
 }
 
-fn all_clips(editor: &Editor) -> ExportPlan {
+pub fn all_clips(editor: &Editor) -> ExportPlan {
     ExportPlan::all_clips(model(editor))
 }
 
@@ -67,7 +67,7 @@ fn read(bytes: Vec<u8>) -> Asset {
     load(&one("written.glb", bytes)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn together(editor: &Editor, plan: &ExportPlan) -> Asset {
+pub fn together(editor: &Editor, plan: &ExportPlan) -> Asset {
     read(editor.export(&Export::Plan(plan.clone())).expect("is written").bytes)
 }
 
@@ -105,7 +105,7 @@ fn posed(asset: &Asset, clip: &Clip, time_secs: f64) -> Pose {
 /// Checks that each clip of a file shows the pose that the editor shows, between keys as well.
 fn check_poses(editor: &mut Editor, plan: &ExportPlan, written: &Asset) {
     editor.apply(Command::SetPlaying(false));
-    for PlannedClip { clip, name } in &plan.clips {
+    for PlannedClip { clip, name, .. } in &plan.clips {
         let exported = written.clips.iter().find(|clip| clip.name() == name).unwrap_or_else(|| panic!("no {name}"));
         editor.apply(Command::SetClip(ClipChoice::Clip(clip.clone())));
         for step in 0..23 {
@@ -170,7 +170,7 @@ fn each_clip_can_be_a_file_of_its_own() {
 
 /// Checks that a plan is refused with this text.
 #[track_caller]
-fn check_refused(editor: &Editor, plan: &ExportPlan, says: &str) {
+pub fn check_refused(editor: &Editor, plan: &ExportPlan, says: &str) {
     let error = editor.export_plan(plan).expect_err("is refused");
     assert!(error.contains(says), "{error}");
 }
@@ -216,7 +216,8 @@ fn a_body_is_needed_for_vrm_animations() {
     let asset = crate::skeletons::asset(snake);
     let skeleton = asset.skeleton.clone();
     let mut stage = Editor::default();
-    let parts = AssetParts { skeleton: skeleton.clone(), clips: vec![clip(&skeleton, "Crawl", 1)], ..AssetParts::default() };
+    let parts =
+        AssetParts { skeleton: skeleton.clone(), clips: vec![clip(&skeleton, "Crawl", 1)], ..AssetParts::default() };
     let model = Model::new("snake.glb".to_owned(), Asset::new(parts).expect("a model"), Vec::new());
     let contents = Contents { models: vec![model.into()], ..Contents::default() };
     stage.open(contents, None, &mut any).expect("fits");
