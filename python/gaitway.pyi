@@ -84,6 +84,7 @@ class Scene:
 class ExportOptions(TypedDict, total=False):
     clips: str | list[str] | None
     rename: dict[str, str] | None
+    fewer_keys: bool | tuple[float, float]
     root_bone: bool
     root_height: bool
     in_place: str | list[str] | None

@@ -13,6 +13,7 @@ export interface GltfJson {
   materials?: { doubleSided?: boolean }[];
   textures?: object[];
   meshes: { primitives: GltfPrimitive[] }[];
+  skins?: { joints: number[] }[];
   nodes: { name?: string; mesh?: number; weights?: number[]; rotation?: number[]; extensions?: object }[];
 }
 

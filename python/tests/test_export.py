@@ -20,6 +20,14 @@ def test_one_file(motion: gaitway.Motion, tmp_path: Path) -> None:
     assert [clip.name for clip in gaitway.load_model(ours).clips] == ["idle", "March"]
 
 
+def test_fewer_keys(tmp_path: Path) -> None:
+    model, sizes = gaitway.load_model(PILOT), {}
+    for name, fewer_keys in [("all", False), ("default", True), ("loose", (1.0, 1.0))]:
+        model.export(tmp_path / f"{name}.glb", fewer_keys=fewer_keys)
+        sizes[name] = (tmp_path / f"{name}.glb").stat().st_size
+    assert sizes["all"] > sizes["default"] > sizes["loose"]
+
+
 def test_a_file_for_each_clip(tmp_path: Path) -> None:
     model = gaitway.load_model(PILOT)
     model.export(tmp_path / "ours", format="bvh")

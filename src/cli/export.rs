@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use gaitway_retarget::KeyTolerance;
 use gaitway_scene::editor::{
     ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient, RootBone,
 };
@@ -13,16 +14,18 @@ use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::motion::{MotionArguments, open_editor, read_motions};
-use super::output::{extension_of, is_standard_output, print_bytes, print_error, print_json, print_lines, warn};
-use super::{Files, FormatArgument, inputs, open, print_warnings};
-use crate::files::{Disk, refuse_input, save_file, zip};
+use super::output::{
+    extension_of, is_standard_output, print_bytes, print_error, print_json, print_lines, save_output, warn,
+};
+use super::{Files, FormatArgument, RecipientArgument, inputs, open, print_warnings, read_numbers};
+use crate::files::{Disk, is_stream, refuse_input, save_file, zip};
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
     #[command(flatten)]
     input: Files,
-    /// Motions to add: any number of files (.glb, .gltf, .vrma, .fbx, .x, .bvh, .npz), folders, archives and patterns. Clips of the
-    /// model's own rig keep their keys, others are retargeted.
+    /// Motions to add: any number of files that `retarget` takes, folders, archives and patterns. Clips of the model's own rig keep
+    /// their keys, others are retargeted.
     #[arg(long, value_name = "FILE|DIR", num_args = 1..)]
     motion: Vec<PathBuf>,
     /// The joint map for all motions [default: for each as `gaitway map` proposes].
@@ -48,6 +51,11 @@ pub(super) struct ExportChoices {
     /// Another name for a clip in the file; can be repeated.
     #[arg(long, value_name = "CLIP=NAME")]
     rename: Vec<String>,
+    /// Drops keys that interpolation restores, so that joints stay within this many degrees and millimetres per metre of height;
+    /// 0.01,0.01 without numbers [default: all keys; fewer for web].
+    #[arg(long, value_name = "DEGREES,MM", num_args = 0..=1, require_equals = true, default_missing_value = "0.01,0.01",
+        value_parser = read_tolerance)]
+    fewer_keys: Option<KeyTolerance>,
     /// Inserts a bone above the hips that carries the body over the ground and turns with it, for engines that move characters by
     /// their root. A rig that has one keeps it.
     #[arg(long)]
@@ -66,29 +74,10 @@ pub(super) struct ExportChoices {
     format: Option<FormatArgument>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum RecipientArgument {
-    Unity,
-    Unreal,
-    Godot,
-    Blender,
-    Web,
-    Vrm,
-    AsIs,
-}
-
-impl From<RecipientArgument> for Recipient {
-    fn from(argument: RecipientArgument) -> Self {
-        match argument {
-            RecipientArgument::Unity => Self::Unity,
-            RecipientArgument::Unreal => Self::Unreal,
-            RecipientArgument::Godot => Self::Godot,
-            RecipientArgument::Blender => Self::Blender,
-            RecipientArgument::Web => Self::Web,
-            RecipientArgument::Vrm => Self::Vrm,
-            RecipientArgument::AsIs => Self::AsIs,
-        }
-    }
+fn read_tolerance(text: &str) -> Result<KeyTolerance, String> {
+    let numbers = read_numbers(text).filter(|numbers: &[f64; 2]| numbers.iter().all(|&number| number > 0.0));
+    let [degrees, millimetres_per_metre] = numbers.ok_or("expected DEGREES,MM, both above 0")?;
+    Ok(KeyTolerance { degrees, millimetres_per_metre })
 }
 
 pub(super) fn run(arguments: &ExportArguments, disk: &Disk) -> Outcome {
@@ -103,7 +92,7 @@ pub(super) fn run(arguments: &ExportArguments, disk: &Disk) -> Outcome {
     let editor = open_editor(opened, &motion_arguments, disk)?;
     let made = make(&editor, &arguments.choices, place)?;
     made.warnings.iter().for_each(|warning| warn(warning));
-    write(&arguments.out, place, &made.files, &disk.files_read())?;
+    write(&arguments.out, place, &made, &disk.files_read())?;
     if arguments.json {
         return print_json(&made.document());
     }
@@ -127,7 +116,7 @@ impl Place {
     pub(super) fn of(out: &Path) -> Outcome<Self> {
         let extension = extension_of(out).filter(|_| !out.is_dir());
         match extension.as_deref() {
-            _ if is_standard_output(out) => Ok(Self::File),
+            _ if is_standard_output(out) || is_stream(out) => Ok(Self::File),
             None => Ok(Self::Folder),
             Some("glb" | "vrm") => Ok(Self::File),
             Some("zip") => Ok(Self::Archive),
@@ -148,7 +137,9 @@ impl Place {
 pub(super) struct MadeFiles {
     plan: ExportPlan,
     durations_secs: Vec<f64>,
-    pub files: Vec<ExportedFile>,
+    files: Vec<ExportedFile>,
+    /// Those that fit the model's file.
+    extensions: &'static [&'static str],
     /// What the files can't hold, and remarks about them.
     warnings: Vec<String>,
 }
@@ -167,17 +158,20 @@ pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Ou
     plan.check(model).map_err(Failure::new)?;
     let durations_secs = plan.clips.iter().filter_map(|planned| model.clip(&planned.clip));
     let durations_secs = durations_secs.map(ModelClip::duration_secs).collect();
-    let mut warnings = editor.plan_losses(&plan);
+    let losses = editor.plan_losses(&plan).into_iter().map(|loss| format!("not in the file: {loss}"));
+    let mut warnings: Vec<String> = losses.collect();
     let files = editor.export_plan(&plan)?;
     let remarks = files.iter().filter_map(|file| file.remark.as_ref().map(|remark| format!("{}: {remark}", file.name)));
     warnings.extend(remarks);
-    Ok(MadeFiles { plan, durations_secs, files, warnings })
+    let extensions: &[&str] = if model.asset.format == "vrm" { &["glb", "vrm"] } else { &["glb"] };
+    Ok(MadeFiles { plan, durations_secs, files, extensions, warnings })
 }
 
 fn plan(model: &Model, choices: &ExportChoices, packaging: Packaging) -> Outcome<ExportPlan> {
-    let recipient = choices.recipient.map_or(Recipient::AsIs, Into::into);
+    let recipient: Recipient = choices.recipient.map_or(Recipient::AsIs, Into::into);
     let root_bone = choices.root_bone.then_some(RootBone { vertical: choices.root_height });
-    let mut plan = ExportPlan { packaging, recipient, root_bone, ..ExportPlan::all_clips(model) };
+    let fewer_keys = choices.fewer_keys.or(recipient.fewer_keys());
+    let mut plan = ExportPlan { packaging, recipient, root_bone, fewer_keys, ..ExportPlan::all_clips(model) };
     if let Some(clips) = listed(model, &choices.clips, "--clips")? {
         plan.clips = clips.into_iter().map(PlannedClip::of).collect();
     }
@@ -235,11 +229,12 @@ fn unknown(model: &Model, name: &str) -> UnknownName {
 }
 
 /// Writes the files, or an archive of them.
-pub(super) fn write(out: &Path, place: Place, files: &[ExportedFile], inputs: &[PathBuf]) -> Outcome {
+pub(super) fn write(out: &Path, place: Place, made: &MadeFiles, inputs: &[PathBuf]) -> Outcome {
+    let files = made.files.as_slice();
     let named = files.iter().map(|file| (file.name.as_str(), file.bytes.as_slice()));
     match (place, files) {
         (Place::File, [file]) if is_standard_output(out) => print_bytes(&file.bytes),
-        (Place::File, [file]) => Ok(save_file(out, &file.bytes, inputs)?),
+        (Place::File, [file]) => save_output(out, &file.bytes, made.extensions, inputs),
         (Place::File, _) => Err(Failure::new("the plan has several files").in_file(out.display())),
         (Place::Archive, _) => {
             let Some(bytes) = zip(named) else {
@@ -274,8 +269,9 @@ impl MadeFiles {
         let clips = self.plan.clips.iter().zip(&self.durations_secs);
         let mut lines: Vec<String> = clips.map(|(clip, secs)| format!("{secs:8.2} s  {}", clip.name)).collect();
         let bytes: usize = self.files.iter().map(|file| file.bytes.len()).sum();
-        let files = if self.files.len() == 1 { "1 file".to_owned() } else { format!("{} files", self.files.len()) };
-        lines.push(format!("{} clips in {files}, {:.1} MB", self.plan.clips.len(), bytes as f64 / 1e6));
+        let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let (clips, files) = (count(self.plan.clips.len(), "clip"), count(self.files.len(), "file"));
+        lines.push(format!("{clips} in {files}, {:.1} MB", bytes as f64 / 1e6));
         lines
     }
 }

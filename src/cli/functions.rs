@@ -136,7 +136,7 @@ pub fn export(
     let opened = copy_of(model, [model.motions.clone(), motions].concat(), map);
     let editor = open_editor(opened, &MotionArguments::default(), &Disk::default())?;
     let made = export::make(&editor, &options.choices, place)?;
-    export::write(out, place, &made.files, inputs)?;
+    export::write(out, place, &made, inputs)?;
     Ok(made.document())
 }
 

@@ -37,7 +37,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use gaitway_character::asset::Warnings;
 use gaitway_retarget::{Contacts, Feet, Keep, PathOrigin, RestChoice, RootPart, UpChoice};
-use gaitway_scene::editor::ClipFormat;
+use gaitway_scene::editor::{ClipFormat, Recipient};
 use serde_json::json;
 
 use crate::files::{Disk, Opened};
@@ -235,6 +235,7 @@ arguments_of! {
     ContactsArgument of Contacts { Off, Keep }
     KeepArgument of Keep { Auto, Keep, Drop }
     FormatArgument of ClipFormat { Glb, Bvh, Vrma }
+    RecipientArgument of Recipient { Unity, Unreal, Godot, Blender, Web, Vrm, AsIs }
     RestArgument of RestChoice { Auto, Node, Bind, FirstFrame }
     UpArgument of UpChoice { Auto, Y, Z }
 }

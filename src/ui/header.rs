@@ -1,7 +1,7 @@
 //! The header: the name, opening and borrowing on the left; undo, saving, sharing and the menu on the right.
 
 use egui::{Align, Layout, RichText, ThemePreference, Ui};
-use gaitway_scene::editor::{ClipFormat, Export, ExportPlan, derived_clip};
+use gaitway_scene::editor::{ClipFormat, Export, derived_clip};
 use gaitway_scene::library::{Model, ModelClip};
 use gaitway_scene::state::active_clip;
 
@@ -195,7 +195,7 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
         derived_clip(model, shown.state).map(|clip| (text::SAVE_GLB, Export::Model { clip: clip.id().clone() }));
     let has_others = model.clips().len() > 1 && model.clips().iter().any(ModelClip::is_derived);
     let others = [
-        has_others.then(|| (text::SAVE_ALL_CLIPS, Export::Plan(ExportPlan::all_clips(model)))),
+        has_others.then_some((text::SAVE_ALL_CLIPS, Export::AllClips)),
         borrowed.map(|borrowed| (text::SAVE_MAP, Export::Map { motion: borrowed.motion.clone() })),
         (model.asset.format == "obj").then_some((text::SAVE_REST_POSE, Export::FullModel { posed: false })),
         (model.asset.format == "obj").then_some((text::SAVE_CURRENT_POSE, Export::FullModel { posed: true })),

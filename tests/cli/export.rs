@@ -99,7 +99,7 @@ fn an_archive_has_a_file_for_each_clip() {
     let made = document(&["export", "sample:pilot", "--format", "bvh", "--out", &out, "--json"]);
     let file = fs::File::open(&out).expect("a file");
     let mut archive = zip::ZipArchive::new(file).expect("an archive");
-    let found: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    let found: Vec<String> = archive.file_names().map(|name| name.expect("UTF-8").into_owned()).collect();
     let mut expected = names(&made, "files");
     assert!(expected.iter().all(|name| name.ends_with(".bvh")));
     let mut sorted = found.clone();
@@ -132,6 +132,22 @@ fn a_root_bone_carries_the_clips_that_travel() {
     check_fails(&["export", "sample:pilot", "--root-bone", "--in-place", "fly", "--out", &out], 1, "--in-place");
 }
 
+#[test]
+fn fewer_keys_make_a_smaller_file() {
+    let desk = Desk::new("keys");
+    let bytes = |options: &[&str]| {
+        let out = desk.path("out.glb");
+        let made = document(&[&["export", "sample:pilot", "--out", &out, "--json"], options].concat());
+        let is_said = made["warnings"].to_string().contains("keys, within");
+        assert_eq!(is_said, !options.is_empty(), "{made}");
+        made["files"][0]["bytes"].as_u64().expect("a number")
+    };
+    let (all, few, fewer) = (bytes(&[]), bytes(&["--fewer-keys"]), bytes(&["--fewer-keys=0.5,1"]));
+    assert!(fewer < few && few < all, "{fewer}, {few} and {all} bytes");
+    assert_eq!(bytes(&["--for", "web"]), few);
+    check_fails(&["export", "sample:pilot", "--fewer-keys=0,1", "--out", "out.glb"], 2, "above 0");
+}
+
 /// Nothing is written.
 #[test]
 fn bad_plans_are_refused() {
@@ -149,6 +165,7 @@ fn bad_plans_are_refused() {
     check(&["--for", "vrm", "--out", &out], "VRM avatar yet");
     check(&["--out", &desk.path("out.fbx")], "Gaitway can't write FBX yet");
     check(&["--out", &desk.path("out.bvh")], "choose a folder and --format");
+    check(&["--out", &desk.path("out.vrm")], "expected .glb, found .vrm");
     check(&["--format", "bvh", "--out", &out], "--format");
     check(&["--map", "no.json", "--out", &out], "no.json");
     check_fails(&["export", "assets/samples/mannequin.glb", "--out", &out], 1, "no clip is chosen");

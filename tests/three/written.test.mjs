@@ -153,6 +153,34 @@ describe("borrowed clips are added and nothing is lost", { skip: skipWithoutData
   }
 });
 
+describe("exports with chosen clips are valid", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  for (const pair of PAIRS) {
+    const [model, motion] = pair.map(dataFile);
+    test(pair.map((name) => path.basename(name)).join(" ← "), async () => {
+      // The first clip of the list may be the model's own; the last one is the motion's.
+      const count = (readGltf(model).json.animations ?? []).length;
+      for (const options of [["--clips", "0"], ["--clips", `${count}`], ["--fewer-keys"]]) {
+        const out = await write("export", model, "--motion", motion, ...options);
+        await noNewErrors(model, out);
+        const clips = options[0] === "--clips" ? 1 : count + 1;
+        assert.ok(readGltf(out).json.animations.length >= clips, `${options}`);
+        fs.rmSync(out);
+      }
+    });
+  }
+
+  test("a root bone is a joint of the skin", async () => {
+    const model = dataFile("threejs/Xbot.glb");
+    const out = await write("export", model, "--root-bone");
+    await noNewErrors(model, out);
+    const { nodes, skins } = readGltf(out).json;
+    const root = nodes.findIndex(({ name }) => name === "root");
+    assert.equal(root, nodes.length - 1);
+    assert.ok(skins?.every(({ joints }) => joints.at(-1) === root));
+  });
+});
+
 /**
  * @param {string} original
  * @param {string} file

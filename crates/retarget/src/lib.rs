@@ -5,6 +5,8 @@
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
 //! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds
 //! parts of it still, `stack` puts others over it, `pins` holds hands and feet, and `baker` makes a clip of what these two do.
+//! For files, `merge` keeps the keys of clips of one rig, `root_bone` moves travel from the hips to a root, and `fewer_keys` drops
+//! what interpolation restores.
 //! `budget`, `pose`, `keys`, `math`, `times`, `limit`, `side`, `skin` and `two_bones` are shared.
 //!
 //! The result is an ordinary clip: the library lists it after the model's own, and the player cannot tell them apart.
@@ -42,6 +44,7 @@ mod budget;
 mod change;
 mod contacts;
 mod feet;
+mod fewer_keys;
 mod keys;
 mod limit;
 mod map;
@@ -65,6 +68,7 @@ pub use bake::{RetargetError, Retargeted};
 pub use budget::MAX_VIDEO_FRAMES;
 pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
+pub use fewer_keys::{KeyTolerance, Thinned, fewer_keys};
 pub use map::{
     ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
     Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,

@@ -225,6 +225,6 @@ impl Split<'_> {
             let allowed = (MAX_SHARE * height_or_metre(reach)).max(ROUNDING * at.whole.place.length());
             (turn / MAX_TURN).max(found.place.distance(at.whole.place) / allowed)
         };
-        resample(&times, &jumps, Curve { value: |time_secs| self.parts(time_secs), error, tolerance: 1.0 })
+        resample(&times, &jumps, Curve { value: |time_secs: f32| self.parts(time_secs), error, tolerance: 1.0 })
     }
 }

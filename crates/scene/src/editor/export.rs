@@ -4,14 +4,13 @@
 use std::borrow::Cow;
 
 use gaitway_character::anim::Clip;
-use gaitway_formats::{OwnClips, write_edited_model, write_model, write_motion};
-use gaitway_retarget::{RootTravel, merged_clip};
+use gaitway_formats::{write_edited_model, write_model, write_motion};
+use gaitway_retarget::merged_clip;
 use glam::Vec3;
 
 use super::in_file::{is_derived, is_in_file};
 use super::names::{plain_name, stem};
-use super::rooted::{hips, own_root, rooted};
-use super::{ClipFormat, Editor, ExportPlan, ModelFiles, Packaging, PlannedClip, RootBone, write_clip};
+use super::{ClipFormat, Editor, ModelFiles, write_clip};
 use crate::frame::{Frame, evaluate};
 use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
 use crate::state::{active_clip, active_map, take_of, written_skeleton};
@@ -45,8 +44,8 @@ pub enum Export {
         /// Makes the current pose the rest pose of the file.
         posed: bool,
     },
-    /// The whole model with the clips of a plan, in one file.
-    Plan(ExportPlan),
+    /// The whole model with all clips as they are shown, in one file.
+    AllClips,
 }
 
 /// An exported file, with a remark for the user.
@@ -61,11 +60,11 @@ pub struct ExportedFile {
 }
 
 impl ExportedFile {
-    fn new(name: String, bytes: Vec<u8>) -> Self {
+    pub(super) fn new(name: String, bytes: Vec<u8>) -> Self {
         Self { name, bytes, remark: None }
     }
 
-    fn with_remarks(self, remarks: &[Cow<'static, str>]) -> Self {
+    pub(super) fn with_remarks(self, remarks: &[Cow<'static, str>]) -> Self {
         Self { remark: (!remarks.is_empty()).then(|| remarks.join(" ")), ..self }
     }
 }
@@ -76,14 +75,14 @@ fn about_properties(clip: &Clip) -> Option<&'static str> {
     (!clip.properties().is_empty()).then_some(lost)
 }
 
-const NO_SUCH_CLIP: &str = "there is no such clip";
+pub(super) const NO_SUCH_CLIP: &str = "there is no such clip";
 
-const NO_FILE: &str = "Skeleton and clip only: this model has no file to add a clip to.";
+pub(super) const NO_FILE: &str = "Skeleton and clip only: this model has no file to add a clip to.";
 
 /// A clip with its layers, what is set manually, and its pins baked in.
-struct BakedClip {
-    clip: Clip,
-    remarks: Vec<Cow<'static, str>>,
+pub(super) struct BakedClip {
+    pub clip: Clip,
+    pub remarks: Vec<Cow<'static, str>>,
 }
 
 impl Editor {
@@ -97,90 +96,8 @@ impl Editor {
             Export::Model { clip } => self.export_model(clip),
             Export::Clip { clip, format } => self.export_clip(clip, *format),
             Export::FullModel { posed } => self.export_whole(*posed),
-            Export::Plan(plan) => self.export_plan(plan)?.pop().ok_or_else(|| "there is nothing to write".to_owned()),
+            Export::AllClips => self.export_all_clips(),
         }
-    }
-
-    /// Writes the files of a plan: the only one, or one for each clip, in the plan's order.
-    ///
-    /// # Errors
-    /// The message for the user if the plan is refused or writing fails.
-    pub fn export_plan(&self, plan: &ExportPlan) -> Result<Vec<ExportedFile>, String> {
-        let model = self.model()?;
-        plan.check(model)?;
-        match plan.packaging {
-            Packaging::OneFile => Ok(vec![self.export_together(plan)?]),
-            Packaging::FilePerClip(format) => {
-                plan.clips.iter().map(|planned| self.export_planned(model, planned, format)).collect()
-            }
-        }
-    }
-
-    /// Writes one clip of a plan with its skeleton.
-    fn export_planned(
-        &self,
-        model: &Model,
-        PlannedClip { clip, name, .. }: &PlannedClip,
-        format: ClipFormat,
-    ) -> Result<ExportedFile, String> {
-        let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
-        let BakedClip { clip, remarks } = self.merged_or_baked_clip(model, source);
-        let (clip, skeleton) = (clip.with_name(name.clone()), written_skeleton(model, &self.state, None));
-        let bytes = write_clip(model, &skeleton, &clip, source.frames_per_sec(), format);
-        let name = format!("{}.{}", plain_name(name), format.extension());
-        Ok(ExportedFile::new(name, bytes.map_err(|error| error.to_string())?).with_remarks(&remarks))
-    }
-
-    /// Writes the model's own file with the clips of a plan and no others; without a file, only skeleton and clips.
-    fn export_together(&self, plan: &ExportPlan) -> Result<ExportedFile, String> {
-        let model = self.complete_model()?;
-        let mut own = OwnClips { left_out: (0..model.asset.clips.len()).collect(), ..OwnClips::default() };
-        let (mut added, mut remarks) = (Vec::new(), Vec::new());
-        let files = self.files_of(model);
-        let has_new_root = plan.has_new_root(model);
-        for PlannedClip { clip, name, in_place } in &plan.clips {
-            let source = model.clip(clip).ok_or(NO_SUCH_CLIP)?;
-            let can_stay = files.is_some() && !has_new_root && is_in_file(model, &self.state, source);
-            match source.id() {
-                ClipId::Own(index) if can_stay => {
-                    own.left_out.remove(index);
-                    if model.asset.clips[*index].name() != name {
-                        own.names.insert(*index, name.clone());
-                    }
-                }
-                _ => {
-                    let baked = self.merged_or_baked_clip(model, source);
-                    remarks.extend(baked.remarks.into_iter().map(|remark| format!("{name}: {remark}").into()));
-                    added.push((baked.clip.with_name(name.clone()), *in_place));
-                }
-            }
-        }
-        let skeleton = written_skeleton(model, &self.state, None);
-        let of_file = |clips: &[&Clip]| match files {
-            Some(ModelFiles { set, name }) => write_edited_model(set, name, &skeleton, &own, clips),
-            None => write_motion(&model.asset, &skeleton, clips),
-        };
-        let of_file = |clips: &[&Clip]| of_file(clips).map_err(|error| error.to_string());
-        let bytes = match (plan.root_bone.filter(|_| has_new_root), hips(model)) {
-            (Some(RootBone { vertical }), Some(hips)) => {
-                let travel = |(clip, in_place)| (clip, RootTravel { vertical, in_place });
-                let clips: Vec<(Clip, RootTravel)> = added.into_iter().map(travel).collect();
-                rooted(&of_file(&[])?, skeleton.source_index(hips), &skeleton, &clips)?
-            }
-            _ => of_file(&added.iter().map(|(clip, _)| clip).collect::<Vec<_>>())?,
-        };
-        remarks.extend(files.is_none().then_some(NO_FILE.into()));
-        if let Some(root) = own_root(model).filter(|_| plan.root_bone.is_some()) {
-            let root = skeleton.label(root);
-            remarks.push(format!("“{root}” is the root bone of this rig; clips keep their travel where it is.").into());
-        }
-        let name = format!("{}.glb", plain_name(&stem(&model.source)));
-        Ok(ExportedFile::new(name, bytes).with_remarks(&remarks))
-    }
-
-    /// What the files of a plan lack of its clips, by name.
-    pub fn plan_losses(&self, plan: &ExportPlan) -> Vec<String> {
-        self.library.active().map_or(Vec::new(), |model| plan.losses(model, &self.state))
     }
 
     /// Returns a file name for the current view, without extension: the model's and, if one is active, the clip's.
@@ -194,7 +111,7 @@ impl Editor {
         plain_name(&parts.into_iter().flatten().collect::<Vec<_>>().join("-"))
     }
 
-    fn model(&self) -> Result<&Model, String> {
+    pub(super) fn model(&self) -> Result<&Model, String> {
         self.library.active().ok_or_else(|| "there is no model".to_owned())
     }
 
@@ -299,7 +216,7 @@ impl Editor {
     }
 
     /// The same with the keys of a borrowed clip's motion, bit for bit, if that is what it shows.
-    fn merged_or_baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
+    pub(super) fn merged_or_baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
         let mut baked = self.baked_clip(model, source);
         if !take_of(model, Some(source), &self.state).is_more_than_clip() {
             baked.clip = self.merged_clip(model, source).unwrap_or(baked.clip);

@@ -8,6 +8,7 @@ mod clip_file;
 mod contents;
 mod event;
 mod export;
+mod export_plan;
 mod in_file;
 mod maps;
 mod motions;
@@ -19,6 +20,7 @@ mod rooted;
 mod scene;
 mod steps;
 mod suit;
+mod together;
 mod transact;
 mod validation;
 

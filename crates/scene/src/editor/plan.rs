@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{Clip, Keys, PropertyTarget};
+use gaitway_retarget::KeyTolerance;
 
 use super::ClipFormat;
 use super::in_file::is_in_file;
@@ -33,14 +34,17 @@ pub enum Recipient {
 }
 
 impl Recipient {
+    /// How many keys suit them: a web page is downloaded.
+    pub fn fewer_keys(self) -> Option<KeyTolerance> {
+        (self == Self::Web).then(KeyTolerance::default)
+    }
+
     /// Why nothing suits them yet; `None` if something does.
     fn refusal(self) -> Option<&'static str> {
-        let fbx = "they import FBX, which Gaitway can't write yet; choose “as it is” for a .glb";
         match self {
-            Self::Unity | Self::Unreal => Some(fbx),
-            Self::Vrm => Some(
-                "Gaitway can't make a VRM avatar yet; choose “as it is” for a .glb, or a .vrm of a model that is one",
-            ),
+            Self::Unity => Some("Unity imports FBX, which Gaitway can't write yet; choose “as is” for a .glb"),
+            Self::Unreal => Some("Unreal imports FBX, which Gaitway can't write yet; choose “as is” for a .glb"),
+            Self::Vrm => Some("Gaitway can't make a VRM avatar yet; choose “as is”, which keeps a model that is one"),
             Self::Godot | Self::Blender | Self::Web | Self::AsIs => None,
         }
     }
@@ -74,7 +78,7 @@ pub struct RootBone {
 }
 
 /// What to write of the active model.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ExportPlan {
     /// The clips, each at most once. Those that the model's file has as they play come first in one file, in its order.
     pub clips: Vec<PlannedClip>,
@@ -84,6 +88,8 @@ pub struct ExportPlan {
     pub recipient: Recipient,
     /// The root bone to insert. A rig that has one keeps it, and its clips.
     pub root_bone: Option<RootBone>,
+    /// Drops keys that interpolation restores.
+    pub fewer_keys: Option<KeyTolerance>,
 }
 
 impl PlannedClip {
@@ -97,7 +103,7 @@ impl ExportPlan {
     /// All clips of a model in one file, under the names that lists show.
     pub fn all_clips(model: &Model) -> Self {
         let clips = model.clips().listed().map(PlannedClip::of).collect();
-        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs, root_bone: None }
+        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs, root_bone: None, fewer_keys: None }
     }
 
     /// Refuses a plan that can't be carried out, or whose files would not have what it says.
@@ -159,13 +165,18 @@ impl ExportPlan {
         self.root_bone.is_some() && own_root(model).is_none()
     }
 
-    /// What the files can't hold of the clips, by name: for each kind, such as `scale`, the clips that lose it.
+    /// Whether clips that the file has as they play are written again.
+    pub(super) fn changes_own(&self, model: &Model) -> bool {
+        self.has_new_root(model) || self.fewer_keys.is_some()
+    }
+
+    /// What the files can't hold of the clips, by name, such as `scale of “Wave”, “Run”`.
     pub fn losses(&self, model: &Model, state: &ViewerState) -> Vec<String> {
         let mut lost: BTreeMap<&'static str, Vec<&str>> = BTreeMap::new();
         for PlannedClip { clip, name, .. } in &self.clips {
             let Some(clip) = model.clip(clip) else { continue };
             // The model's own file keeps all of it.
-            let is_kept = self.packaging == Packaging::OneFile && !self.has_new_root(model);
+            let is_kept = self.packaging == Packaging::OneFile && !self.changes_own(model);
             if is_kept && is_in_file(model, state, clip) {
                 continue;
             }
@@ -176,8 +187,7 @@ impl ExportPlan {
                 }
             }
         }
-        let sentence =
-            |(kind, names): (&str, Vec<&str>)| format!("not in the file: {kind} of “{}”", names.join("”, “"));
+        let sentence = |(kind, names): (&str, Vec<&str>)| format!("{kind} of “{}”", names.join("”, “"));
         lost.into_iter().map(sentence).collect()
     }
 }

@@ -3,6 +3,7 @@
 mod camera;
 mod copies;
 mod environments;
+mod fewer_keys;
 mod identity;
 mod in_view;
 mod maps;

@@ -5,11 +5,11 @@ use gaitway_character::anim::{
 };
 use gaitway_character::asset::Asset;
 use gaitway_retarget::{RootError, RootTravel, with_root_motion};
-use gaitway_scene::editor::{ClipFormat, Editor, Export, ExportPlan, Packaging, RootBone};
+use gaitway_scene::editor::{ClipFormat, Editor, ExportPlan, Packaging, RootBone};
 use glam::{Affine3A, Quat, Vec3};
 
 use super::editor;
-use super::plan::{all_clips, borrow, check_refused, clip, model, motion, together};
+use super::plan::{all_clips, borrow, check_refused, clip, export, model, motion, together};
 
 const ROOT: &str = "root";
 const HIPS: &str = "mixamorig:Hips";
@@ -123,7 +123,7 @@ fn clips_in_place_leave_the_way_to_the_engine() {
 fn a_rig_with_a_root_bone_keeps_it() {
     let editor = editor("sample:walker");
     let mut plan = ExportPlan { root_bone: Some(RootBone::default()), ..all_clips(&editor) };
-    let file = editor.export(&Export::Plan(plan.clone())).expect("is written");
+    let file = export(&editor, &plan);
     assert!(file.remark.is_some_and(|remark| remark.contains("“Root” is the root bone of this rig")));
     assert_eq!(together(&editor, &plan).skeleton.len(), model(&editor).asset.skeleton.len());
     plan.clips[0].in_place = true;
