@@ -21,7 +21,7 @@ def test_one_file(motion: gaitway.Motion, tmp_path: Path) -> None:
 
 
 def test_fewer_keys(tmp_path: Path) -> None:
-    model, sizes = gaitway.load_model(PILOT), {}
+    model, sizes = gaitway.load_model("sample:walker"), {}
     for name, fewer_keys in [("all", False), ("default", True), ("loose", (1.0, 1.0))]:
         model.export(tmp_path / f"{name}.glb", fewer_keys=fewer_keys)
         sizes[name] = (tmp_path / f"{name}.glb").stat().st_size

@@ -26,16 +26,16 @@ fn distance(before: &Asset, after: &Asset, clips: [&Clip; 2]) -> f32 {
 
 #[test]
 fn all_joints_stay_within_the_tolerance() {
-    let editor = editor("sample:pilot");
+    let editor = editor("sample:walker");
     let plan = all_clips(&editor);
     let before = together(&editor, &plan);
     let mut fewest: usize = before.clips.iter().map(count).sum();
-    // The pilot is about two metres tall with its arms out.
+    // The walker is less than two metres tall and wide.
     for (degrees, millimetres_per_metre) in [(0.01, 0.01), (0.1, 0.5), (2.0, 5.0)] {
         let tolerance = KeyTolerance { degrees, millimetres_per_metre };
         let thinned = ExportPlan { fewer_keys: Some(tolerance), ..plan.clone() };
         let file = export(&editor, &thinned);
-        assert!(file.remark.is_some_and(|remark| remark.contains("keys, within") && remark.contains("walk")));
+        assert!(file.remark.is_some_and(|remark| remark.contains("keys, within") && remark.contains("Walk")));
         let after = together(&editor, &thinned);
         for (one, other) in before.clips.iter().zip(&after.clips) {
             assert_eq!((one.name(), one.duration_secs()), (other.name(), other.duration_secs()));
