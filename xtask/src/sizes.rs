@@ -15,7 +15,7 @@ const MAX_BYTES: [(&str, u32); 14] = [
     ("parts/fbx", 140_000),
     ("parts/ktx2", 87_000),
     ("parts/meshopt", 20_000),
-    ("parts/npz", 75_000),
+    ("parts/npz", 94_000),
     ("parts/qr", 18_000),
     ("parts/validator", 86_000),
     ("parts/video", 56_000),

@@ -109,8 +109,8 @@ impl Formatter for Floats {
 /// The document.
 #[derive(Default)]
 pub struct Glb {
-    /// The format that it is converted from.
-    source: &'static str,
+    /// The format that it is converted from, and what else is said of it.
+    source: String,
     bytes: Vec<u8>,
     views: Vec<View>,
     accessors: Vec<Accessor>,
@@ -139,9 +139,9 @@ pub struct Glb {
 }
 
 impl Glb {
-    /// Creates an empty document. `source` is the format that it is converted from, for `asset.generator`.
-    pub fn new(source: &'static str) -> Glb {
-        Glb { source, ..Glb::default() }
+    /// Creates an empty document. `source` is the format that it is converted from and how it was read, for `asset.generator`.
+    pub fn new(source: impl Into<String>) -> Glb {
+        Glb { source: source.into(), ..Glb::default() }
     }
 
     /// Declares that the document uses an extension.

@@ -2,46 +2,55 @@
 
 use crate::archive::damaged;
 
+/// What a `.npy` file begins with.
+pub const MAGIC: &[u8] = b"\x93NUMPY";
+
 /// Maximum count of numbers, which take 256 MiB as 64-bit floats, whatever their size in the file.
 const MAX_NUMBERS: usize = 1 << 25;
 
 /// An array of numbers with its first index varying slowest.
 pub struct Array {
-    pub name: String,
+    /// What messages call it.
+    pub label: String,
     pub shape: Vec<usize>,
     pub values: Vec<f64>,
 }
 
 impl Array {
-    pub fn read(name: &str, bytes: &[u8]) -> Result<Array, String> {
+    /// Returns the shape of the array in a `.npy` file, if it has one.
+    pub fn shape_of(bytes: &[u8]) -> Option<Vec<usize>> {
+        shape(entry(split(bytes)?.0, "shape"))
+    }
+
+    /// Reads a `.npy` file. `label` is what messages call it.
+    pub fn read(label: &str, bytes: &[u8]) -> Result<Array, String> {
         let (header, data) =
-            split(bytes).ok_or_else(|| damaged(name, "a NumPy header", &format!("{} other bytes", bytes.len())))?;
+            split(bytes).ok_or_else(|| damaged(label, "a NumPy header", &format!("{} other bytes", bytes.len())))?;
         let kind = quoted(entry(header, "descr")).unwrap_or_default();
         if kind.ends_with('O') {
             return Err(format!(
-                "array \"{name}\" holds pickled Python objects, which are not read because they could run any code: expected \
-                 numbers. Load it in Python and save its numbers with numpy.savez."
+                "{label} holds pickled Python objects, which are not read because they could run any code: expected numbers. \
+                 If you trust it, load it in Python and save its numbers with numpy.save or numpy.savez; of MDM's results.npy: \
+                 numpy.save(\"motion.npy\", numpy.load(\"results.npy\", allow_pickle=True).item()[\"motion\"])."
             ));
         }
         let number = Number::of(kind).ok_or_else(|| {
             let found = if kind.is_empty() { "none" } else { kind };
-            format!(
-                "array \"{name}\": expected numbers (float, int or uint), found type {found}. Save it as numpy.float32."
-            )
+            format!("{label}: expected numbers (float, int or uint), found type {found}. Save it as numpy.float32.")
         })?;
         let shape = shape(entry(header, "shape"))
-            .ok_or_else(|| damaged(name, "a shape", &header.chars().take(80).collect::<String>()))?;
+            .ok_or_else(|| damaged(label, "a shape", &header.chars().take(80).collect::<String>()))?;
         let count = shape.iter().try_fold(1_usize, |count, &side| count.checked_mul(side));
         if let Some(count) = count.filter(|&count| count > MAX_NUMBERS) {
             return Err(format!(
-                "array \"{name}\" is too large: expected at most {MAX_NUMBERS} numbers, found {count}. Cut the motion into \
+                "{label} is too large: expected at most {MAX_NUMBERS} numbers, found {count}. Cut the motion into \
                  several files."
             ));
         }
         let bytes_expected = count.and_then(|count| count.checked_mul(number.size));
         if bytes_expected != Some(data.len()) {
             return Err(damaged(
-                name,
+                label,
                 &format!("{shape:?} numbers of {} bytes", number.size),
                 &format!("{} bytes", data.len()),
             ));
@@ -50,13 +59,13 @@ impl Array {
         if entry(header, "fortran_order").starts_with("True") {
             values = transposed(&values, &shape);
         }
-        Ok(Array { name: name.to_owned(), shape, values })
+        Ok(Array { label: label.to_owned(), shape, values })
     }
 }
 
 /// Splits a `.npy` file into header and data.
 fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
-    let (version, rest) = bytes.strip_prefix(b"\x93NUMPY")?.split_first_chunk::<2>()?;
+    let (version, rest) = bytes.strip_prefix(MAGIC)?.split_first_chunk::<2>()?;
     let (length, rest) = if version[0] < 2 {
         let (length, rest) = rest.split_first_chunk()?;
         (usize::from(u16::from_le_bytes(*length)), rest)

@@ -55,12 +55,31 @@ fn arrays() {
     );
 }
 
+/// A `.npy`, and arrays whose names mean nothing.
+#[test]
+fn arrays_that_hold_something_else() {
+    check(&floats("(10, 5)", &[0.0; 50]), &["the array", "22, 24, 52, 55, 30 or 77 joints", "found [10, 5]"]);
+    check(&floats("(2, 22, 4)", &[0.3; 176]), &["quaternions of length 1", "another in frame 0"]);
+    check(&floats("(2, 22, 6)", &[0.3; 264]), &["pairs of axes", "another in frame 0"]);
+    check(&array("|O", "()", b"\x80\x04N."), &["the array", "pickled", "results.npy", "numpy.save("]);
+    check(&floats("(2, 22, 3)", &[f64::NAN; 132]), &["finite numbers", "NaN in frame 0"]);
+    check(&floats("(0, 22, 3)", &[]), &["at least one frame"]);
+    check(&npz(&[("betas", floats("(2, 22, 4)", &[0.3; 176]))]), &["\"posed_joints\"", "found betas"]);
+    let noise: Vec<f64> = (0..40 * 66).map(|place| (1e4 * f64::from(place).sin()).fract()).collect();
+    check(
+        &npz(&[("joints", floats("(40, 22, 3)", &noise))]),
+        &["\"joints\"", "order of SMPL or SOMA", "bones that change"],
+    );
+    check(&npz(&[("joints", floats("(2, 17, 3)", &[0.0; 102]))]), &["\"joints\"", "coordinates", "[2, 17, 3]"]);
+}
+
 #[test]
 fn motions() {
     check_array("poses", floats("(2, 67)", &[0.0; 134]), &["axis times angle", "[2, 67]"]);
-    check_array("poses", floats("(2, 63)", &[0.0; 126]), &["22, 24, 52 or 55 joints", "found 21"]);
-    check_array("poses", floats("(1, 22, 3, 4)", &[0.0; 264]), &["axis times angle", "[1, 22, 3, 4]"]);
-    check_array("poses", floats("(2, 2, 22, 3)", &[0.0; 264]), &["axis times angle", "[2, 2, 22, 3]"]);
+    check_array("poses", floats("(2, 63)", &[0.0; 126]), &["22, 24, 52, 55, 30 or 77 joints", "found [2, 63]"]);
+    check_array("poses", floats("(1, 22, 5, 7)", &[0.0; 770]), &["axis times angle", "[1, 22, 5, 7]"]);
+    check_array("poses", floats("(2, 2, 2, 22, 3)", &[0.0; 528]), &["axis times angle", "[2, 2, 2, 22, 3]"]);
+    check_array("poses", floats("(300, 2, 22, 3)", &[0.0; 39_600]), &["at most 256 people or samples", "found 300"]);
     check_array("poses", floats("(1, 22, 3, 3)", &[0.0; 198]), &["rotations", "another in frame 0"]);
     check_array(
         "poses",
@@ -78,11 +97,11 @@ fn motions() {
     for rate in [0.0, -1.0, 1e-40, f64::NAN] {
         check_array("mocap_framerate", floats("()", &[rate]), &["frames per second"]);
     }
-    check_array("mocap_framerate", floats("(2,)", &[1.0, 2.0]), &["frames per second", "[1.0, 2.0]"]);
+    check_array("mocap_framerate", floats("(2,)", &[1.0, 2.0]), &["frames per second", "found [2]"]);
     let groups = |frames: &str, body: &[f64]| {
         npz(&[("root_orient", floats("(2, 3)", &[0.0; 6])), ("pose_body", floats(&format!("({frames}, 63)"), body))])
     };
     let rootless = [("root_orient", floats("(2, 0)", &[])), ("pose_body", floats("(2, 66)", &[0.0; 132]))];
-    check(&npz(&rootless), &["\"root_orient\"", "one joint", "found 0"]);
+    check(&npz(&rootless), &["\"root_orient\"", "1 joint", "found [2, 0]"]);
     check(&groups("1", &[0.0; 63]), &["\"pose_body\"", "2 frames", "found 1"]);
 }

@@ -1,5 +1,6 @@
-//! Tests of the converter, on archives made here.
+//! Tests of the converter, on files made here.
 
+mod arrays;
 #[path = "../../../../tests/support/damage.rs"]
 mod damage;
 mod errors;
@@ -9,3 +10,4 @@ mod meaning;
 mod mutation;
 #[path = "../../../../tests/support/numpy.rs"]
 mod numpy;
+mod person;

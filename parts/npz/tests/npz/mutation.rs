@@ -2,7 +2,8 @@
 
 use crate::damage::{Damage, cases};
 use crate::glb;
-use crate::numpy::{npz, person, stored};
+use crate::numpy::{floats, npz, person, stored};
+use crate::person::Person;
 
 /// Whether the file is converted. Otherwise the message has to say what was expected.
 fn converts(file: &[u8]) -> bool {
@@ -27,7 +28,16 @@ fn check(kind: &str, mut damaged: impl FnMut(usize) -> Vec<u8>) {
 #[test]
 fn damaged_files_convert_or_say_why_not() {
     let mut damage = Damage::new();
-    for (kind, seed) in [("compressed", npz(&person(24))), ("stored", stored(&person(22)))] {
+    let positions = floats("(2, 6, 22, 3)", &Person::new(22, 12, 0.0).all_positions());
+    let soma = Person::soma(3);
+    let turns = floats("(3, 77, 3, 3)", &soma.numbers(|frame| soma.locals(frame).concat().concat()));
+    let soma = [("local_rot_mats", turns), ("posed_joints", floats("(3, 77, 3)", &soma.all_positions()))];
+    for (kind, seed) in [
+        ("compressed", npz(&person(24))),
+        ("stored", stored(&person(22))),
+        ("positions", positions),
+        ("bones", stored(&soma)),
+    ] {
         check(kind, |_| damage.of(&seed));
     }
 }
