@@ -229,7 +229,7 @@ pub fn load_model(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Py<Model>> {
     Py::new(py, PyClassInitializer::from(file).add_subclass(Model(shared)))
 }
 
-/// Loads a motion: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz, with or without meshes.
+/// Loads a motion: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npy, .npz, with or without meshes.
 #[pyfunction]
 pub fn load_motion(py: Python<'_>, path: PathBuf) -> PyResult<Py<Motion>> {
     Motion::loaded(py, raised(py.detach(|| functions::load_motion(&path)))?)

@@ -120,7 +120,7 @@ struct RetargetArguments {
     /// The model to animate. With --out-dir, any number of models; each one's results are in a folder of its name there.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     model: Vec<PathBuf>,
-    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz. With --out-dir, any number of files, folders
+    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npy, .npz. With --out-dir, any number of files, folders
     /// and patterns.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     motion: Vec<PathBuf>,

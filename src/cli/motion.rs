@@ -17,7 +17,7 @@ use crate::files::{Disk, Held, Opened, Role, member_of};
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
 pub(super) struct MotionArguments {
-    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npz.
+    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .x, .bvh, .npy, .npz.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
     /// The joint map [default: as `gaitway map` proposes].

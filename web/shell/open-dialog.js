@@ -18,13 +18,13 @@ let role;
 const TEXTS = {
   any: {
     title: "Open a model",
-    what: ".glb, .gltf with its files, .vrm, .fbx, .x, .obj (with .skel and .attach) or a .zip of them, motions to go with it (.bvh, .vrma, .npz), and an .hdr image to light it. Files stay in this browser.",
+    what: ".glb, .gltf with its files, .vrm, .fbx, .x, .obj (with .skel and .attach) or a .zip of them, motions to go with it (.bvh, .vrma, .npy, .npz), and an .hdr image to light it. Files stay in this browser.",
     example: "https://example.org/character.glb",
     sample: "Samples",
   },
   motion: {
     title: "Borrow motion",
-    what: ".bvh, .vrma, .npz, .fbx, .x, .glb or .gltf with clips for any skeleton, or a joint map (.json). Files stay in this browser.",
+    what: ".bvh, .vrma, .npy, .npz, .fbx, .x, .glb or .gltf with clips for any skeleton, or a joint map (.json). Files stay in this browser.",
     example: "https://example.org/walk.bvh",
     sample: "Sample walk",
   },

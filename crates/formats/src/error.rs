@@ -8,7 +8,7 @@ use gaitway_character::mesh::GeometryError;
 pub enum LoadError {
     /// No file of the set is a model or motion.
     #[error(
-        "expected a model or a motion, found {}; Gaitway opens .glb, .gltf with its files, .vrm, .vrma, .fbx, .x, .bvh, .npz, .obj (with .skel and .attach), a .zip of these, a joint map (.json), or an environment (.hdr)",
+        "expected a model or a motion, found {}; Gaitway opens .glb, .gltf with its files, .vrm, .vrma, .fbx, .x, .bvh, .npy, .npz, .obj (with .skel and .attach), a .zip of these, a joint map (.json), or an environment (.hdr)",
         listed(found)
     )]
     NoModel {

@@ -109,7 +109,7 @@ pub fn with_references(files: &FileSet, name: &str) -> FileSet {
 pub const GLTF_EXTENSIONS: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
 /// Extensions of other files with a skeleton or clips, in lower case.
-pub const OTHER_MOTION_EXTENSIONS: [&str; 4] = ["bvh", "fbx", "npz", "x"];
+pub const OTHER_MOTION_EXTENSIONS: [&str; 5] = ["bvh", "fbx", "npy", "npz", "x"];
 
 /// What a file does not state but the user may know, and what it still lacks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -336,13 +336,13 @@ fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
     if bytes.starts_with(b"xof ") {
         return Some(Part::X);
     }
-    if file_set::is_npz(bytes) {
+    if file_set::is_npz(bytes) || bytes.starts_with(b"\x93NUMPY") {
         return Some(Part::Npz);
     }
     match extension(name).as_str() {
         "fbx" => Some(Part::Fbx),
         "x" => Some(Part::X),
-        "npz" => Some(Part::Npz),
+        "npy" | "npz" => Some(Part::Npz),
         _ => None,
     }
 }

@@ -14,7 +14,7 @@ pub enum Part {
     Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
-    /// Motions of SMPL bodies in NumPy archives.
+    /// Motions in NumPy arrays and archives of them.
     Npz,
     /// Models and motions in DirectX's `.x` format.
     X,

@@ -71,7 +71,7 @@ impl Item {
 
     /// Whether it has a motion and never a model.
     pub(crate) fn is_motion(&self) -> bool {
-        ["bvh", "vrma", "npz"].contains(&&*extension(&self.bare_name()))
+        ["bvh", "vrma", "npy", "npz"].contains(&&*extension(&self.bare_name()))
     }
 }
 

@@ -6,7 +6,7 @@ pub const CLIPS_SECTION: &str = "CLIPS";
 /// Row of the clip list for no clip. The transport shows it in place of the time.
 pub use gaitway_scene::library::REST_POSE;
 /// Shown for a model without clips.
-pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, .npz, or an .fbx, .x or .glb without meshes), or use \
+pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, .npy, .npz, or an .fbx, .x or .glb without meshes), or use \
     “Borrow motion…” to take another model's clips.";
 /// Shown for a model without clips that cannot borrow any.
 pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so it can't borrow any. Skin its mesh to a skeleton and export it \

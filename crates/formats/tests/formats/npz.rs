@@ -1,9 +1,9 @@
-//! NumPy archives among other files. parts/npz tests what a file means.
+//! NumPy arrays and archives among other files. parts/npz tests what a file means.
 
 use gaitway_formats::{FileSet, Part, load, missing_files, next_preparation, prepare};
 use zip::write::SimpleFileOptions;
 
-use crate::numpy::{npz, person, stored};
+use crate::numpy::{floats, npz, person, stored};
 
 /// Adds the bytes as a dropped file, converts what needs it, and returns the number of joints.
 fn joints_of(name: &str, bytes: Vec<u8>) -> usize {
@@ -21,6 +21,9 @@ fn joints_of(name: &str, bytes: Vec<u8>) -> usize {
 fn it_is_one_file_whatever_its_name() {
     assert_eq!(joints_of("walk.npz", npz(&person(22))), 22);
     assert_eq!(joints_of("https://example.org/motion?id=7", stored(&person(52))), 52);
+    let array = floats("(2, 24, 3)", &[0.0; 144]);
+    assert_eq!(joints_of("walk.npy", array.clone()), 24);
+    assert_eq!(joints_of("https://example.org/motion?id=7", array), 24);
 }
 
 #[test]
