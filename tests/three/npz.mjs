@@ -1,4 +1,4 @@
-// Builds .npz files as NumPy does: see numpy.lib.format.
+// Builds .npz and .npy files as NumPy does: see numpy.lib.format.
 import { archive } from "../browser/archive.mjs";
 
 /**
@@ -33,6 +33,30 @@ export function walkingPerson(joints) {
     "trans.npy": npy([frames, 3], trans),
     "mocap_framerate.npy": npy([], Float64Array.of(20)),
   });
+}
+
+/** Where the joints of HumanML3D's body are in a T-pose. */
+const STANDING = [
+  [0, 0.95, 0], [0.1, 0.86, 0], [-0.1, 0.86, 0], [0, 1.07, -0.02], [0.1, 0.46, 0], [-0.1, 0.46, 0], [0, 1.2, 0], [0.1, 0.05, -0.03],
+  [-0.1, 0.05, -0.03], [0, 1.26, 0], [0.1, 0, 0.1], [-0.1, 0, 0.1], [0, 1.46, -0.02], [0.08, 1.38, 0], [-0.08, 1.38, 0], [0, 1.56, 0.02],
+  [0.18, 1.4, 0], [-0.18, 1.4, 0], [0.45, 1.4, 0], [-0.45, 1.4, 0], [0.7, 1.4, 0], [-0.7, 1.4, 0],
+];
+
+/** Positions alone, as MDM has them: joints × 3 × frames. Both legs swing by up to 60° from the hips, the left one leading. */
+export function walkingPositions() {
+  const frames = 21;
+  const values = new Float64Array(22 * 3 * frames);
+  for (let frame = 0; frame < frames; frame++) {
+    const swing = (Math.PI / 3) * Math.sin((Math.PI * frame) / (frames - 1));
+    for (const [joint, [x, y, z]] of STANDING.entries()) {
+      const leg = [4, 7, 10].includes(joint) ? -1 : [5, 8, 11].includes(joint) ? 1 : 0;
+      const [sin, cos] = [Math.sin(leg * swing), Math.cos(leg * swing)];
+      const hip = leg === 0 ? 0 : 0.86;
+      const at = [x, hip + cos * (y - hip) - sin * z, sin * (y - hip) + cos * z + 0.05 * frame];
+      at.forEach((value, axis) => (values[(3 * joint + axis) * frames + frame] = value));
+    }
+  }
+  return npy([22, 3, frames], values);
 }
 
 /** An archive with a Python object, `None`, in place of numbers. */

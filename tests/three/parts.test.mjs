@@ -11,7 +11,7 @@ import { dataFile, dataFiles, gltfFiles, readGltf, repository, skipWithoutData }
 import { decode as decodeDraco } from "./draco.mjs";
 import { run } from "./gaitway.mjs";
 import { RGBA32, startTranscoder } from "./ktx2.mjs";
-import { walkingPerson } from "./npz.mjs";
+import { walkingPerson, walkingPositions } from "./npz.mjs";
 import { runNatively, startPart } from "./part.mjs";
 
 const MESHOPT = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -120,6 +120,9 @@ test("the .npz reader gives the same bytes as a module", async () => {
     assert.ok(native.bytes.equals(answer.bytes), `${joints} joints: the files differ`);
     assert.deepEqual([native.warnings, answer.warnings], [[], []]);
   }
+  const [answer, native] = [await module(walkingPositions()), runNatively("npz", walkingPositions())];
+  assert.ok(native.bytes.equals(answer.bytes), "positions: the files differ");
+  assert.match(answer.warnings.join(), /^The file has no frame rate .*20 frames per second are assumed/);
 });
 
 describe("meshopt views are decoded as by meshoptimizer", { skip: skipWithoutData }, () => {
