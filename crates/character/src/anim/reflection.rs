@@ -6,7 +6,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{JointIndex, Skeleton};
+use super::{JointIndex, Keys, Skeleton, Transform};
 
 /// How the local transforms of a mirrored skeleton change in a mirror. Those of any other skeleton don't change.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -97,5 +97,27 @@ impl Reflection {
     /// Returns a joint's local scale in the mirror.
     pub fn scale(&self, joint: JointIndex, scale: DVec3) -> DVec3 {
         if matches!(self.place(joint), Place::Mirrors(_)) { scale.abs() } else { scale }
+    }
+
+    /// Returns a joint's local transform in the mirror.
+    pub fn transform(&self, joint: JointIndex, local: &Transform) -> Transform {
+        Transform {
+            translation: self.translation(joint, local.translation.as_dvec3()).as_vec3(),
+            rotation: self.rotation(joint, local.rotation.as_dquat()).as_quat(),
+            scale: self.scale(joint, local.scale.as_dvec3()).as_vec3(),
+        }
+    }
+
+    /// Changes keys of a joint's translation or rotation to those in the mirror, and back again.
+    pub fn change_keys(&self, joint: JointIndex, keys: &mut Keys) {
+        match keys {
+            Keys::Translation(values) => {
+                values.iter_mut().for_each(|at| *at = self.translation(joint, at.as_dvec3()).as_vec3());
+            }
+            Keys::Rotation(values) => {
+                values.iter_mut().for_each(|turn| *turn = self.rotation(joint, turn.as_dquat()).as_quat());
+            }
+            Keys::Scale(_) | Keys::MorphWeights { .. } => {}
+        }
     }
 }

@@ -39,15 +39,7 @@ impl NewChannel {
 
     /// Returns the channel of a mirrored skeleton, from the one in the mirror.
     pub fn in_mirror(mut self, reflection: &Reflection) -> Self {
-        match &mut self.keys {
-            Keys::Translation(values) => {
-                values.iter_mut().for_each(|at| *at = reflection.translation(self.joint, at.as_dvec3()).as_vec3());
-            }
-            Keys::Rotation(values) => {
-                values.iter_mut().for_each(|turn| *turn = reflection.rotation(self.joint, turn.as_dquat()).as_quat());
-            }
-            Keys::Scale(_) | Keys::MorphWeights { .. } => {}
-        }
+        reflection.change_keys(self.joint, &mut self.keys);
         self
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::{Clip, Interpolation, JointIndex, Pose, SampleCursor, Transform, model_from_joint};
 use gaitway_character::asset::{Asset, AssetParts, Slot};
+use gaitway_formats::{FileSet, load, write_vrma};
 use gaitway_retarget::{Body, Pin, PinGoal, Pinning, Retargeting, propose, recognize};
 use glam::{Affine3A, Vec3, Vec3A};
 
@@ -143,6 +144,20 @@ fn mirrored_characters_do_the_same_mirrored() {
         rigs += 1;
     }
     assert!(rigs > 5, "{rigs}");
+}
+
+/// Bones in a file can't be mirrored.
+#[test]
+fn a_mirrored_model_writes_the_same_vrm_animation() {
+    let rig = Rig { axes: 4, armature: true, ..Rig::default() };
+    let written = |figure: Figure, forward: Vec3| {
+        let bytes = write_vrma(&figure.asset, &figure.slots, Some(forward), &figure.asset.clips[0]).unwrap();
+        let mut files = FileSet::default();
+        files.insert("written.vrma", bytes);
+        load(&files).unwrap()
+    };
+    let (plain, other) = (written(dancer(&rig), Vec3::Z), written(in_mirror(dancer(&rig), AXES[0]), Vec3::Z));
+    check((&plain, &plain.clips[0]), (&other, &other.clips[0]), Affine3A::IDENTITY, 1.7, "written");
 }
 
 /// A hand that is held at a place is held at the mirrored place.

@@ -9,6 +9,7 @@ mod asset;
 mod clip;
 mod error;
 mod glb;
+mod in_mirror;
 mod model;
 mod motion;
 mod own_clips;

@@ -4,7 +4,8 @@
 //! Players transfer each bone's rotation relative to this T-pose, in the axes of the model. Models that declare a humanoid rest
 //! in it (VRM 0.x faces −Z). For others it is derived from their reference pose by straightening arms and legs; feet keep their
 //! pitch. Bones in the file have no rest rotations, so their keys are the clip's keys, multiplied from both sides by constants.
-//! Splines become linear keys: three-vrm-animation, which most players use, takes their tangents for keys.
+//! Splines become linear keys: three-vrm-animation, which most players use, takes their tangents for keys. A mirrored model is
+//! written as it is in the mirror.
 
 use std::collections::BTreeMap;
 
@@ -16,6 +17,7 @@ use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::{Affine3A, DAffine3, DQuat, DVec3, EulerRot, Quat, Vec3};
 use serde_json::{Map, Value, json};
 
+use super::in_mirror::Body;
 use super::motion::nodes_and_scenes;
 use super::{WriteError, check_frames, clip, glb};
 
@@ -27,7 +29,9 @@ const FACING_TOLERANCE_RADIANS: f32 = 0.2;
 
 /// Writes `clip` of `asset`, whose body has these `slots` and faces `forward`.
 pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip) -> Result<Vec<u8>, WriteError> {
-    let bones = bones(asset, slots, forward).ok_or_else(|| WriteError::NoBody { clip: clip.name().to_owned() })?;
+    let Body { skeleton, reference, clip, forward } = &Body::new(asset, clip, forward);
+    let bones = bones(asset, skeleton, reference, slots, *forward);
+    let bones = bones.ok_or_else(|| WriteError::NoBody { clip: clip.name().to_owned() })?;
     check_frames(clip, (clip.duration_secs() * RESAMPLED_PER_SEC) as usize, bones.len())?;
     let properties: Vec<_> =
         clip.properties().iter().filter(|channel| node_name(asset, channel.target).is_some()).collect();
@@ -36,15 +40,15 @@ pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip)
         let name = node_name(asset, channel.target).unwrap_or_default();
         joints.push(Joint { name, ..Joint::default() });
     }
-    let skeleton = Skeleton::new(joints).unwrap_or_default();
-    let mut builder = ClipBuilder::new(clip.name(), &skeleton);
+    let written_skeleton = Skeleton::new(joints).unwrap_or_default();
+    let mut builder = ClipBuilder::new(clip.name(), &written_skeleton);
     let mut add = |node: usize, (interpolation, times, keys): NewKeys| {
-        let Some(joint) = skeleton.joint_of_source(node) else { return };
+        let Some(joint) = written_skeleton.joint_of_source(node) else { return };
         // Times are those of a valid clip.
         let added = builder.channel(joint, interpolation, &times, keys);
         debug_assert!(added.is_ok(), "{added:?}");
     };
-    let source = Source { skeleton: &asset.skeleton, clip };
+    let source = Source { skeleton, clip };
     for (node, bone) in bones.iter().enumerate() {
         if let Some(keys) = source.rotations(bone, &bones) {
             add(node, keys);
@@ -57,12 +61,12 @@ pub fn vrma(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>, clip: &Clip)
         add(bones.len() + at, source.property(channel));
     }
     let written = builder.build();
-    let mut root = nodes_and_scenes(&Asset::default(), &skeleton);
+    let mut root = nodes_and_scenes(&Asset::default(), &written_skeleton);
     let targets = properties.iter().map(|channel| channel.target);
     root["extensionsUsed"] = json!([EXTENSION]);
     root["extensions"] = json!({ EXTENSION: extension(asset, &bones, targets) });
     let mut binary = Vec::new();
-    let added = clip::add(&[&written], 1, &skeleton, false, clip::Counts::default(), &mut binary)?;
+    let added = clip::add(&[&written], 1, &written_skeleton, false, clip::Counts::default(), &mut binary)?;
     root["animations"] = json!(added.animations);
     root["accessors"] = json!(added.accessors);
     root["bufferViews"] = json!(added.buffer_views);
@@ -94,12 +98,17 @@ impl Bone {
 }
 
 /// Returns the bones from the hips outwards; `None` without hips. Eyes are left out: the gaze animates them.
-fn bones(asset: &Asset, slots: &Humanoid, forward: Option<Vec3>) -> Option<Vec<Bone>> {
-    let skeleton = &asset.skeleton;
+fn bones(
+    asset: &Asset,
+    skeleton: &Skeleton,
+    reference: &Pose,
+    slots: &Humanoid,
+    forward: Option<Vec3>,
+) -> Option<Vec<Bone>> {
     let hips = slots.joint(Slot::Hips)?;
     let file_from_model = DQuat::from_rotation_y(-f64::from(facing_radians(asset, forward)));
     let mut world = Vec::new();
-    model_from_joint(skeleton, &asset.reference_pose(), Affine3A::IDENTITY, &mut world);
+    model_from_joint(skeleton, reference, Affine3A::IDENTITY, &mut world);
     let position = |joint: JointIndex| file_from_model * world[joint.get()].translation.as_dvec3();
     let mut bones: Vec<Bone> = Vec::new();
     // Rotation of each bone from the reference pose to the T-pose.

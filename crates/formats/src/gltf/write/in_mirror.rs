@@ -1,0 +1,50 @@
+//! A body without the mirror that a node above it, such as an armature with a negative scale, is: for formats whose bones can't be
+//! mirrored. See [`Reflection`](gaitway_character::anim::Reflection).
+
+use gaitway_character::anim::{Clip, ClipBuilder, Keys, Pose, Skeleton};
+use gaitway_character::asset::Asset;
+use glam::Vec3;
+
+/// What is written of an asset; in the mirror if it is mirrored.
+pub struct Body {
+    pub skeleton: Skeleton,
+    /// The reference pose.
+    pub reference: Pose,
+    pub clip: Clip,
+    /// The direction that the body faces.
+    pub forward: Option<Vec3>,
+}
+
+impl Body {
+    pub fn new(asset: &Asset, clip: &Clip, forward: Option<Vec3>) -> Self {
+        let reflection = asset.skeleton.reflection();
+        let (skeleton, mut reference) = (asset.skeleton.clone(), asset.reference_pose());
+        if reflection.is_identity() {
+            return Self { skeleton, reference, clip: clip.clone(), forward };
+        }
+        let mut rest = skeleton.rest().clone();
+        for joint in skeleton.joints().filter(|&joint| reflection.changes(joint)) {
+            let local = reflection.transform(joint, &rest.local(joint));
+            rest.set_local(joint, local);
+            // What mirrors the body is above it, and no part of its bind pose.
+            reference.set_local(joint, local);
+        }
+        let mut builder = ClipBuilder::new(clip.name(), &skeleton);
+        for channel in clip.channels() {
+            let (joint, mut keys) = (channel.joint, channel.keys.clone());
+            match &mut keys {
+                Keys::Scale(values) => {
+                    values.iter_mut().for_each(|scale| *scale = reflection.scale(joint, scale.as_dvec3()).as_vec3());
+                }
+                keys => reflection.change_keys(joint, keys),
+            }
+            let times = &clip.timelines()[channel.timeline as usize];
+            let added = builder.channel(joint, channel.interpolation, times, keys);
+            // Those of a valid clip, except for signs.
+            debug_assert!(added.is_ok(), "{added:?}");
+        }
+        let clip = builder.build().with_properties_of(clip, &Some);
+        let forward = forward.map(|forward| forward * Vec3::new(-1.0, 1.0, 1.0));
+        Self { skeleton: skeleton.with_rest(&rest), reference, clip, forward }
+    }
+}
