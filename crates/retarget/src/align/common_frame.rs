@@ -12,6 +12,23 @@ const SNAP_DEGREES: f64 = 2.0;
 /// Returns the rotation from a body's model space to the common frame: the axis nearest to the spine becomes +Y and the
 /// body faces +Z. None without hips, head and two sides.
 pub fn common_from_model(rest: &WorldPose, slots: &Humanoid) -> Option<DQuat> {
+    let Front { upright, yaw_degrees: yaw } = front(rest, slots)?;
+    let quarter = nearest_quarter(yaw);
+    let yaw = if (yaw - quarter).abs() < SNAP_DEGREES { quarter } else { yaw };
+    Some(unit(DQuat::from_rotation_y(-yaw.to_radians()) * upright))
+}
+
+/// How a body stands in its model space.
+#[derive(Debug, Clone, Copy)]
+pub struct Front {
+    /// Turns the axis nearest to the spine onto +Y.
+    pub upright: DQuat,
+    /// The angle about that axis from +Z to where the body faces.
+    pub yaw_degrees: f64,
+}
+
+/// None without hips, head and two sides.
+pub fn front(rest: &WorldPose, slots: &Humanoid) -> Option<Front> {
     let at = |slot| slots.joint(slot).map(|joint| rest.position(joint));
     let up = at(Slot::Head)? - at(Slot::Hips)?;
     let upright = nearest_axis_to_y(up);
@@ -30,10 +47,12 @@ pub fn common_from_model(rest: &WorldPose, slots: &Humanoid) -> Option<DQuat> {
     if pointed.dot(forward) < -0.5 {
         forward = -forward;
     }
-    let yaw = forward.x.atan2(forward.z).to_degrees();
-    let quarter = (yaw / 90.0).round() * 90.0;
-    let yaw = if (yaw - quarter).abs() < SNAP_DEGREES { quarter } else { yaw };
-    Some(unit(DQuat::from_rotation_y(-yaw.to_radians()) * upright))
+    Some(Front { upright, yaw_degrees: forward.x.atan2(forward.z).to_degrees() })
+}
+
+/// The multiple of 90 that is nearest to an angle in degrees.
+pub fn nearest_quarter(degrees: f64) -> f64 {
+    (degrees / 90.0).round() * 90.0
 }
 
 /// Turns the coordinate axis nearest to a direction onto +Y.

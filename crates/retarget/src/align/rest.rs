@@ -6,7 +6,7 @@ use gaitway_character::asset::{Asset, BoundTransform, Humanoid};
 use glam::DQuat;
 
 use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
-use super::stance::{Stance, Standing, best_standing};
+use super::stance::{Stance, Standing, best_standing, face_as_file, is_moment_of};
 use super::up::find_up;
 use crate::map::{ResolvedMap, RestChoice};
 use crate::pose::{Local, Scratch, WorldPose, clip_locals, node_locals};
@@ -115,10 +115,13 @@ fn chosen_rest(input: RestInput) -> SourceRest {
         };
     }
     let confidence = stance.map_or(1.0, Stance::confidence);
-    let better = stance.filter(|_| !is_standing);
+    // A moment of the clip that is less upright and symmetric than rests are is one in motion.
+    let is_rest = is_standing && (confidence >= 1.0 || !is_moment_of(skeleton, clip, &locals));
+    let better = stance.filter(|_| !is_rest);
     match better.and_then(|stance| best_standing(skeleton, slots, clip, stance)) {
-        Some(Standing { locals, stance, time_secs }) => {
-            rest(locals, time_secs.map_or(RestOrigin::Mean, RestOrigin::Moment), stance.confidence())
+        Some(Standing { locals: mut standing, stance, time_secs }) => {
+            face_as_file(skeleton, slots, &locals, &mut standing);
+            rest(standing, time_secs.map_or(RestOrigin::Mean, RestOrigin::Moment), stance.confidence())
         }
         None => rest(locals, RestOrigin::Motion, confidence),
     }

@@ -136,6 +136,7 @@ impl Rigs<'_> {
             && most(named, sources.len())
             && most(same_place, named)
             && most(agreeing, offsets.len())
+            && !self.has_other_ends(&offsets)
             && !self.is_rolled(&offsets)
             && !self.is_same_pose_in_other_axes(&offsets)
     }
@@ -160,6 +161,16 @@ impl Rigs<'_> {
         let target = self.target.locals[offset.target.get()].translation;
         let source = self.source.locals[offset.source.get()].translation;
         degrees_between(target, source)
+    }
+
+    /// Whether the axes of joints with few children, such as feet and hands, differ: too few offsets to count among all others.
+    fn has_other_ends(&self, offsets: &[Offset]) -> bool {
+        let mut nearest_of_parent: BTreeMap<JointIndex, f64> = BTreeMap::new();
+        for offset in offsets {
+            let nearest = nearest_of_parent.entry(offset.source_parent).or_insert(f64::INFINITY);
+            *nearest = nearest.min(self.offset_degrees(offset));
+        }
+        nearest_of_parent.values().filter(|&&degrees| degrees > MIN_ROLL_DEGREES).count() >= MIN_ROLLED
     }
 
     /// Whether joints are rolled about their children's offsets between rests that hold the same pose around them.

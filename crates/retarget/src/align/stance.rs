@@ -1,10 +1,11 @@
 //! Judges whether a body could rest in a pose: upright and symmetric.
 
-use gaitway_character::anim::{Clip, Skeleton};
+use gaitway_character::anim::{Clip, Keys, Skeleton};
 use gaitway_character::asset::{Humanoid, Slot};
 use glam::{DQuat, DVec3};
 
-use crate::math::{degrees_between, unit};
+use super::common_frame::{front, nearest_quarter};
+use crate::math::{angle_between, degrees_between, unit};
 use crate::pose::{Local, Scratch, WorldPose, clip_locals};
 
 /// Number of times at which the clip is compared.
@@ -12,6 +13,12 @@ const REST_SAMPLES: usize = 64;
 
 /// Minimum gain in score for a pose of the clip to replace the rest, or a later one an earlier one.
 const MIN_GAIN: f64 = 0.01;
+
+/// A body in motion is straighter than this; bones that are written along one axis are not.
+const MIN_BODY_UPRIGHTNESS: f64 = 0.3;
+
+/// Poses whose joints are turned by less than this on average are the same.
+const SAME_POSE_DEGREES: f64 = 2.0;
 
 /// Segments that left and right are compared by; the right ones are the mirrored slots.
 const SEGMENTS: [(Slot, Slot); 5] = [
@@ -61,7 +68,6 @@ pub struct Standing {
 /// Returns the pose of the clip, at some time or averaged, that looks most like a rest; None if none beats `rest`. In a
 /// walk no single pose is symmetric, but the mean is.
 pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: Stance) -> Option<Standing> {
-    let (first_secs, last_secs) = (clip.first_key_secs(), clip.duration_secs());
     let mut scratch = Scratch::default();
     let mut best: Option<Standing> = None;
     let mut mean: Vec<Local> = Vec::new();
@@ -73,8 +79,7 @@ pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: S
             best = Some(Standing { locals: pose.locals, stance, time_secs });
         }
     };
-    for sample in 0..=REST_SAMPLES {
-        let time_secs = first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32;
+    for time_secs in sample_times(clip) {
         let locals = clip_locals(skeleton, clip, time_secs, &mut scratch);
         add_rotations(&mut mean, &locals);
         consider(locals, Some(time_secs));
@@ -82,6 +87,42 @@ pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: S
     mean.iter_mut().for_each(|local| local.rotation = unit(local.rotation));
     consider(mean, None);
     best
+}
+
+fn sample_times(clip: &Clip) -> impl Iterator<Item = f32> {
+    let (first_secs, last_secs) = (clip.first_key_secs(), clip.duration_secs());
+    (0..=REST_SAMPLES).map(move |sample| first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32)
+}
+
+/// Whether a clip passes through a pose.
+pub fn is_moment_of(skeleton: &Skeleton, clip: &Clip, pose: &[Local]) -> bool {
+    let turning = clip.channels().iter().filter(|channel| matches!(channel.keys, Keys::Rotation(_)));
+    let moved: Vec<usize> = turning.map(|channel| channel.joint.get()).collect();
+    let mut scratch = Scratch::default();
+    sample_times(clip).any(|time_secs| {
+        let locals = clip_locals(skeleton, clip, time_secs, &mut scratch);
+        let turn = |&joint: &usize| angle_between(locals[joint].rotation, pose[joint].rotation).to_degrees();
+        moved.iter().map(turn).sum::<f64>() < SAME_POSE_DEGREES * moved.len() as f64
+    })
+}
+
+/// Turns a pose of a clip about its up axis to face where the file's bodies do: along +Z, or the nearest axis to where the body of
+/// the file's own rest faces, if that is one that stands as the pose does. A moment of the clip faces anywhere.
+pub fn face_as_file(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], locals: &mut [Local]) {
+    let world_pose = |locals: &[Local]| WorldPose::new(skeleton, locals.to_vec(), DQuat::IDENTITY);
+    let (rest, pose) = (world_pose(rest), world_pose(locals));
+    let (Some(found), Some(hips)) = (front(&pose, slots), slots.joint(Slot::Hips)) else { return };
+    let of_rest = front(&rest, slots).filter(|front| front.upright == found.upright);
+    let of_rest = of_rest.filter(|_| uprightness(&rest, slots).is_some_and(|straight| straight > MIN_BODY_UPRIGHTNESS));
+    let wanted = of_rest.map_or(0.0, |front| nearest_quarter(front.yaw_degrees));
+    let turn = DQuat::from_rotation_y((wanted - found.yaw_degrees).to_radians());
+    let turn = unit(found.upright.conjugate() * turn * found.upright);
+    let hips = pose.position(hips);
+    for joint in skeleton.joints().filter(|&joint| skeleton.parent(joint).is_none()) {
+        let local = &mut locals[joint.get()];
+        local.rotation = unit(turn * local.rotation);
+        local.translation = hips + turn * (local.translation - hips);
+    }
 }
 
 /// Adds rotations up. A quaternion and its negative are the same rotation.

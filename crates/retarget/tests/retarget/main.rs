@@ -19,6 +19,7 @@ mod contact_table;
 mod contacts;
 mod coursework;
 mod endless;
+mod facings;
 mod faults;
 mod feet;
 mod figure;

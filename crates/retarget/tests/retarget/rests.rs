@@ -32,12 +32,12 @@ pub fn with_rest(
 }
 
 /// A file with this skeleton and the clip, and nothing else.
-fn alone(skeleton: Skeleton, clip: Clip) -> Asset {
+pub fn alone(skeleton: Skeleton, clip: Clip) -> Asset {
     Asset::new(AssetParts { clips: vec![clip], ..Asset::from(skeleton).into_parts() }).unwrap()
 }
 
 /// Largest angle between two clips of one skeleton, over some moments, and the joint that has it.
-fn largest_degrees<'a>(skeleton: &'a Skeleton, a: &Clip, b: &Clip) -> (f64, &'a str) {
+pub fn largest_degrees<'a>(skeleton: &'a Skeleton, a: &Clip, b: &Clip) -> (f64, &'a str) {
     let moments = (0..=20).map(|step| a.duration_secs() * step as f32 / 20.0);
     let angles = moments.flat_map(|time| {
         let (a, b) = (model_rotations(skeleton, a, time), model_rotations(skeleton, b, time));
@@ -150,13 +150,18 @@ fn the_same_names_with_other_axes_are_another_rig() {
 
 /// Rolls a joint's axes about the offset of its child, which stays as it is: only the rest shows it.
 fn roll(figure: &mut Figure, slot: Slot, child: Slot) {
+    let along = figure.asset.skeleton.rest().local(figure.joint(child)).translation.normalize();
+    turn_axes(figure, slot, child, Quat::from_axis_angle(along, std::f32::consts::PI));
+}
+
+/// Turns the axes of a joint with one child, but not its body part.
+fn turn_axes(figure: &mut Figure, slot: Slot, child: Slot, turn: Quat) {
     let (joint, child) = (figure.joint(slot), figure.joint(child));
-    let along = figure.asset.skeleton.rest().local(child).translation.normalize();
-    let turn = Quat::from_axis_angle(along, std::f32::consts::PI);
     let skeleton = with_rest(&figure.asset.skeleton, |other, rest| {
         if other == joint {
             rest.rotation = (rest.rotation * turn).normalize();
         } else if other == child {
+            rest.translation = turn.inverse() * rest.translation;
             rest.rotation = (turn.inverse() * rest.rotation).normalize();
         }
     });
@@ -184,8 +189,27 @@ fn rolled_axes_are_another_rig() {
     }
 }
 
+/// Two of many offsets, in a rest that shows nothing.
+#[test]
+fn feet_with_other_axes_are_another_rig() {
+    let rig = Rig { axes: 6, ..Rig::default() };
+    let (model, mut motion) = (build(&rig), build(&rig));
+    for (foot, toes) in [(Slot::LeftFoot, Slot::LeftToes), (Slot::RightFoot, Slot::RightToes)] {
+        let along = motion.asset.skeleton.rest().local(motion.joint(toes)).translation.normalize();
+        let turn = Quat::from_axis_angle(along.any_orthonormal_vector(), std::f32::consts::FRAC_PI_2);
+        turn_axes(&mut motion, foot, toes, turn);
+    }
+    motion.dance(4, 60.0, Interpolation::Linear);
+    let mut random = Random(5);
+    let motion = rested(&motion, |_| random.rotation(60.0), Vec3::ZERO);
+    let source = Body { asset: &motion, slots: &model.slots };
+    let map = map(&model, &model);
+    let rest = Retargeting::new(body(&model), source, 0, &map).unwrap().motion_rest();
+    assert_ne!(rest.origin, RestOrigin::Model);
+}
+
 /// Makes `figure` walk in place: legs and arms swing against each other, knees bend.
-fn walk(figure: &mut Figure) {
+pub fn walk(figure: &mut Figure) {
     const KEYS: usize = 17;
     let times: Vec<f32> = (0..KEYS).map(|key| key as f32 / (KEYS - 1) as f32).collect();
     let skeleton = &figure.asset.skeleton;
@@ -216,7 +240,7 @@ fn walk(figure: &mut Figure) {
 }
 
 /// The walk in a file that rests in its own frame at this time.
-fn resting_in_motion(figure: &Figure, time_secs: f32) -> Asset {
+pub fn resting_in_motion(figure: &Figure, time_secs: f32) -> Asset {
     let mut pose = figure.asset.skeleton.rest().clone();
     figure.asset.clips[0].sample(&figure.asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     let skeleton = with_rest(&figure.asset.skeleton, |joint, rest| *rest = pose.local(joint));
