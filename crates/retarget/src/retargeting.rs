@@ -60,8 +60,8 @@ impl<'a> Retargeting<'a> {
             target_rest: &target_locals,
             map,
         });
-        let source_rest = Rest { skeleton: &source.asset.skeleton, slots: source.slots, locals };
-        let target_rest = Rest { skeleton: target_skeleton, slots: model.slots, locals: target_locals };
+        let source_rest = Rest { asset: source.asset, slots: source.slots, locals };
+        let target_rest = Rest { asset: model.asset, slots: model.slots, locals: target_locals };
         let alignment = align(map, &source_rest, &target_rest, &target_nodes, target_from_source);
         let tracks = SourceTracks::new(&source.asset.skeleton, source_clip, &map.muted, &unmoved);
         let hips = match_hips(HipsInput {

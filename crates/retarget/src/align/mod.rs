@@ -11,13 +11,13 @@ mod up;
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{JointIndex, Skeleton};
-use gaitway_character::asset::{Humanoid, Slot};
+use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::DQuat;
 
 use super::map::{Pair, ResolvedMap};
 use super::math::unit;
 use super::pose::{Local, WorldPose};
-use swing::SwingInput;
+use swing::{Side, SwingInput};
 
 /// Both rests in the common frame: +Y up, facing +Z. Positions are in each side's own units.
 #[derive(Debug)]
@@ -38,17 +38,17 @@ impl Alignment {
     }
 }
 
-/// One skeleton with its chosen rest.
+/// One body with its chosen rest.
 #[derive(Debug)]
 pub struct Rest<'a> {
-    pub skeleton: &'a Skeleton,
+    pub asset: &'a Asset,
     pub slots: &'a Humanoid,
     pub locals: Vec<Local>,
 }
 
 impl Rest<'_> {
     fn world_pose(&self, world_from_model: DQuat) -> WorldPose {
-        WorldPose::new(self.skeleton, self.locals.clone(), world_from_model)
+        WorldPose::new(&self.asset.skeleton, self.locals.clone(), world_from_model)
     }
 }
 
@@ -79,9 +79,8 @@ pub fn align(
         None => swing::swings(SwingInput {
             map,
             pair_of_slot: &pair_of_slot,
-            target_skeleton: target.skeleton,
-            source: &source_pose,
-            target: &target_pose,
+            source: Side { asset: source.asset, slots: source.slots, pose: &source_pose },
+            target: Side { asset: target.asset, slots: target.slots, pose: &target_pose },
         }),
     };
     let mut locals = target_nodes.to_vec();
@@ -90,8 +89,8 @@ pub fn align(
         let joint = map.pairs[pair].target.get();
         locals[joint].translation = target.locals[joint].translation;
     }
-    align_rotations(&mut locals, map, &swings, target.skeleton, &target_pose);
-    let aligned = WorldPose::new(target.skeleton, locals, common_from_target);
+    align_rotations(&mut locals, map, &swings, &target.asset.skeleton, &target_pose);
+    let aligned = WorldPose::new(&target.asset.skeleton, locals, common_from_target);
     Alignment { source: source_pose, target: aligned, unaligned_target: target_pose, pair_of_slot }
 }
 

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use gaitway_character::anim::Skeleton;
-use gaitway_character::asset::Slot;
+use gaitway_character::anim::JointIndex;
+use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::{DQuat, DVec3};
 
 use crate::map::ResolvedMap;
 use crate::math::{angle_between, degrees_between, unit};
-use crate::pose::{WorldPose, ancestry};
+use crate::pose::{WorldPose, ancestry, is_within, node_locals};
+use crate::recognize::middle_of_skin;
 
 /// Segments to align, from joint to joint, parents first.
 const LIMBS: [(Slot, Slot); 8] = [
@@ -61,24 +62,63 @@ const MIN_TORSO_TURN_DEGREES: f64 = 15.0;
 /// A knee or elbow bent by less than this does not define the roll of its limb.
 const MIN_BEND_DEGREES: f64 = 10.0;
 
-/// What the swings depend on: both rests in the common frame and which pair fills which slot.
+/// One of the two bodies.
+#[derive(Clone, Copy)]
+pub struct Side<'a> {
+    pub asset: &'a Asset,
+    pub slots: &'a Humanoid,
+    /// The rest in the common frame.
+    pub pose: &'a WorldPose,
+}
+
+/// What the swings depend on: both bodies and which pair fills which slot.
 #[derive(Clone, Copy)]
 pub struct SwingInput<'a> {
     pub map: &'a ResolvedMap,
     pub pair_of_slot: &'a BTreeMap<Slot, usize>,
-    pub target_skeleton: &'a Skeleton,
-    pub source: &'a WorldPose,
-    pub target: &'a WorldPose,
+    pub source: Side<'a>,
+    pub target: Side<'a>,
 }
 
 impl SwingInput<'_> {
     /// Both directions of a segment, source first.
     fn directions(&self, from: Slot, to: Slot) -> Option<[DVec3; 2]> {
-        let from = &self.map.pairs[*self.pair_of_slot.get(&from)?];
-        let to = &self.map.pairs[*self.pair_of_slot.get(&to)?];
-        let source = self.source.position(to.source) - self.source.position(from.source);
-        let target = self.target.position(to.target) - self.target.position(from.target);
-        Some([source.try_normalize()?, target.try_normalize()?])
+        let (pair, end) = (&self.map.pairs[*self.pair_of_slot.get(&from)?], self.pair_of_slot.get(&to));
+        let (source, target) = (self.source, self.target);
+        let ends = match end.map(|&end| &self.map.pairs[end]) {
+            Some(end) => [source.pose.position(end.source), target.pose.position(end.target)],
+            // Where neither side has the end, nothing says that both go on alike.
+            None if LIMBS.contains(&(from, to)) && [source, target].iter().any(|side| side.has(to)) => {
+                [source.unmapped_end(pair.source, to)?, target.unmapped_end(pair.target, to)?]
+            }
+            None => return None,
+        };
+        let from_source = ends[0] - source.pose.position(pair.source);
+        let from_target = ends[1] - target.pose.position(pair.target);
+        Some([from_source.try_normalize()?, from_target.try_normalize()?])
+    }
+}
+
+impl Side<'_> {
+    fn has(&self, slot: Slot) -> bool {
+        self.slots.joint(slot).is_some()
+    }
+
+    /// Where a limb leads whose end isn't mapped: to the joint in its slot, or else its farthest child, or the middle of its skin.
+    fn unmapped_end(&self, joint: JointIndex, slot: Slot) -> Option<DVec3> {
+        let skeleton = &self.asset.skeleton;
+        if let Some(end) = self.slots.joint(slot).filter(|&end| is_within(skeleton, end, joint)) {
+            return Some(self.pose.position(end));
+        }
+        let start = self.pose.position(joint);
+        let children = skeleton.joints().filter(|&child| skeleton.parent(child) == Some(joint));
+        let ends = children.map(|child| self.pose.position(child));
+        let farthest = ends.max_by(|a, b| a.distance(start).total_cmp(&b.distance(start)));
+        farthest.filter(|end| *end != start).or_else(|| {
+            let nodes = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY);
+            let along = middle_of_skin(self.asset, joint)?.as_dvec3() - nodes.position(joint);
+            Some(start + self.pose.rotation(joint) * nodes.rotation(joint).conjugate() * along)
+        })
     }
 }
 
@@ -90,11 +130,10 @@ pub fn swings(input: SwingInput) -> Vec<DQuat> {
         .filter(|[source, target]| degrees_between(*source, *target) > MIN_TORSO_TURN_DEGREES)
         .map_or(DQuat::IDENTITY, |[source, target]| arc(target, source));
     let mut swings: Vec<DQuat> = Vec::with_capacity(input.map.pairs.len());
-    let mut swing_of_joint: Vec<Option<DQuat>> = vec![None; input.target_skeleton.len()];
+    let mut swing_of_joint: Vec<Option<DQuat>> = vec![None; input.target.asset.skeleton.len()];
     for (index, pair) in input.map.pairs.iter().enumerate() {
-        let inherited =
-            ancestry(input.target_skeleton, pair.target).skip(1).find_map(|joint| swing_of_joint[joint.get()]);
-        let inherited = inherited.unwrap_or(DQuat::IDENTITY);
+        let mut above = ancestry(&input.target.asset.skeleton, pair.target).skip(1);
+        let inherited = above.find_map(|joint| swing_of_joint[joint.get()]).unwrap_or(DQuat::IDENTITY);
         let swing = match slot_of_pair.get(&index) {
             Some(Slot::Hips) => DQuat::IDENTITY,
             Some(Slot::Spine | Slot::Chest | Slot::UpperChest) => torso,

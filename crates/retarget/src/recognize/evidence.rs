@@ -89,6 +89,11 @@ pub(super) fn regions_at_rest(asset: &Asset) -> Vec<Option<Region>> {
     regions(asset, &matrices(asset, asset.skeleton.rest()))
 }
 
+/// The middle of the vertices at rest that a joint influences most, in the space of [`crate::pose::node_locals`].
+pub fn middle_of_skin(asset: &Asset, joint: JointIndex) -> Option<Vec3> {
+    regions_at_rest(asset)[joint.get()].map(|region| region.min.midpoint(region.max))
+}
+
 fn matrices(asset: &Asset, pose: &Pose) -> Vec<Affine3A> {
     let mut matrices = Vec::new();
     model_from_joint(&asset.skeleton, pose, mirror_from_model(&asset.skeleton), &mut matrices);

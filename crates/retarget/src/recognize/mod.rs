@@ -28,6 +28,7 @@ use crate::pose::mirror_from_model;
 
 use by_shape::Found;
 use evidence::Evidence;
+pub(crate) use evidence::middle_of_skin;
 use tree::Tree;
 
 pub(crate) use creature::chains;

@@ -55,7 +55,8 @@ fn with_legs(radius: f32) -> Figure {
     dressed(&Rig::default(), &[&boxes(0.1, 0.02)[..], &left, &right].concat())
 }
 
-fn dressed(rig: &Rig, boxes: &[(Slot, [Vec3; 2])]) -> Figure {
+/// A figure with rigid boxes: from and to, relative to the joint in the T-pose.
+pub fn dressed(rig: &Rig, boxes: &[(Slot, [Vec3; 2])]) -> Figure {
     let mut figure = build(rig);
     let size = rig.size as f32;
     let mut meshes = Vec::new();

@@ -7,6 +7,7 @@ use gaitway_retarget::{
 };
 use glam::{DQuat, DVec3, Quat, Vec3};
 
+use crate::contacts::dressed;
 use crate::figure::{BODY, Figure, Rig, build};
 use crate::rests::with_rest;
 
@@ -365,4 +366,27 @@ fn a_path_is_scaled_by_legs_or_torso_where_hips_have_no_height() {
         let scale = retarget(&model, &motion, &map(&model, &motion)).hips_scale.unwrap();
         assert!((scale - 2.0).abs() < 1e-3, "{scale}");
     }
+}
+
+/// A hand that isn't mapped, since it has no slot on one side.
+#[test]
+fn a_limb_without_a_mapped_end_is_aligned_by_its_child() {
+    let motion =
+        dancer(&Rig { axes: 8, arms_down_degrees: 50.0, prefix: "m_", ..Rig::default() }, Interpolation::Linear);
+    let mut model = build(&Rig { axes: 5, ..Rig::default() });
+    for hand in [Slot::LeftHand, Slot::RightHand] {
+        model.slots.0.remove(&hand);
+    }
+    check_body_parts(&model, &motion, 0.05);
+}
+
+/// The forearm of the model is its last joint.
+#[test]
+fn a_limb_without_an_end_is_aligned_by_its_skin() {
+    let motion =
+        dancer(&Rig { axes: 8, arms_down_degrees: 50.0, prefix: "m_", ..Rig::default() }, Interpolation::Linear);
+    let forearm = |side: f32| [Vec3::new(0.0, -0.03, -0.03), Vec3::new(0.4 * side, 0.03, 0.03)];
+    let rig = Rig { without: vec![Slot::LeftHand, Slot::RightHand], ..Rig::default() };
+    let model = dressed(&rig, &[(Slot::LeftLowerArm, forearm(1.0)), (Slot::RightLowerArm, forearm(-1.0))]);
+    check_body_parts(&model, &motion, 0.05);
 }
