@@ -138,6 +138,8 @@ fn retarget_reports_the_documented_keys() {
         "skin_stretch_max",
         "skin_stretch_mean",
         "skin_stretch_max_joint",
+        "skin_tear_max",
+        "skin_tear_max_joint",
         "idle_chains",
         "coverage",
     ] {

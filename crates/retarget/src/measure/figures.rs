@@ -70,6 +70,11 @@ pub struct Figures {
     pub skin_stretch_mean: Option<f64>,
     /// The joint of `skin_stretch_max`.
     pub skin_stretch_max_joint: Option<String>,
+    /// The same as `skin_stretch_max`, only for what joints add that aren't where they rest on their parents: 1 if the body is in one
+    /// piece. `None` where translations are the motion's, on the same skeleton or between creatures.
+    pub skin_tear_max: Option<f64>,
+    /// The joint of `skin_tear_max`.
+    pub skin_tear_max_joint: Option<String>,
     /// Limbs and other chains of joints that stay still although their counterparts in the motion move: parts of the body, or names
     /// of joints they begin with. Chains are found by hierarchy and place.
     pub idle_chains: Vec<String>,
@@ -156,10 +161,7 @@ pub fn measure(
         add_orientation_errors(&mut orientation, transfer, source, unplanted, turn_back);
         add_direction_errors(&mut direction, &segments, source, target, turn_back);
         add_direction_errors(&mut facing, &facing_segments, source, target, turn_back);
-        if let Some(ground) = ground {
-            let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
-            penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
-        }
+        penetration = deepest(penetration, ground, &ground_joints, target);
         for foot in &mut feet {
             foot.source.push(source.position(foot.source_joint));
             foot.target.push(removed.restored(transfer, target, foot.target_joint, index, turn_back));
@@ -190,10 +192,19 @@ pub fn measure(
         skin_stretch_max: moments.worst_stretch.map(|(stretch, _)| stretch),
         skin_stretch_mean: moments.mean_stretch,
         skin_stretch_max_joint: moments.worst_stretch.map(|(_, joint)| transfer.target_skeleton.label(joint)),
+        skin_tear_max: moments.worst_tear.map(|(tear, _)| tear),
+        skin_tear_max_joint: moments.worst_tear.map(|(_, joint)| transfer.target_skeleton.label(joint)),
         idle_chains: moments.idle_chains,
         coverage: moments.coverage,
     };
     (figures, tracks)
+}
+
+/// How deep any of the joints has been below the ground: in a pose, or in those before.
+fn deepest(before: Option<f64>, ground: Option<f64>, joints: &[JointIndex], pose: &WorldPose) -> Option<f64> {
+    let depths = |ground: f64| joints.iter().map(move |&joint| ground - pose.position(joint).y);
+    let depths = ground.into_iter().flat_map(depths);
+    depths.fold(before, |max, depth| Some(max.unwrap_or(0.0).max(depth)))
 }
 
 /// The joints of the target whose positions are measured.

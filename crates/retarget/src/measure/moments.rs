@@ -10,7 +10,7 @@ use super::played::PlayedClip;
 use super::stretch::SkinEdges;
 use crate::feet::Soles;
 use crate::pose::PartialPose;
-use crate::transfer::{Transfer, removed_travel};
+use crate::transfer::{CopyPolicy, Transfer, removed_travel};
 
 /// Steps between moments: the rate, and the fewest and most of a clip.
 const STEPS_PER_SEC: f32 = 4.0;
@@ -21,6 +21,7 @@ const MAX_STEPS: f32 = 48.0;
 #[derive(Debug, Default)]
 pub struct Moments {
     pub worst_stretch: Option<(f64, JointIndex)>,
+    pub worst_tear: Option<(f64, JointIndex)>,
     pub mean_stretch: Option<f64>,
     pub idle_chains: Vec<String>,
     pub coverage: Option<f64>,
@@ -44,12 +45,23 @@ pub fn moments(transfer: &Transfer, slots: [&Humanoid; 2], clip: &Clip, soles: S
         PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, source_legs.joints());
     let mut played = PlayedClip::new(transfer, &target_legs.joints().collect::<Vec<_>>());
 
+    // Offsets are the model's at its rest, which isn't that of its nodes where a skin was bound otherwise.
+    let reflection = skeleton.reflection();
+    let offsets = skeleton.joints().zip(&transfer.alignment.target.locals);
+    let offsets: Vec<_> =
+        offsets.map(|(joint, local)| (joint, reflection.translation(joint, local.translation).as_vec3())).collect();
+    // Where joints move on their parents as their sources do, the motion stretches the body on purpose: on the same skeleton, and
+    // between creatures.
+    let takes_translations = CopyPolicy::new(transfer).translations || transfer.alignment.pair_of_slot.is_empty();
+    let mut in_place = Vec::new();
     let (mut pose, mut cursor) = (Pose::default(), SampleCursor::default());
     for (index, &time) in times.iter().enumerate() {
         pose.copy_from(skeleton.rest());
         clip.sample(skeleton, time, &mut cursor, &mut pose);
         model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut model_from_joints);
-        skin.add(&model_from_joints);
+        offsets.iter().for_each(|&(joint, offset)| pose.set_translation(joint, offset));
+        model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut in_place);
+        skin.add(&model_from_joints, &in_place);
         for limb in &mut limbs {
             let mut source = transfer.tracks.locals_at(time);
             limb.add(|joint| pose.local(joint).rotation.as_dquat(), |joint| source(joint).rotation);
@@ -67,6 +79,7 @@ pub fn moments(transfer: &Transfer, slots: [&Humanoid; 2], clip: &Clip, soles: S
     }
     Moments {
         worst_stretch: skin.worst(),
+        worst_tear: skin.worst_tear().filter(|_| !takes_translations),
         mean_stretch: skin.mean(),
         idle_chains: limbs.iter().filter(|limb| limb.is_idle()).map(|limb| limb.name.clone()).collect(),
         coverage: coverage(&limbs),

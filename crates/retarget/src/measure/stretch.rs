@@ -1,5 +1,8 @@
 //! How much the skin is stretched: the lengths of its edges against those of the mesh as it was bound. Needs neither slots nor
 //! names, so a body that comes apart shows, whatever the map says.
+//!
+//! Bent joints stretch some meshes as much as torn ones do others. What tears a body is a joint that isn't where it belongs on its
+//! parent, so edges are also compared with those of the same pose with every joint in its place.
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Asset, MeshInstance};
@@ -23,11 +26,18 @@ pub struct SkinEdges<'a> {
     edges: Vec<Edge>,
     /// Changes by joint, at the current moment.
     by_joint: Vec<Sum>,
-    model_from_bind: Vec<Vec<Affine3A>>,
+    /// The same, by how much edges are longer than with every joint in its place.
+    torn_by_joint: Vec<Sum>,
+    posed: Palettes,
+    in_place: Palettes,
     /// Changes at all moments.
     all: Sum,
     worst: Option<(f64, JointIndex)>,
+    worst_tear: Option<(f64, JointIndex)>,
 }
+
+/// `model_from_bind` of each skin's joints.
+type Palettes = Vec<Vec<Affine3A>>;
 
 struct Edge {
     skin: usize,
@@ -60,8 +70,8 @@ impl End {
 }
 
 impl Edge {
-    fn length(&self, model_from_bind: &[Vec<Affine3A>]) -> f32 {
-        let [from, to] = self.ends.each_ref().map(|end| end.posed(&model_from_bind[self.skin]));
+    fn length(&self, palettes: &[Vec<Affine3A>]) -> f32 {
+        let [from, to] = self.ends.each_ref().map(|end| end.posed(&palettes[self.skin]));
         from.distance(to)
     }
 }
@@ -94,15 +104,17 @@ impl<'a> SkinEdges<'a> {
             asset,
             edges: Vec::new(),
             by_joint: vec![Sum::default(); asset.skeleton.len()],
-            model_from_bind: vec![Vec::new(); asset.skins.len()],
+            torn_by_joint: vec![Sum::default(); asset.skeleton.len()],
+            posed: Vec::new(),
+            in_place: Vec::new(),
             all: Sum::default(),
             worst: None,
+            worst_tear: None,
         };
-        found.pose(model_from_joint);
+        pose(asset, model_from_joint, &mut found.posed);
         for instance in &asset.instances {
             let mut edges = skin_edges(asset, instance);
-            let mut scales: Vec<f32> =
-                edges.iter().map(|edge| edge.length(&found.model_from_bind) / edge.bound_length).collect();
+            let mut scales: Vec<f32> = edges.iter().map(|edge| edge.length(&found.posed) / edge.bound_length).collect();
             scales.sort_by(f32::total_cmp);
             let Some(&scale) = scales.get(scales.len() / 2).filter(|scale| scale.is_normal()) else { continue };
             for edge in &mut edges {
@@ -114,32 +126,28 @@ impl<'a> SkinEdges<'a> {
         found
     }
 
-    fn pose(&mut self, model_from_joint: &[Affine3A]) {
-        for (skin, model_from_bind) in self.asset.skins.iter().zip(&mut self.model_from_bind) {
-            model_from_bind.clear();
-            let joints = skin.joints().iter().zip(skin.joint_from_bind());
-            model_from_bind.extend(joints.map(|(joint, bind)| model_from_joint[joint.get()] * *bind));
-        }
-    }
-
-    /// Measures a pose.
-    pub fn add(&mut self, model_from_joint: &[Affine3A]) {
+    /// Measures a pose. `in_place` is the same with every joint where it rests on its parent.
+    pub fn add(&mut self, model_from_joint: &[Affine3A], in_place: &[Affine3A]) {
         if self.edges.is_empty() {
             return;
         }
-        self.pose(model_from_joint);
+        pose(self.asset, model_from_joint, &mut self.posed);
+        pose(self.asset, in_place, &mut self.in_place);
         self.by_joint.fill(Sum::default());
+        self.torn_by_joint.fill(Sum::default());
         for edge in &self.edges {
-            let change = (edge.length(&self.model_from_bind) - edge.bound_length).abs();
-            self.by_joint[edge.joint.get()].add(change, edge.unit);
+            let [length, in_place] = [&self.posed, &self.in_place].map(|palettes| edge.length(palettes));
+            self.by_joint[edge.joint.get()].add((length - edge.bound_length).abs(), edge.unit);
+            let torn = (length - in_place.max(edge.bound_length)).max(0.0);
+            self.torn_by_joint[edge.joint.get()].add(torn, edge.unit);
         }
         for (joint, sum) in self.asset.skeleton.joints().zip(&self.by_joint) {
             self.all.change += sum.change;
             self.all.units += sum.units;
-            let is_worse = |stretch: &f64| self.worst.is_none_or(|(worst, _)| *stretch > worst);
-            if let Some(stretch) = sum.stretch().filter(is_worse).filter(|_| sum.edges >= MIN_EDGES) {
-                self.worst = Some((stretch, joint));
-            }
+            keep_worst(&mut self.worst, joint, sum);
+        }
+        for (joint, sum) in self.asset.skeleton.joints().zip(&self.torn_by_joint) {
+            keep_worst(&mut self.worst_tear, joint, sum);
         }
     }
 
@@ -151,6 +159,27 @@ impl<'a> SkinEdges<'a> {
     /// The joint around which edges change most at any moment, and by how much.
     pub fn worst(&self) -> Option<(f64, JointIndex)> {
         self.worst
+    }
+
+    /// The joint around which edges are stretched most at any moment by joints that are out of place, and by how much.
+    pub fn worst_tear(&self) -> Option<(f64, JointIndex)> {
+        self.worst_tear
+    }
+}
+
+fn pose(asset: &Asset, model_from_joint: &[Affine3A], palettes: &mut Palettes) {
+    palettes.resize_with(asset.skins.len(), Vec::new);
+    for (skin, palette) in asset.skins.iter().zip(palettes) {
+        palette.clear();
+        let joints = skin.joints().iter().zip(skin.joint_from_bind());
+        palette.extend(joints.map(|(joint, bind)| model_from_joint[joint.get()] * *bind));
+    }
+}
+
+fn keep_worst(worst: &mut Option<(f64, JointIndex)>, joint: JointIndex, sum: &Sum) {
+    let is_worse = |stretch: &f64| worst.is_none_or(|(worst, _)| *stretch > worst);
+    if let Some(stretch) = sum.stretch().filter(is_worse).filter(|_| sum.edges >= MIN_EDGES) {
+        *worst = Some((stretch, joint));
     }
 }
 

@@ -69,6 +69,8 @@ fn a_path_on_the_spine_alone_stretches_the_skin() {
         assert_eq!(warnings(&good), [""; 0], "{}: {good:?}", model.name);
         let [of_good, of_torn] = [&good, &torn].map(|figures| figures.skin_stretch_mean.unwrap() - 1.0);
         assert!(of_torn > of_good, "{}: {of_torn}, not more than {of_good}", model.name);
+        assert_eq!(warnings(&torn), ["torn-skin"], "{}: {torn:?}", model.name);
+        assert!(good.skin_tear_max.unwrap() < 1.001, "{}: {good:?}", model.name);
         // Angles don't show it.
         assert_eq!(good.orientation_error_degrees_max, torn.orientation_error_degrees_max);
     });
@@ -98,5 +100,17 @@ fn feet_that_point_backwards_face_away() {
         let figures = measured(model, motion, &turned(model, &map, &FEET)).unwrap().0;
         assert!(figures.facing_path_error_degrees_mean.unwrap() > 120.0, "{who}: {figures:?}");
         assert!(warnings(&figures).contains(&"faces-away"), "{who}: {figures:?}");
+    });
+}
+
+/// Clips of the same skeleton may stretch the body on purpose, as this one does.
+#[test]
+fn a_file_does_not_tear_its_own_body() {
+    with_pairs(&["Xbot.glb"], &["Xbot.glb"], |model, _, map| {
+        let clip = model.asset.clips.iter().position(|clip| clip.name() == "sneak_pose").unwrap();
+        let pair = Retargeting::new(model.body(), model.body(), clip, &map).unwrap();
+        let figures = pair.figures(&pair.bake().unwrap());
+        assert_eq!(figures.skin_tear_max, None);
+        assert_eq!(warnings(&figures), [""; 0], "{figures:?}");
     });
 }
