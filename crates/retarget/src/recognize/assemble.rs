@@ -9,6 +9,7 @@ use gaitway_character::asset::Slot::{self, *};
 
 use super::known::{self, Known};
 use super::limb_words::{ARM, Fits, LEG, Parts, SURE_FIT, align};
+use super::names::is_number;
 use super::tree::Tree;
 use super::words::{self, Word};
 use super::{Reason, RecognizedJoint};
@@ -245,13 +246,30 @@ impl Search<'_> {
     fn fingers(&mut self, side: Side, hand: JointIndex) {
         for finger in 0..5_u8 {
             let mut above = hand;
-            let joints = self.all(Some(side), Word::Finger(finger));
+            let mut joints = self.all(Some(side), Word::Finger(finger));
+            if finger > 0 && self.begins_in_palm(&joints, hand) {
+                joints.remove(0);
+            }
             for slot in known::finger_slots(finger, side) {
                 let Some(joint) = self.under(&joints, above) else { break };
                 self.put(slot, joint, Reason::Words);
                 above = joint;
             }
         }
+    }
+
+    /// Whether the first joint of a finger lies in the palm: it begins near the wrist, is longer than what follows, and has no number,
+    /// unlike the first phalanx below it.
+    fn begins_in_palm(&self, joints: &[JointIndex], hand: JointIndex) -> bool {
+        let [palm, first, second, _, ..] = *joints else { return false };
+        let numbers =
+            [palm, first].map(|joint| self.tree.names[joint.get()].words.iter().rfind(|word| is_number(word)));
+        let is_named =
+            matches!(numbers, [None, Some(number)] if number.trim_start_matches('0') == "1" && number.len() < 3);
+        let distance = |a: JointIndex, b: JointIndex| self.tree.position(a).distance(self.tree.position(b));
+        let inner = distance(palm, first);
+        let is_chain = joints.windows(2).all(|pair| self.tree.is_under(pair[1], pair[0]));
+        is_chain && is_named && inner > distance(first, second) && distance(hand, palm) < inner
     }
 
     fn put_limb(&mut self, side: Side, slots: [Slot; 4], joints: [Option<JointIndex>; 4]) {
