@@ -79,6 +79,7 @@ type NewKeys = (Interpolation, Vec<f32>, Keys);
 /// A humanoid bone. Parents come first, the hips first of all.
 struct Bone {
     slot: Slot,
+    /// The joint whose rotation is written.
     joint: JointIndex,
     parent: Option<usize>,
     /// In the T-pose, in the space of the file.
@@ -111,8 +112,8 @@ fn bones(
     model_from_joint(skeleton, reference, Affine3A::IDENTITY, &mut world);
     let position = |joint: JointIndex| file_from_model * world[joint.get()].translation.as_dvec3();
     let mut bones: Vec<Bone> = Vec::new();
-    // Rotation of each bone from the reference pose to the T-pose.
-    let mut straightened: Vec<DQuat> = Vec::new();
+    // Rotation of each bone from the reference pose to the T-pose, and the joint where the bone begins.
+    let mut straightened: Vec<(DQuat, JointIndex)> = Vec::new();
     let written = slots.0.iter().filter(|(slot, _)| !matches!(slot, Slot::LeftEye | Slot::RightEye));
     let mut written: Vec<(Slot, JointIndex)> = written.map(|(&slot, &joint)| (slot, joint)).collect();
     let is_below_hips = |joint| chain(skeleton, joint).any(|above| above == hips);
@@ -125,9 +126,9 @@ fn bones(
         if parent.is_none() && slot != Slot::Hips {
             continue;
         }
-        let turned = parent.map_or(DQuat::IDENTITY, |parent| straightened[parent]);
+        let turned = parent.map_or(DQuat::IDENTITY, |parent| straightened[parent].0);
         let at = match parent {
-            Some(parent) => bones[parent].position + turned * (position(joint) - position(bones[parent].joint)),
+            Some(parent) => bones[parent].position + turned * (position(joint) - position(straightened[parent].1)),
             None => position(joint),
         };
         let swing = straight(slot).filter(|_| asset.humanoid.is_none()).and_then(|(end, direction)| {
@@ -138,14 +139,22 @@ fn bones(
             Slot::LeftFoot | Slot::RightFoot => DQuat::IDENTITY,
             _ => swing.unwrap_or(DQuat::IDENTITY) * turned,
         };
+        let (begin, joint) = (joint, turning(skeleton, slots, slot, joint));
         let rotation = world[joint.get()].to_scale_rotation_translation().1.as_dquat();
         // A bone that is scaled to 0 has no rotation.
         let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
         let reference = (swung * file_from_model * rotation).normalize();
         bones.push(Bone { slot, joint, parent, position: at, reference, file_from_model });
-        straightened.push(swung);
+        straightened.push((swung, begin));
     }
     Some(bones)
+}
+
+/// Returns the joint whose rotation a bone gets: of a neck of several joints, which is one bone here, the last, so that it turns as far
+/// as the whole neck. Where it bends is lost.
+fn turning(skeleton: &Skeleton, slots: &Humanoid, slot: Slot, joint: JointIndex) -> JointIndex {
+    let below_head = slots.joint(Slot::Head).and_then(|head| skeleton.parent(head)).filter(|_| slot == Slot::Neck);
+    below_head.filter(|&last| chain(skeleton, last).any(|above| above == joint)).unwrap_or(joint)
 }
 
 /// Returns the angle about Y from +Z to the direction that the model faces.
