@@ -9,8 +9,8 @@ use super::keys::channel::NewChannel;
 use super::map::{Contacts, Feet, Pair};
 use super::pose::{Local, ancestry, is_within, node_locals};
 use super::transfer::{
-    CopyPolicy, Transfer, copied_channels, detached_channels, detached_ends, expression_channels, extraction_joint,
-    hips_channels, rotation_laws,
+    CopyPolicy, RotationLaw, Transfer, copied_channels, detached_channels, detached_ends, expression_channels,
+    extraction_joint, follower_channels, hips_channels, rotation_laws, twist_channels,
 };
 
 /// Why a clip cannot be retargeted.
@@ -71,8 +71,36 @@ pub struct Retargeted {
     pub planting: Option<Planting>,
 }
 
-/// Retargets the clip, then plants its feet and keeps its contacts if the map asks for it.
+/// Retargets the clip, then plants its feet, keeps its contacts and moves twist joints and helpers, if the map asks for it.
 pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>) -> Result<Retargeted, RetargetError> {
+    let made = bake_body(transfer, bodies)?;
+    let mut channels = twist_channels(transfer, &made.clip);
+    channels.extend(follower_channels(transfer, &made.clip));
+    if channels.is_empty() { Ok(made) } else { made.with(transfer, in_file(transfer, channels)) }
+}
+
+/// Turns channels as they are in the mirror, where bodies that a node above them mirrors are moved, into those of the file.
+fn in_file(transfer: &Transfer, channels: Vec<NewChannel>) -> Vec<NewChannel> {
+    let reflection = transfer.target_skeleton.reflection();
+    channels.into_iter().map(|channel| channel.in_mirror(&reflection)).collect()
+}
+
+impl Retargeted {
+    /// Replaces channels of the clip by others of the same joint and property.
+    fn with(self, transfer: &Transfer, others: Vec<NewChannel>) -> Result<Self, RetargetError> {
+        let mut channels = NewChannel::corrected(&self.clip, &self.resampled, &[], None, Vec::new());
+        let is_replaced =
+            |channel: &NewChannel| others.iter().any(|other| other.is_of(channel.joint, channel.keys.property()));
+        channels.retain(|channel| !is_replaced(channel));
+        channels.extend(others);
+        Ok(Self { unplanted: self.unplanted, planting: self.planting, ..build(transfer, channels)? })
+    }
+}
+
+fn bake_body<'a>(
+    transfer: &Transfer,
+    bodies: impl FnOnce() -> Option<&'a Bodies>,
+) -> Result<Retargeted, RetargetError> {
     let planted = bake_planted(transfer)?;
     let bodies = if transfer.map.contacts == Contacts::Keep { bodies() } else { None };
     let kept = bodies.map(|bodies| bake_kept(transfer, bodies, &planted)).transpose()?.flatten();
@@ -128,6 +156,10 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     let pairs = transfer.map.pairs.iter().zip(&laws);
     let mut channels: Vec<NewChannel> =
         pairs.filter_map(|(pair, law)| law.channel(pair.target, rest[pair.target.get()].rotation)).collect();
+    for &joint in transfer.turns.unpaired() {
+        let law = transfer.turns.of(joint).map(|turn| RotationLaw::new(transfer, joint, turn));
+        channels.extend(law.and_then(|law| law.channel(joint, rest[joint.get()].rotation)));
+    }
 
     let policy = CopyPolicy::new(transfer);
     let copied = copied_channels(transfer, policy);
@@ -144,8 +176,7 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         let offsets = rest_translations(transfer, &rest, moves);
         channels.extend(offsets);
     }
-    let reflection = transfer.target_skeleton.reflection();
-    let mut channels: Vec<NewChannel> = channels.into_iter().map(|channel| channel.in_mirror(&reflection)).collect();
+    let mut channels = in_file(transfer, channels);
     // In an equal skeleton, the copied translations keep the ends in place.
     let detached = if ends.is_empty() || (policy.translations && policy.is_same_skeleton) {
         Vec::new()

@@ -1,13 +1,13 @@
 //! Retargets a clip: turns a clip of one skeleton and a joint map into an ordinary clip of another skeleton. Knows no file
 //! format.
 //!
-//! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
-//! rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of hands and knees, `bake`
-//! builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any clip, or holds
-//! parts of it still, `stack` puts others over it, `pins` holds hands and feet, and `baker` makes a clip of what these two do.
-//! For files, `merge` keeps the keys of clips of one rig, `root_bone` moves travel from the hips to a root, and `fewer_keys` drops
-//! what interpolation restores.
-//! `budget`, `pose`, `keys`, `math`, `times`, `limit`, `side`, `skin` and `two_bones` are shared.
+//! The steps, in order: `recognize` finds humanoid slots, `body` the chains that they form, `map` proposes and resolves a joint
+//! map, `align` brings the two rests together, `transfer` computes the channels, `feet` plants the feet, `contacts` keeps those of
+//! hands and knees, `bake` builds the clip, `measure` compares it with its source. `change` mirrors, trims, loops and moves any
+//! clip, or holds parts of it still, `stack` puts others over it, `pins` holds hands and feet, and `baker` makes a clip of what
+//! these two do. For files, `merge` keeps the keys of clips of one rig, `root_bone` moves travel from the hips to a root, and
+//! `fewer_keys` drops what interpolation restores. `budget`, `pose`, `keys`, `math`, `times`, `limit`, `side`, `skin` and
+//! `two_bones` are shared.
 //!
 //! The result is an ordinary clip: the library lists it after the model's own, and the player cannot tell them apart.
 //! `docs/retargeting.md` has the math.
@@ -40,6 +40,7 @@
 mod align;
 mod bake;
 mod baker;
+mod body;
 mod budget;
 mod change;
 mod contacts;
@@ -65,14 +66,15 @@ mod two_bones;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
+pub use body::{Anatomy, Chain, ChainJoint, ChainPart, Follower, Segment, TwistJoint};
 pub use budget::MAX_VIDEO_FRAMES;
 pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
 pub use fewer_keys::{KeyTolerance, Thinned, fewer_keys};
 pub use map::{
-    ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty,
-    Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
-    Unmapped, UpChoice, has_expressions_alone, opposite_joints, propose, propose_recognized,
+    Chains, ClipRef, Contacts, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel,
+    MutedProperty, Pair, PathOrigin, Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions,
+    RootPart, SourceRef, Unmapped, UpChoice, has_expressions_alone, opposite_joints, propose, propose_recognized,
 };
 pub use measure::{Figures, FitWarning, FootTrack, StagePair, Verdict, Verdicts};
 pub use merge::{clip_for, merged_clip};

@@ -8,14 +8,15 @@ use glam::Affine3A;
 use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
 use super::align::{Alignment, Rest, align};
 use super::bake::{RetargetError, Retargeted, bake};
+use super::body::Anatomy;
 use super::budget::are_too_deep;
 use super::contacts::Bodies;
 use super::keys::tracks::SourceTracks;
-use super::map::{ResolvedMap, has_expressions_alone};
+use super::map::{Chains, ResolvedMap, has_expressions_alone};
 use super::measure::{Figures, FootTrack, MeasuredClip, StagePair, measure, model_from_source, stage_pairs};
 use super::pose::node_locals;
 use super::side::Body;
-use super::transfer::{Hips, HipsInput, Transfer, match_hips};
+use super::transfer::{Hips, HipsInput, Transfer, Turns, match_hips};
 
 /// A clip and a model, aligned by a joint map.
 #[derive(Debug)]
@@ -25,6 +26,9 @@ pub struct Retargeting<'a> {
     map: &'a ResolvedMap,
     tracks: SourceTracks<'a>,
     alignment: Alignment,
+    /// The model's; empty unless the map shares chains.
+    anatomy: Anatomy,
+    turns: Turns,
     hips: Option<Hips>,
     rest: FoundRest,
     /// Fitted to the meshes when first needed; `None` if no limb is mapped.
@@ -62,8 +66,13 @@ impl<'a> Retargeting<'a> {
         });
         let source_rest = Rest { asset: source.asset, slots: source.slots, locals };
         let target_rest = Rest { asset: model.asset, slots: model.slots, locals: target_locals };
-        let alignment = align(map, &source_rest, &target_rest, &target_nodes, target_from_source);
+        let [source_anatomy, anatomy] = match map.chains {
+            Chains::Off => [Anatomy::default(), Anatomy::default()],
+            Chains::Share => [source, model].map(|body| Anatomy::new(body.asset, body.slots)),
+        };
         let tracks = SourceTracks::new(&source.asset.skeleton, source_clip, &map.muted, &unmoved);
+        let turns = Turns::new(map, &tracks, [&source_anatomy, &anatomy], target_skeleton.len());
+        let alignment = align(map, &source_rest, &target_rest, &target_nodes, turns.unpaired(), target_from_source);
         let hips = match_hips(HipsInput {
             map,
             alignment: &alignment,
@@ -73,7 +82,7 @@ impl<'a> Retargeting<'a> {
             target_slots: model.slots,
         });
         let hips = hips.map(|hips| if is_in_place { hips } else { hips.resting_as_target() });
-        Ok(Self { model, source, map, tracks, alignment, hips, rest: found, bodies: OnceLock::new() })
+        Ok(Self { model, source, map, tracks, alignment, anatomy, turns, hips, rest: found, bodies: OnceLock::new() })
     }
 
     /// Returns the motion's rest pose: its origin and confidence.
@@ -89,6 +98,8 @@ impl<'a> Retargeting<'a> {
             target_skeleton: &self.model.asset.skeleton,
             target: self.model.asset,
             alignment: &self.alignment,
+            anatomy: &self.anatomy,
+            turns: &self.turns,
             hips: self.hips.as_ref(),
         }
     }

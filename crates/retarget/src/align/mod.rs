@@ -52,13 +52,15 @@ impl Rest<'_> {
     }
 }
 
-/// `target_nodes` is the target's rest pose as the player sees it. `target_from_source` is set if the rest poses match;
+/// `target_nodes` is the target's rest pose as the player sees it; `unpaired` are the joints that turn without a pair.
+/// `target_from_source` is set if the rest poses match;
 /// it rotates one model space into the other, and nothing else needs aligning.
 pub fn align(
     map: &ResolvedMap,
     source: &Rest,
     target: &Rest,
     target_nodes: &[Local],
+    unpaired: &[JointIndex],
     target_from_source: Option<DQuat>,
 ) -> Alignment {
     let pair_of_slot = pairs_of_slots(map, source.slots, target.slots);
@@ -89,6 +91,9 @@ pub fn align(
         let joint = map.pairs[pair].target.get();
         locals[joint].translation = target.locals[joint].translation;
     }
+    for joint in unpaired {
+        locals[joint.get()].rotation = target_pose.locals[joint.get()].rotation;
+    }
     align_rotations(&mut locals, map, &swings, &target.asset.skeleton, &target_pose);
     let aligned = WorldPose::new(&target.asset.skeleton, locals, common_from_target);
     Alignment { source: source_pose, target: aligned, unaligned_target: target_pose, pair_of_slot }
@@ -98,8 +103,7 @@ fn is_face(slot: Slot) -> bool {
     matches!(slot, Slot::LeftEye | Slot::RightEye | Slot::Jaw)
 }
 
-/// Turns the nodes' local transforms into the aligned rest: swings and corrections on mapped joints, the nodes' own rotations on
-/// others.
+/// Turns the nodes' local transforms into the aligned rest: swings and corrections on mapped joints, the given rotations on others.
 fn align_rotations(locals: &mut [Local], map: &ResolvedMap, swings: &[DQuat], skeleton: &Skeleton, target: &WorldPose) {
     let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
     let mut pairs = map.pairs.iter().zip(swings).peekable();

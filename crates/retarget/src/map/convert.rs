@@ -109,6 +109,7 @@ impl JointMapFile {
             muted_channels,
             feet: self.feet,
             contacts: self.contacts,
+            chains: self.chains,
             crossfade_secs: self.crossfade_secs,
         }
     }
@@ -152,6 +153,7 @@ impl JointMap {
             muted_channels: muted.collect(),
             feet: self.feet,
             contacts: self.contacts,
+            chains: self.chains,
             crossfade_secs: self.crossfade_secs,
         }
     }

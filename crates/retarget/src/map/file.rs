@@ -10,7 +10,7 @@ use serde_json::value::RawValue;
 
 use super::error::MapError;
 use super::joint_map::{MapEntry, MutedChannel};
-use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
+use super::options::{Chains, Contacts, Feet, Keep, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
 
 /// A joint map as written in a file. Joints that it does not name have no source.
@@ -46,6 +46,9 @@ pub struct JointMapFile {
     /// Whether contacts of hands and knees are kept.
     #[serde(default, skip_serializing_if = "Contacts::is_off")]
     pub contacts: Contacts,
+    /// Whether chains of different numbers of joints share their bend, and twist joints and helpers follow.
+    #[serde(default, skip_serializing_if = "Chains::is_off")]
+    pub chains: Chains,
     /// Crossfade to and from the retargeted clips, 0 or more.
     #[serde(default)]
     pub crossfade_secs: f64,
@@ -187,6 +190,7 @@ impl Default for JointMapFile {
             muted_channels: Vec::new(),
             feet: Feet::Off,
             contacts: Contacts::Off,
+            chains: Chains::Off,
             crossfade_secs: 0.0,
         }
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::Quat;
 use serde::{Deserialize, Serialize};
 
-use super::options::{Contacts, Feet, Keep, PathOrigin, RestChoices, RootOptions};
+use super::options::{Chains, Contacts, Feet, Keep, PathOrigin, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
 
 /// A joint map for one model and one motion. Joints without an entry have no source.
@@ -31,6 +31,8 @@ pub struct JointMap {
     pub feet: Feet,
     /// Whether contacts of hands and knees are kept.
     pub contacts: Contacts,
+    /// Whether chains of different numbers of joints share their bend, and twist joints and helpers follow.
+    pub chains: Chains,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,
 }
@@ -87,7 +89,11 @@ impl JointMap {
     /// A map without joints, with the options that Gaitway proposes. Where files and links leave one out, [`Self::default`] holds,
     /// which never changes.
     pub fn with_proposed_options() -> Self {
-        Self { root: RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() }, ..Self::default() }
+        Self {
+            root: RootOptions { origin: PathOrigin::Feet, ..RootOptions::default() },
+            chains: Chains::Share,
+            ..Self::default()
+        }
     }
 
     /// The source of a target joint. None if the map does not mention the joint, `Some(None)` if it is deliberately without

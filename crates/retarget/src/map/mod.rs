@@ -23,7 +23,7 @@ pub use expressions::has_expressions_alone;
 pub use file::{JointMapFile, SourceRef};
 pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
 pub use opposite::{opposite_joints, pairs_by_side};
-pub use options::{Contacts, Feet, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, UpChoice};
+pub use options::{Chains, Contacts, Feet, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, UpChoice};
 pub use propose::{Proposal, ProposedPair, propose, propose_recognized};
 pub use resolved::{Layer, Pair, ResolvedMap};
 pub(super) use shared_names::shared_names;

@@ -133,6 +133,25 @@ impl Contacts {
     }
 }
 
+/// What happens to joints that bend or turn as one and don't follow the motion's one to one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Chains {
+    /// Joints without a source rest; the next mapped joint takes their turn.
+    #[default]
+    Off,
+    /// Spines, necks and fingers of different numbers of joints share the bend by length, twist joints take their share of a limb's
+    /// turn about its axis, and helpers beside the body follow hands and feet.
+    Share,
+}
+
+impl Chains {
+    /// Whether maps may leave the option out.
+    pub fn is_off(&self) -> bool {
+        *self == Self::Off
+    }
+}
+
 /// What happens to the feet after retargeting.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

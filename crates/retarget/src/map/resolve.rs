@@ -35,6 +35,7 @@ impl JointMap {
         }
         Ok(ResolvedMap {
             pairs: joints.pairs,
+            without_source: joints.without_source,
             layers,
             rest: self.rest,
             root: self.root,
@@ -43,6 +44,7 @@ impl JointMap {
             muted: resolve_muted(&self.muted_channels, &motion.skeleton)?,
             feet: self.feet,
             contacts: self.contacts,
+            chains: self.chains,
             crossfade_secs: self.crossfade_secs,
         })
     }
@@ -55,12 +57,14 @@ type LayerChoice = Option<(usize, bool)>;
 struct ResolvedJoints {
     /// Ascending by target.
     pairs: Vec<Pair>,
+    /// Ascending.
+    without_source: Vec<JointIndex>,
     /// By target joint; None where the map's default applies.
     layers: Vec<Option<LayerChoice>>,
 }
 
 fn resolve_joints(map: &JointMap, model: &Asset, motion: &Asset) -> Result<ResolvedJoints, MapError> {
-    let mut pairs = Vec::new();
+    let (mut pairs, mut without_source) = (Vec::new(), Vec::new());
     let mut layers = vec![None; model.skeleton.len()];
     for (&number, entry) in &map.joints {
         let path = format!("joints.#{number}");
@@ -73,6 +77,8 @@ fn resolve_joints(map: &JointMap, model: &Asset, motion: &Asset) -> Result<Resol
         if let Some(source) = entry.source {
             let source = source_joint(&motion.skeleton, source, &format!("{path}.source"))?;
             pairs.push(Pair { target, source, correction });
+        } else {
+            without_source.push(target);
         }
         layers[target.get()] = match &entry.unmapped {
             Some(unmapped) => Some(resolve_layer(model, unmapped, &format!("{path}.unmapped"))?),
@@ -80,7 +86,8 @@ fn resolve_joints(map: &JointMap, model: &Asset, motion: &Asset) -> Result<Resol
         };
     }
     pairs.sort_by_key(|pair: &Pair| pair.target);
-    Ok(ResolvedJoints { pairs, layers })
+    without_source.sort_unstable();
+    Ok(ResolvedJoints { pairs, without_source, layers })
 }
 
 /// The joint of the motion with this number in its file.

@@ -3,13 +3,15 @@
 use gaitway_character::anim::{JointIndex, Property};
 use glam::Quat;
 
-use super::options::{Contacts, Feet, Keep, RestChoices, RootOptions};
+use super::options::{Chains, Contacts, Feet, Keep, RestChoices, RootOptions};
 
 /// A joint map in joint indices, checked against both skeletons.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ResolvedMap {
     /// Ascending by target; each target appears once.
     pub pairs: Vec<Pair>,
+    /// Joints that are deliberately without a source, ascending.
+    pub without_source: Vec<JointIndex>,
     /// Joints without a source that play one of the model's own clips, ascending. Others rest.
     pub layers: Vec<Layer>,
     /// Which poses count as the rests of both skeletons.
@@ -26,6 +28,8 @@ pub struct ResolvedMap {
     pub feet: Feet,
     /// Whether contacts of hands and knees are kept.
     pub contacts: Contacts,
+    /// Whether chains of different numbers of joints share their bend, and twist joints and helpers follow.
+    pub chains: Chains,
     /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,
 }

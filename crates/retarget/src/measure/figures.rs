@@ -211,7 +211,7 @@ fn deepest(before: Option<f64>, ground: Option<f64>, joints: &[JointIndex], pose
 fn measured_joints(transfer: &Transfer, feet: &[FootPositions], ground_joints: &[JointIndex]) -> Vec<JointIndex> {
     // The feet themselves are mapped; joints of their soles may not be.
     let of_soles = feet.iter().flat_map(|foot| foot.sole.joints());
-    let mapped = transfer.map.pairs.iter().map(|pair| pair.target);
+    let mapped = transfer.map.pairs.iter().flat_map(|pair| [pair.target, transfer.turned(pair)]);
     mapped.chain(ground_joints.iter().copied()).chain(of_soles).collect()
 }
 
@@ -225,7 +225,8 @@ fn mapped_segments<'a>(
 
 /// The mapped joints of the source, in the common frame.
 fn mapped_source<'a>(transfer: &Transfer<'a>) -> PartialPose<'a> {
-    let joints = transfer.map.pairs.iter().map(|pair| pair.source);
+    let pairs = transfer.map.pairs.iter();
+    let joints = pairs.flat_map(|pair| std::iter::once(pair.source).chain(transfer.turn(pair).joints()));
     PartialPose::new(transfer.tracks.skeleton, transfer.alignment.source.world_from_model, joints)
 }
 
@@ -255,8 +256,8 @@ fn add_orientation_errors(
     let from_rest =
         |pose: &WorldPose, rest: &WorldPose, joint: JointIndex| pose.rotation(joint) * rest.rotation(joint).conjugate();
     for pair in &transfer.map.pairs {
-        let target = turn_back * from_rest(target, &transfer.alignment.target, pair.target);
-        let source = from_rest(source, &transfer.alignment.source, pair.source);
+        let target = turn_back * from_rest(target, &transfer.alignment.target, transfer.turned(pair));
+        let source = transfer.turn(pair).at(|joint| from_rest(source, &transfer.alignment.source, joint));
         errors.add(angle_between(target, source).to_degrees());
     }
 }

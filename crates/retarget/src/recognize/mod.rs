@@ -24,6 +24,7 @@ use gaitway_character::anim::{JointIndex, Pose, SampleCursor};
 use gaitway_character::asset::{Asset, Humanoid, Slot};
 use glam::Vec3;
 
+use crate::body::Anatomy;
 use crate::pose::mirror_from_model;
 
 use by_shape::Found;
@@ -48,6 +49,8 @@ pub struct Recognized {
     pub contradictions: Vec<Contradiction>,
     /// Whether the joints' positions decided left and right against their names, for all joints together.
     pub by_position: bool,
+    /// The chains of the body, and what belongs to them.
+    pub anatomy: Anatomy,
 }
 
 /// The joint of a slot.
@@ -198,7 +201,8 @@ pub fn recognize(asset: &Asset) -> Recognized {
     }
     let model_from_mirror = mirror_from_model(&asset.skeleton).inverse();
     let facing = facing.map(|direction| model_from_mirror.transform_vector3(direction));
-    Recognized { parts, left_out, facing, contradictions, by_position }
+    let recognized = Recognized { parts, left_out, facing, contradictions, by_position, anatomy: Anatomy::default() };
+    Recognized { anatomy: Anatomy::new(asset, &recognized.humanoid()), ..recognized }
 }
 
 /// The joints whose position has decided against the side in their name.

@@ -11,7 +11,7 @@ use super::yaw::Yaw;
 use super::{Hips, Transfer};
 use crate::keys::limits::MAX_TURN;
 use crate::keys::resample::{Curve, Resampled, resample, union};
-use crate::map::RootPart;
+use crate::map::{Pair, RootPart};
 use crate::math::yaw_of;
 use crate::pose::ancestry;
 
@@ -24,8 +24,8 @@ const MAX_SWAY_DEGREES: f64 = 45.0;
 /// Returns the law of each pair, with the turning removed that the root options ask for, and the turning that goes to the
 /// root joint instead.
 pub fn rotation_laws<'a>(transfer: &Transfer<'a>) -> (Vec<RotationLaw<'a>>, Option<Yaw>) {
-    let mut laws: Vec<RotationLaw> =
-        (0..transfer.map.pairs.len()).map(|index| RotationLaw::new(transfer, index)).collect();
+    let law = |pair: &Pair| RotationLaw::new(transfer, pair.target, transfer.turn(pair));
+    let mut laws: Vec<RotationLaw> = transfer.map.pairs.iter().map(law).collect();
     let Some(hips) = transfer.hips else { return (laws, None) };
     let policy = RootPolicy::new(transfer, hips);
     let root_turn = remove_turning(transfer, hips, &policy, &mut laws);

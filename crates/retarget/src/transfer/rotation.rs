@@ -8,17 +8,20 @@
 //! of the locals moves, `q_target` is that rotation between two constants: a linear map of its keys and tangents, so these
 //! are transformed and nothing is resampled.
 
+use std::ops::Range;
+
 use gaitway_character::anim::{JointIndex, Keys, Skeleton};
 use glam::{DQuat, DVec4, Quat};
 
 use super::Transfer;
+use super::turns::Turn;
 use super::yaw::Yaw;
 use crate::keys::channel::NewChannel;
 use crate::keys::limits::MAX_TURN;
 use crate::keys::resample::{Curve, Resampled, resample, union};
 use crate::keys::tracks::{SourceTracks, Track};
 use crate::math::{angle_between, slerp, unit};
-use crate::pose::ancestry;
+use crate::pose::{ancestry, is_within};
 
 /// One local rotation of the source in the product.
 #[derive(Debug, Clone, Copy)]
@@ -27,8 +30,8 @@ struct Factor {
     inverted: bool,
 }
 
-/// The local rotation of one target joint as a function of time:
-/// `parent⁻¹ · yaw · left · factors · right`.
+/// The local rotation of one target joint as a function of time: `parent⁻¹ · yaw · left · factors · right` or, where a turn is
+/// [shared](super::turns) along a chain, `parent⁻¹ · yaw · D_a⁻¹ · D · right`.
 #[derive(Debug)]
 pub struct RotationLaw<'a> {
     tracks: &'a SourceTracks<'a>,
@@ -37,28 +40,69 @@ pub struct RotationLaw<'a> {
     /// `W*_s,a`.
     left: DQuat,
     factors: Vec<Factor>,
-    /// `W*_s⁻¹ · W*_t`.
+    shared: Option<SharedTurn>,
+    /// `W*_s⁻¹ · W*_t`; `W*_t` for a shared turn.
     right: DQuat,
     /// Turning removed from the motion, in the common frame.
     pub yaw: Option<Yaw>,
 }
 
+/// A turn between those of several joints of the source.
+#[derive(Debug)]
+struct SharedTurn {
+    /// Of the nearest ancestor that turns.
+    above: Option<Turn>,
+    own: Turn,
+    /// The joints of both turns: where their locals are among the factors, and `W*_s⁻¹`. With an ancestor that turns, all begin at
+    /// their common ancestor, whose own rotation cancels out.
+    sources: Vec<(JointIndex, Range<usize>, DQuat)>,
+}
+
 impl<'a> RotationLaw<'a> {
-    /// For pair `index` of the map.
-    pub fn new(transfer: &Transfer<'a>, index: usize) -> Self {
-        let (map, alignment, skeleton) = (transfer.map, transfer.alignment, transfer.target_skeleton);
-        let pair = &map.pairs[index];
-        let above = ancestry(skeleton, pair.target).skip(1).find_map(|joint| map.source_of(joint));
-        let left = above.map_or(alignment.source.world_from_model, |above| alignment.source.rotation(above));
-        let right = alignment.source.rotation(pair.source).conjugate() * alignment.target.rotation(pair.target);
-        Self {
+    /// For a target joint that follows `turn`.
+    pub fn new(transfer: &Transfer<'a>, joint: JointIndex, turn: Turn) -> Self {
+        let (alignment, skeleton) = (transfer.alignment, transfer.target_skeleton);
+        let rest_of = |joint: JointIndex| alignment.source.rotation(joint);
+        let above = ancestry(skeleton, joint).skip(1).find_map(|joint| transfer.turns.of(joint));
+        let target_rest = alignment.target.rotation(joint);
+        let law = Self {
             tracks: transfer.tracks,
-            inverse_parent: unit(alignment.target.parent_rotation(skeleton, pair.target).conjugate()),
-            left: unit(left),
-            factors: factors(transfer.tracks.skeleton, above, pair.source),
-            right: unit(right),
+            inverse_parent: unit(alignment.target.parent_rotation(skeleton, joint).conjugate()),
+            left: DQuat::IDENTITY,
+            factors: Vec::new(),
+            shared: None,
+            right: unit(target_rest),
             yaw: None,
+        };
+        let source = turn.joint().filter(|_| above.is_none_or(|above| above.joint().is_some()));
+        let Some(source) = source else { return law.with_shared(transfer, above, turn) };
+        let above = above.and_then(Turn::joint);
+        Self {
+            left: unit(above.map_or(alignment.source.world_from_model, rest_of)),
+            factors: factors(transfer.tracks.skeleton, above, source),
+            right: unit(rest_of(source).conjugate() * target_rest),
+            ..law
         }
+    }
+
+    fn with_shared(mut self, transfer: &Transfer, above: Option<Turn>, own: Turn) -> Self {
+        let mut joints: Vec<JointIndex> = above.into_iter().chain([own]).flat_map(Turn::joints).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let (skeleton, rest) = (self.tracks.skeleton, &transfer.alignment.source);
+        let is_common = |above: &JointIndex| joints.iter().all(|&joint| is_within(skeleton, joint, *above));
+        let base = above.and_then(|_| ancestry(skeleton, *joints.first()?).find(is_common));
+        if base.is_none() {
+            self.left = rest.world_from_model;
+        }
+        let mut sources = Vec::new();
+        for joint in joints {
+            let start = self.factors.len();
+            self.factors.extend(factors(skeleton, base, joint));
+            sources.push((joint, start..self.factors.len(), unit(rest.rotation(joint).conjugate())));
+        }
+        self.shared = Some(SharedTurn { above, own, sources });
+        self
     }
 
     fn track(&self, factor: Factor) -> &'a Track<'a, DQuat> {
@@ -70,10 +114,27 @@ impl<'a> RotationLaw<'a> {
         if factor.inverted { rotation.conjugate() } else { rotation }
     }
 
+    fn product(&self, start: DQuat, factors: &[Factor], time_secs: f32) -> DQuat {
+        factors.iter().fold(start, |product, &factor| product * self.factor_at(factor, time_secs))
+    }
+
     /// The local rotation at a time.
     pub fn at(&self, time_secs: f32) -> DQuat {
-        let product =
-            self.factors.iter().fold(self.left, |product, &factor| product * self.factor_at(factor, time_secs));
+        let product = match &self.shared {
+            None => self.product(self.left, &self.factors, time_secs),
+            Some(SharedTurn { above, own, sources }) => {
+                let from_rest = sources.iter().map(|(joint, factors, inverse_rest)| {
+                    let product = self.product(self.left, &self.factors[factors.clone()], time_secs);
+                    (*joint, unit(product * *inverse_rest))
+                });
+                let from_rest: Vec<(JointIndex, DQuat)> = from_rest.collect();
+                let of = |joint: JointIndex| {
+                    let found = from_rest.iter().find(|(other, _)| *other == joint);
+                    found.map_or(DQuat::IDENTITY, |(_, turn)| *turn)
+                };
+                above.map_or(DQuat::IDENTITY, |above| above.at(of)).conjugate() * own.at(of)
+            }
+        };
         let turn = match &self.yaw {
             Some(yaw) => DQuat::from_rotation_y(yaw.at(time_secs)),
             None => DQuat::IDENTITY,
@@ -105,7 +166,9 @@ impl<'a> RotationLaw<'a> {
                 let is_rest = !self.has_channel() && angle_between(rotation, rest) < 1e-6;
                 (!is_rest).then(|| NewChannel::constant(joint, Keys::Rotation(vec![rotation.as_quat()])))
             }
-            [factor] if self.tracks.has_own_keys(factor.joint) => self.transformed(joint, factor),
+            [factor] if self.shared.is_none() && self.tracks.has_own_keys(factor.joint) => {
+                self.transformed(joint, factor)
+            }
             _ => Some(self.resampled(joint)),
         }
     }
@@ -116,11 +179,8 @@ impl<'a> RotationLaw<'a> {
         let Keys::Rotation(values) = &channel.keys else { return None };
         let at = self.factors.iter().position(|factor| factor.joint == moving.joint)?;
         let (before, after) = (&self.factors[..at], &self.factors[at + 1..]);
-        let product = |start: DQuat, factors: &[Factor]| {
-            factors.iter().fold(start, |product, &factor| product * self.factor_at(factor, 0.0))
-        };
-        let left = unit(product(self.inverse_parent * self.left, before));
-        let right = unit(product(DQuat::IDENTITY, after) * self.right);
+        let left = unit(self.product(self.inverse_parent * self.left, before, 0.0));
+        let right = unit(self.product(DQuat::IDENTITY, after, 0.0) * self.right);
         let transform = |value: &Quat| {
             let value = value.as_dquat();
             let value = if moving.inverted { value.conjugate() } else { value };
@@ -137,20 +197,30 @@ impl<'a> RotationLaw<'a> {
 
     fn resampled(&self, joint: JointIndex) -> NewChannel {
         let (times, jumps) = self.times();
-        let curve = Curve {
-            value: |time| self.at(time),
-            error: |from: &DQuat, to: &DQuat, factor: f64, at: &DQuat| angle_between(slerp(*from, *to, factor), *at),
-            tolerance: MAX_TURN,
-        };
-        let Resampled { times, values } = resample(&times, &jumps, curve);
-        let mut values: Vec<Quat> = values.into_iter().map(DQuat::as_quat).collect();
-        for key in 1..values.len() {
-            if values[key - 1].dot(values[key]) < 0.0 {
-                values[key] = -values[key];
-            }
-        }
-        NewChannel::resampled(joint, times, Keys::Rotation(values))
+        resampled_rotation(joint, &times, &jumps, |time| self.at(time))
     }
+}
+
+/// Returns a rotation as linear keys, at the given times and wherever else it needs them.
+pub fn resampled_rotation(joint: JointIndex, times: &[f32], jumps: &[f32], at: impl Fn(f32) -> DQuat) -> NewChannel {
+    let curve = Curve {
+        value: at,
+        error: |from: &DQuat, to: &DQuat, factor: f64, at: &DQuat| angle_between(slerp(*from, *to, factor), *at),
+        tolerance: MAX_TURN,
+    };
+    let Resampled { times, values } = resample(times, jumps, curve);
+    NewChannel::resampled(joint, times, continuous(values))
+}
+
+/// Returns keys of which none is on the other side of the sphere than the one before.
+pub fn continuous(rotations: impl IntoIterator<Item = DQuat>) -> Keys {
+    let mut values: Vec<Quat> = rotations.into_iter().map(DQuat::as_quat).collect();
+    for key in 1..values.len() {
+        if values[key - 1].dot(values[key]) < 0.0 {
+            values[key] = -values[key];
+        }
+    }
+    Keys::Rotation(values)
 }
 
 /// The locals that lead from joint `from` (or the model's origin) to joint `to`: up to their common ancestor inverted, then

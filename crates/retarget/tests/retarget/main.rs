@@ -13,6 +13,7 @@ mod real;
 mod skeletons;
 
 mod carriers;
+mod chains;
 mod change;
 mod changed_people;
 mod contact_table;

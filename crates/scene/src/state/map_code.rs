@@ -1,33 +1,55 @@
-//! The text of a joint map in a link. A map by name is its file's JSON. A map by numbers is compact: `2.CHECKSUM.PAIRS`, or
-//! `2.CHECKSUM.PAIRS.REST`. The checksum is eight hex digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the
-//! hyphen: deliberately no source), pairs are joined by commas; the rest is everything else in the map, as JSON in base64url. A
-//! code that begins with 1 is of a map whose path's origin is the rest; older versions knew no other.
+//! The text of a joint map in a link. A map by name is its file's JSON. A map by numbers is compact: `3.CHECKSUM.PAIRS`, or
+//! `3.CHECKSUM.PAIRS.REST`. The checksum is eight hex digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the
+//! hyphen: deliberately no source), pairs are joined by commas; the rest is everything else in the map, as JSON in base64url. The
+//! number at the beginning says which options the rest leaves out: with 3 those that Gaitway proposes, with 2 those that it proposed
+//! before chains were shared, with 1 a file's defaults.
 
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
-use gaitway_retarget::{JointMap, JointMapFile, MapEntry, PathOrigin, RootOptions};
+use gaitway_retarget::{Chains, JointMap, JointMapFile, MapEntry, PathOrigin, RootOptions};
 use serde_json::Value;
 
 use super::maps::{MotionMap, NumberedMap};
 
-/// What a code of this form begins with, by the origin of the map's path.
-const fn mark(origin: PathOrigin) -> &'static str {
-    match origin {
-        PathOrigin::Rest => "1.",
-        PathOrigin::Feet => "2.",
+/// What a code begins with, and the options that it leaves out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Form {
+    mark: &'static str,
+    origin: PathOrigin,
+    chains: Chains,
+}
+
+const FORMS: [Form; 3] = [
+    Form { mark: "3.", origin: PathOrigin::Feet, chains: Chains::Share },
+    Form { mark: "2.", origin: PathOrigin::Feet, chains: Chains::Off },
+    Form { mark: "1.", origin: PathOrigin::Rest, chains: Chains::Off },
+];
+
+impl Form {
+    /// Returns the first form for a map: its path's origin isn't written, other options may be.
+    fn of(map: &JointMap) -> Self {
+        let [.., last] = FORMS;
+        let fits = |form: &&Self| form.origin == map.root.origin && (form.chains == map.chains || form.chains.is_off());
+        FORMS.iter().find(fits).copied().unwrap_or(last)
+    }
+
+    /// A map without joints and with only these options.
+    fn defaults(self) -> JointMap {
+        let root = RootOptions { origin: self.origin, ..RootOptions::default() };
+        JointMap { root, chains: self.chains, ..JointMap::default() }
+    }
+
+    /// Returns the code without its mark, if it has this one.
+    fn strip(self, code: &str) -> Option<&str> {
+        code.strip_prefix(self.mark)
     }
 }
 
-/// Whether a text is meant as a code. Otherwise it is a URL, in older links also if it begins with 2.
+/// Whether a text is meant as a code. Otherwise it is a URL, in older links also if it begins with another number than 1.
 pub(super) fn is_code(text: &str) -> bool {
     let is_checksum = |text: &str| text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let has_checksum = |rest: &str| rest.split_once('.').is_some_and(|(checksum, _)| is_checksum(checksum));
-    text.starts_with(mark(PathOrigin::Rest)) || text.strip_prefix(mark(PathOrigin::Feet)).is_some_and(has_checksum)
-}
-
-/// What a code leaves out.
-fn defaults(origin: PathOrigin) -> JointMap {
-    JointMap { root: RootOptions { origin, ..RootOptions::default() }, ..JointMap::default() }
+    FORMS.iter().any(|form| form.strip(text).is_some_and(|rest| form.origin == PathOrigin::Rest || has_checksum(rest)))
 }
 
 impl MotionMap {
@@ -51,25 +73,25 @@ pub(super) fn encode(numbered: &NumberedMap) -> String {
         }
         !is_plain
     });
-    let origin = rest.root.origin;
-    let mut code = format!("{}{:08x}.{}", mark(origin), numbered.checksum, pairs.join(","));
-    if rest != defaults(origin) {
+    let form = Form::of(&rest);
+    let mut code = format!("{}{:08x}.{}", form.mark, numbered.checksum, pairs.join(","));
+    if rest != form.defaults() {
         code.push('.');
-        code.push_str(&URL_SAFE_NO_PAD.encode(without_defaults(&rest).to_string()));
+        code.push_str(&URL_SAFE_NO_PAD.encode(without_defaults(&rest, form).to_string()));
     }
     code
 }
 
 /// The map's file form without members at their defaults, except the version, without which it is not a map.
-fn without_defaults(map: &JointMap) -> Value {
+fn without_defaults(map: &JointMap, form: Form) -> Value {
     // A map is plain data: serializing cannot fail.
-    let form = |map: &JointMap| serde_json::to_value(map.to_numbered_file()).unwrap_or_default();
-    let (mut form, default) = (form(map), form(&defaults(map.root.origin)));
-    if let (Some(form), Some(default)) = (form.as_object_mut(), default.as_object()) {
-        form.retain(|key, value| key == "gaitway_map" || default.get(key) != Some(value));
-        form.get_mut("joints").into_iter().for_each(shorten);
+    let to_value = |map: &JointMap| serde_json::to_value(map.to_numbered_file()).unwrap_or_default();
+    let (mut value, default) = (to_value(map), to_value(&form.defaults()));
+    if let (Some(members), Some(default)) = (value.as_object_mut(), default.as_object()) {
+        members.retain(|key, value| key == "gaitway_map" || default.get(key) != Some(value));
+        members.get_mut("joints").into_iter().for_each(shorten);
     }
-    form
+    value
 }
 
 /// Writes numbers with the digits of single precision, which corrections have; a double would have twice as many.
@@ -89,8 +111,7 @@ fn shorten(value: &mut Value) {
 
 /// Returns None for any other text.
 pub(super) fn decode(code: &str) -> Option<NumberedMap> {
-    let marked = |origin| Some((code.strip_prefix(mark(origin))?, origin));
-    let (code, origin) = marked(PathOrigin::Rest).or_else(|| marked(PathOrigin::Feet))?;
+    let (form, code) = FORMS.into_iter().find_map(|form| Some((form, form.strip(code)?)))?;
     let mut parts = code.split('.');
     let (checksum, pairs, rest) = (parts.next()?, parts.next()?, parts.next());
     if parts.next().is_some() || checksum.len() != 8 || checksum.starts_with('+') {
@@ -104,7 +125,10 @@ pub(super) fn decode(code: &str) -> Option<NumberedMap> {
         }
         None => JointMap::default(),
     };
-    map.root.origin = origin;
+    map.root.origin = form.origin;
+    if !form.chains.is_off() {
+        map.chains = form.chains;
+    }
     for pair in pairs.split(',').filter(|pair| !pair.is_empty()) {
         let (target, source) = pair.split_once('-')?;
         let target: usize = target.parse().ok()?;

@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway_character::anim::{LoopMode, TimeRange};
 use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, JointMapFile, LayerMask, LayerMode, MapEntry,
-    MutedChannel, PathOrigin, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
-    Unmapped, UpChoice,
+    BodyPart, Chains, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, JointMapFile, LayerMask, LayerMode,
+    MapEntry, MutedChannel, PathOrigin, Pin, PinGoal, PinTimes, RestChoice, RestChoices, RootOptions, RootPart,
+    SourceRef, Unmapped, UpChoice,
 };
 use gaitway_scene::state::{
     Background, CameraChoice, Channel, CharacterView, ClipChoice, Display, Embed, EnvironmentChoice, Fade, Hidden,
@@ -442,6 +442,17 @@ fn a_plain_map_is_short_and_readable() {
     assert_eq!(link_of(&with(proposed)), "v=2&map=2.ffffffff.0-5,1-");
     let edited = with(RootOptions { yaw: RootPart::Freeze, ..proposed });
     check_read(&link_of(&edited), edited);
+    let sharing = |root: RootOptions| {
+        let mut other = with(root);
+        let [MotionMap::Numbers(numbered)] = &mut other.character.retarget.map[..] else { panic!("a map by numbers") };
+        numbered.map.chains = Chains::Share;
+        other
+    };
+    assert_eq!(link_of(&sharing(proposed)), "v=2&map=3.ffffffff.0-5,1-");
+    for root in [proposed, RootOptions::default(), RootOptions { yaw: RootPart::Freeze, ..proposed }] {
+        check_read(&link_of(&sharing(root)), sharing(root));
+    }
+    check_read("map=3.json", of_file("3.json"));
 }
 
 #[test]

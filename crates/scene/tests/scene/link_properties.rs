@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway_character::anim::{LoopMode, TimeRange};
 use gaitway_character::mesh::SkinningMode;
 use gaitway_retarget::{
-    BodyPart, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, LayerMask, LayerMode, MapEntry, PathOrigin,
-    Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
+    BodyPart, Chains, ClipChanges, ClipLayer, ClipRef, Contacts, Feet, JointMap, LayerMask, LayerMode, MapEntry,
+    PathOrigin, Pin, PinGoal, PinTimes, RootOptions, RootPart, Unmapped,
 };
 use gaitway_scene::state::{
     Background, CameraChoice, CameraOptions, Channel, CharacterView, ClipChoice, Embed, EnvironmentChoice, Fade,
@@ -93,7 +93,8 @@ impl Random {
         let root = if self.often() { self.root() } else { RootOptions::default() };
         let feet = self.one(&[Feet::Off, Feet::Plant]);
         let contacts = self.one(&[Contacts::Off, Contacts::Keep]);
-        let map = JointMap { joints, root, feet, contacts, ..JointMap::default() };
+        let chains = self.one(&[Chains::Off, Chains::Share]);
+        let map = JointMap { joints, root, feet, contacts, chains, ..JointMap::default() };
         MotionMap::Numbers(NumberedMap { checksum: self.word(), map })
     }
 
