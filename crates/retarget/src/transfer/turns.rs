@@ -118,6 +118,9 @@ impl Turns {
         let is_one_to_one = targets.len() == sources.len() && mapped.iter().all(|(target, source)| target == source);
         let turns: Vec<Turn> = if is_one_to_one {
             sources.iter().map(|source| Turn::whole(source.joint)).collect()
+        } else if target.part == ChainPart::Neck && targets.len() == 1 {
+            // A single joint doesn't bend: it points where the motion's neck does on average, and the head does the rest.
+            vec![turn_at(source.carrier, sources, mean_end(sources))]
         } else {
             ends(targets).map(|end| turn_at(source.carrier, sources, end)).collect()
         };
@@ -175,6 +178,12 @@ fn ends(joints: &[ChainJoint]) -> impl Iterator<Item = f64> {
         *end += joint.share / whole;
         Some(*end)
     })
+}
+
+/// Where the orientation along an evenly bent chain is that of its joints on average, each weighted by its share.
+fn mean_end(joints: &[ChainJoint]) -> f64 {
+    let whole: f64 = joints.iter().map(|joint| joint.share).sum();
+    joints.iter().zip(ends(joints)).map(|(joint, end)| joint.share / whole * end).sum()
 }
 
 /// The orientation of a source's chain at a share of its length.
