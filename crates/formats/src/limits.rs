@@ -46,12 +46,21 @@ pub enum Limit {
     SkinMatrices,
     /// Each node of a mesh, and each copy, draws all its vertices.
     DrawnVertices,
+    /// Each primitive is a draw call for each node of its mesh; copies share one.
+    DrawCalls,
 }
 
 impl Limit {
     /// All limits.
-    pub const ALL: [Self; 6] =
-        [Self::DataBytes, Self::ImagePixels, Self::Nodes, Self::MorphWeights, Self::SkinMatrices, Self::DrawnVertices];
+    pub const ALL: [Self; 7] = [
+        Self::DataBytes,
+        Self::ImagePixels,
+        Self::Nodes,
+        Self::MorphWeights,
+        Self::SkinMatrices,
+        Self::DrawnVertices,
+        Self::DrawCalls,
+    ];
 
     /// The most that a file may have.
     pub fn max(self) -> usize {
@@ -63,6 +72,7 @@ impl Limit {
             Self::MorphWeights => 1 << 22,
             Self::SkinMatrices => 1 << 20,
             Self::DrawnVertices => 1 << 26,
+            Self::DrawCalls => 1 << 15,
         }
     }
 
@@ -75,6 +85,7 @@ impl Limit {
             Self::MorphWeights => "morph weights",
             Self::SkinMatrices => "skin matrices",
             Self::DrawnVertices => "drawn vertices",
+            Self::DrawCalls => "draw calls",
         }
     }
 

@@ -38,6 +38,15 @@ pub fn copies(
     }
 }
 
+/// Returns how many draw calls the copies of a primitive take: neighbours share one, unless one of them is mirrored.
+pub fn draw_calls(copies: &[Affine3A]) -> usize {
+    copies.chunk_by(|copy, next| is_mirrored(copy) == is_mirrored(next)).count()
+}
+
+fn is_mirrored(copy: &Affine3A) -> bool {
+    copy.matrix3.determinant() < 0.0
+}
+
 fn read(accessors: &Accessors, extension: &Value, place: &str) -> Result<Vec<Affine3A>, Problem> {
     let find = |name: &str| {
         let value = extension.get("attributes").and_then(|attributes| attributes.get(name));

@@ -105,6 +105,21 @@ fn copies_count_towards_the_limits_of_nodes_and_drawn_vertices() {
 }
 
 #[test]
+fn copies_share_a_draw_call_unless_their_neighbours_are_mirrored() {
+    let with = |mirrored: fn(usize) -> bool| {
+        let mut build = Build::triangle();
+        let sizes: Vec<f32> =
+            (0..(1 << 15) + 2).flat_map(|copy| [if mirrored(copy) { -1.0 } else { 1.0 }, 1.0, 1.0]).collect();
+        let scale = build.accessor(F32, "VEC3", sizes.len() / 3, &floats(&sizes));
+        with_attribute(&mut build, "SCALE", scale);
+        load(&one("m.glb", build.glb()))
+    };
+    assert_eq!(with(|copy| copy < 100).expect("two draw calls").instances.len(), (1 << 15) + 2);
+    let problem = with(|copy| copy % 2 == 0).expect_err("over the limit").to_string();
+    assert!(problem.contains("draw calls in all"), "{problem}");
+}
+
+#[test]
 fn copies_survive_conversion() {
     let build = copied(&[0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
     let (bytes, mut files) = (build.bytes.clone(), one("model.gltf", build.gltf("data.bin")));

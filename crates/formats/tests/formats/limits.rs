@@ -31,6 +31,19 @@ fn vertices_that_are_drawn_many_times() {
     check("m.glb", with_nodes((1 << 10) + 1).glb(), "nodes[1024]", Limit::DrawnVertices);
 }
 
+/// A node takes a few bytes, and a draw call several hundred.
+#[test]
+fn primitives_that_are_drawn_many_times() {
+    let with_nodes = |count: usize| {
+        let mut build = Build::triangle();
+        build.json["meshes"][0]["primitives"] = Value::Array(vec![build.json["meshes"][0]["primitives"][0].clone(); 4]);
+        build.json["nodes"] = Value::Array(vec![json!({ "mesh": 0 }); count]);
+        build
+    };
+    with_nodes(1 << 13).load().expect("just within the limit");
+    check("m.glb", with_nodes((1 << 13) + 1).glb(), "nodes[8192]", Limit::DrawCalls);
+}
+
 #[test]
 fn skins_with_many_joints_on_many_nodes() {
     let with_nodes = |count: usize| {
