@@ -31,9 +31,10 @@ struct Bone {
     offset: DVec3,
     /// Rotation in the reference pose.
     reference: DQuat,
-    /// Position relative to the parent and angles about Z, X and Y, one per frame.
-    frames: Vec<(DVec3, [f64; 3])>,
     has_positions: bool,
+    /// Position relative to the parent and angles about Z, X and Y in the current frame.
+    at: DVec3,
+    angles: [f64; 3],
 }
 
 /// Writes `joints` of `skeleton`, in ascending order, as `clip` moves them away from `reference`. Joints in between that are left
@@ -52,23 +53,34 @@ pub fn write(
     let (count, frame_secs) = frames_of(clip, frames_per_sec);
     check_frames(clip, count, bones.len())?;
     let (mut pose, mut cursor, mut world) = (skeleton.rest().clone(), SampleCursor::default(), Vec::new());
-    for frame in 0..count {
+    let mut move_to = |bones: &mut [Bone], frame: usize| {
         let time_secs = (frame as f64 * frame_secs) as f32;
         pose.copy_from(skeleton.rest());
         clip.sample(skeleton, time_secs.min(clip.duration_secs()), &mut cursor, &mut pose);
         model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
-        add_frame(&mut bones, &world);
-    }
-    let is_finite = |(at, angles): &(DVec3, [f64; 3])| at.is_finite() && angles.iter().all(|angle| angle.is_finite());
-    if let Some(bone) = bones.iter().find(|bone| !bone.frames.iter().all(is_finite)) {
-        return Err(WriteError::NotFinite { clip: clip.name().to_owned(), joint: bone.name.clone() });
-    }
+        pose_bones(bones, &world);
+    };
+    // The header says which joints have positions. All frames together would take more memory than the file, so they are sampled
+    // twice.
     let size = bones.iter().map(|bone| bone.offset.length()).sum::<f64>();
-    for bone in &mut bones {
-        let strays = |&(at, _): &(DVec3, _)| at.distance(bone.offset) > POSITION_TOLERANCE * size;
-        bone.has_positions = bone.parent.is_none() || bone.frames.iter().any(strays);
+    for frame in 0..count {
+        move_to(&mut bones, frame);
+        for bone in &mut bones {
+            if !(bone.at.is_finite() && bone.angles.iter().all(|angle| angle.is_finite())) {
+                return Err(WriteError::NotFinite { clip: clip.name().to_owned(), joint: bone.name.clone() });
+            }
+            bone.has_positions |= bone.parent.is_none() || bone.at.distance(bone.offset) > POSITION_TOLERANCE * size;
+        }
     }
-    Ok(text(&bones, count, frame_secs).into_bytes())
+    bones.iter_mut().for_each(|bone| bone.angles = [0.0; 3]);
+    let mut out = hierarchy(&bones);
+    // Writing to a string cannot fail.
+    let _ = write!(out, "MOTION\nFrames: {count}\nFrame Time: {frame_secs}\n");
+    for frame in 0..count {
+        move_to(&mut bones, frame);
+        add_line(&mut out, &bones);
+    }
+    Ok(out.into_bytes())
 }
 
 /// Returns the number of frames and the time between two of them.
@@ -143,11 +155,11 @@ fn position_and_turn(world: &Affine3A) -> (DVec3, DQuat) {
 
 impl Bone {
     fn new(name: String, joint: Option<JointIndex>, parent: Option<usize>, offset: DVec3, reference: DQuat) -> Self {
-        Self { name, joint, parent, offset, reference, frames: Vec::new(), has_positions: false }
+        Self { name, joint, parent, offset, reference, has_positions: false, at: DVec3::ZERO, angles: [0.0; 3] }
     }
 }
 
-fn add_frame(bones: &mut [Bone], world: &[Affine3A]) {
+fn pose_bones(bones: &mut [Bone], world: &[Affine3A]) {
     let mut placed: Vec<(DVec3, DQuat)> = Vec::with_capacity(bones.len());
     for bone in bones {
         let (at, turn) = match bone.joint {
@@ -159,8 +171,8 @@ fn add_frame(bones: &mut [Bone], world: &[Affine3A]) {
         };
         let (origin, parent_turn) = bone.parent.map_or((DVec3::ZERO, DQuat::IDENTITY), |parent| placed[parent]);
         let local = parent_turn.inverse() * turn;
-        let before = bone.frames.last().map_or([0.0; 3], |&(_, angles)| angles);
-        bone.frames.push((parent_turn.inverse() * (at - origin), nearest_angles(local, before)));
+        bone.at = parent_turn.inverse() * (at - origin);
+        bone.angles = nearest_angles(local, bone.angles);
         placed.push((at, turn));
     }
 }
@@ -176,7 +188,7 @@ fn nearest_angles(rotation: DQuat, before: [f64; 3]) -> [f64; 3] {
     if turn(&other) < turn(&one) { other } else { one }
 }
 
-fn text(bones: &[Bone], count: usize, frame_secs: f64) -> String {
+fn hierarchy(bones: &[Bone]) -> String {
     let mut out = String::from("HIERARCHY\n");
     // Open braces.
     let mut path: Vec<usize> = Vec::new();
@@ -190,40 +202,39 @@ fn text(bones: &[Bone], count: usize, frame_secs: f64) -> String {
         let positions = if bone.has_positions { POSITIONS } else { "" };
         let channels = if bone.has_positions { 6 } else { 3 };
         // Writing to a string cannot fail.
-        let _ = write!(
-            out,
-            "{indent}{keyword} {}\n{indent}{{\n{indent}\tOFFSET{}\n\
-             {indent}\tCHANNELS {channels} {positions}Zrotation Xrotation Yrotation\n",
-            bone.name,
-            numbers(bone.offset.to_array())
-        );
+        let _ = write!(out, "{indent}{keyword} {}\n{indent}{{\n{indent}\tOFFSET", bone.name,);
+        add_numbers(&mut out, bone.offset.to_array());
+        let _ = write!(out, "\n{indent}\tCHANNELS {channels} {positions}Zrotation Xrotation Yrotation\n");
         path.push(index);
         // Parents come right before their first child.
         if bones.get(index + 1).is_none_or(|next| next.parent != Some(index)) {
             // Gives the last bone of a limb a length; the skeleton doesn't say which.
             let end = if bone.offset == DVec3::ZERO { DVec3::Y * 0.01 } else { bone.offset * 0.5 };
-            let end = numbers(end.to_array());
-            let _ = write!(out, "{indent}\tEnd Site\n{indent}\t{{\n{indent}\t\tOFFSET{end}\n{indent}\t}}\n");
+            let _ = write!(out, "{indent}\tEnd Site\n{indent}\t{{\n{indent}\t\tOFFSET");
+            add_numbers(&mut out, end.to_array());
+            let _ = write!(out, "\n{indent}\t}}\n");
         }
     }
     while path.pop().is_some() {
         close(&mut out, path.len());
     }
-    let _ = write!(out, "MOTION\nFrames: {count}\nFrame Time: {frame_secs}\n");
-    for frame in 0..count {
-        let start = out.len();
-        for bone in bones {
-            let (at, angles) = &bone.frames[frame];
-            if bone.has_positions {
-                out.push_str(&numbers(at.to_array()));
-            }
-            out.push_str(&numbers(angles.map(f64::to_degrees)));
-        }
-        // Without the space before the first number.
-        out.remove(start);
-        out.push('\n');
-    }
     out
+}
+
+/// Adds the line of the current frame.
+fn add_line(out: &mut String, bones: &[Bone]) {
+    for (index, bone) in bones.iter().enumerate() {
+        let start = out.len();
+        if bone.has_positions {
+            add_numbers(out, bone.at.to_array());
+        }
+        add_numbers(out, bone.angles.map(f64::to_degrees));
+        if index == 0 {
+            // Without the space before the first number.
+            out.remove(start);
+        }
+    }
+    out.push('\n');
 }
 
 fn close(out: &mut String, depth: usize) {
@@ -237,9 +248,10 @@ fn indentation(depth: usize) -> String {
     "\t".repeat(depth.min(MAX_LEVELS))
 }
 
-/// Three numbers, each after a space.
-fn numbers(values: [f64; 3]) -> String {
+/// Adds three numbers, each after a space.
+fn add_numbers(out: &mut String, values: [f64; 3]) {
     // Adding 0 makes a rounded −0 a 0.
     let [x, y, z] = values.map(|value| (value * 1e6).round() / 1e6 + 0.0);
-    format!(" {x:.6} {y:.6} {z:.6}")
+    // Writing to a string cannot fail.
+    let _ = write!(out, " {x:.6} {y:.6} {z:.6}");
 }
