@@ -31,12 +31,22 @@ impl Names {
     /// Places files, in a folder of their own if one of their names is taken. Returns the name of the main one, and all of them.
     fn place(&mut self, ModelFiles { set, name: main }: &ModelFiles) -> (String, Vec<(String, SharedBytes)>) {
         let files = with_references(set, main);
-        let mut folders = (1..).map(|number| if number == 1 { String::new() } else { format!("{number}/") });
-        let is_free = |folder: &String| files.names().all(|name| !self.0.contains(&format!("{folder}{name}")));
-        let folder = folders.find(is_free).unwrap_or_default();
+        let folder = self.free_folder(|| files.names());
         let placed: Vec<_> = files.iter().map(|(name, bytes)| (format!("{folder}{name}"), bytes.clone())).collect();
         self.0.extend(placed.iter().map(|(name, _)| name.clone()));
         (format!("{folder}{main}"), placed)
+    }
+
+    /// Returns a name for one more file.
+    fn free(&self, name: &str) -> String {
+        format!("{}{name}", self.free_folder(|| [name].into_iter()))
+    }
+
+    /// Returns the first folder in which none of these names is taken, with a slash at its end.
+    fn free_folder<'a, N: Iterator<Item = &'a str>>(&self, names: impl Fn() -> N) -> String {
+        let mut folders = (1..).map(|number| if number == 1 { String::new() } else { format!("{number}/") });
+        let is_free = |folder: &String| names().all(|name| !self.0.contains(&format!("{folder}{name}")));
+        folders.find(is_free).unwrap_or_default()
     }
 }
 
@@ -66,7 +76,7 @@ impl Editor {
             state.lighting.environment = EnvironmentChoice::default();
         }
         if let Some(environment) = self.environment() {
-            let name = "light/environment.hdr".to_owned();
+            let name = names.free("light/environment.hdr");
             others.push((name.clone(), environment.file.clone()));
             state.lighting.environment = EnvironmentChoice::File(name);
         }

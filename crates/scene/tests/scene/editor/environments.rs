@@ -1,13 +1,14 @@
 //! Environments: lighting the scene and being kept.
 
 use gaitway_character::asset::Panorama;
-use gaitway_scene::editor::{Contents, Editor};
+use gaitway_formats::FileSet;
+use gaitway_scene::editor::{Contents, Editor, ModelFiles};
 use gaitway_scene::frame::{Frame, evaluate};
 use gaitway_scene::library::{Environment, Library};
 use gaitway_scene::state::{CharacterView, Command, EnvironmentChoice, Lighting, ViewerState};
 use glam::Vec3;
 
-use super::{any, contents, editor, notices, open};
+use super::{any, contents, editor, motion, notices, open};
 
 /// Grey from all directions.
 fn environment(origin: &str) -> Contents {
@@ -89,4 +90,19 @@ fn a_scene_takes_the_image_that_lights_it_along() {
     assert_eq!(names, ["light/environment.hdr"]);
     assert!(scene.link.contains("&light=light/environment.hdr"), "{}", scene.link);
     assert!(scene.link.contains("&embed=1"), "{}", scene.link);
+}
+
+#[test]
+fn the_image_that_lights_a_scene_replaces_no_other_file() {
+    let mut editor = editor("sample:walker");
+    let mut walk = motion("light/environment.hdr");
+    let mut set = FileSet::default();
+    set.insert("light/environment.hdr", b"HIERARCHY".to_vec());
+    walk.files = Some(ModelFiles { set, name: "light/environment.hdr".to_owned() });
+    editor.open(Contents { motions: Some(vec![walk]), ..Contents::default() }, None, &mut any).expect("fits");
+    editor.open(environment("beach.hdr"), None, &mut any).expect("fits");
+    let scene = editor.scene().expect("there is a model");
+    let names: Vec<&str> = scene.motion.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["light/environment.hdr", "2/light/environment.hdr"]);
+    assert!(scene.link.contains("&light=2/light/environment.hdr"), "{}", scene.link);
 }
