@@ -2,7 +2,7 @@
 //! written by [`web_page`].
 
 use gaitway_character::asset::Asset;
-use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_model, write_edited_model};
+use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_edited_model, write_model};
 use gaitway_retarget::ChangedClip;
 use gaitway_scene::editor::{ClipFormat, Export, write_clip};
 use gaitway_scene::library::{ClipEdits, ClipId, Library, Model, ModelClip};

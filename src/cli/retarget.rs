@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gaitway_character::anim::{Clip, ClipQuery, JointIndex, find_clip};
+use gaitway_character::anim::{Clip, ClipQuery, JointIndex, Skeleton, find_clip};
 use gaitway_character::asset::Asset;
 use gaitway_formats::write_model;
 use gaitway_retarget::{
@@ -238,18 +238,24 @@ fn document(
         .iter()
         .map(|pair| json!({ "target": target.label(pair.target), "source": source.label(pair.source) }))
         .collect();
-    let is_in_skin = |joint: &JointIndex| model.skins.iter().any(|skin| skin.joints().contains(joint));
+    let flags = |skeleton: &Skeleton, joints: &mut dyn Iterator<Item = JointIndex>| {
+        let mut flags = vec![false; skeleton.len()];
+        joints.for_each(|joint| flags[joint.get()] = true);
+        flags
+    };
+    let in_skin = flags(target, &mut model.skins.iter().flat_map(|skin| skin.joints()).copied());
     let has_skins = !model.skins.is_empty();
     let unmapped: Vec<String> = target
         .joints()
-        .filter(|joint| (!has_skins || is_in_skin(joint)) && map.source_of(*joint).is_none())
+        .filter(|joint| (!has_skins || in_skin[joint.get()]) && map.source_of(*joint).is_none())
         .map(|joint| target.label(joint))
         .collect();
-    let is_animated =
-        |joint: &JointIndex| motion.asset.clips.iter().flat_map(Clip::channels).any(|channel| channel.joint == *joint);
+    let channels = motion.asset.clips.iter().flat_map(Clip::channels);
+    let is_animated = flags(source, &mut channels.map(|channel| channel.joint));
+    let is_followed = flags(source, &mut map.pairs.iter().map(|pair| pair.source));
     let unused: Vec<String> = source
         .joints()
-        .filter(|joint| is_animated(joint) && !map.pairs.iter().any(|pair| pair.source == *joint))
+        .filter(|joint| is_animated[joint.get()] && !is_followed[joint.get()])
         .map(|joint| source.label(joint))
         .collect();
     let resampled: Vec<String> = retargeted.resampled.iter().map(|&joint| target.label(joint)).collect();

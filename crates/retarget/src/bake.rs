@@ -1,13 +1,15 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use gaitway_character::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Keys, Property};
+use std::collections::HashSet;
+
+use gaitway_character::anim::{Channel, ChannelError, Clip, ClipBuilder, JointIndex, Keys, Property};
 
 use super::budget::MAX_ANCESTORS;
 use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
 use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
-use super::map::{Contacts, Feet, Pair};
-use super::pose::{Local, ancestry, is_within, node_locals};
+use super::map::{Contacts, Feet};
+use super::pose::{Local, ancestry, node_locals};
 use super::transfer::{
     CopyPolicy, RotationLaw, Transfer, copied_channels, detached_channels, detached_ends, expression_channels,
     extraction_joint, follower_channels, hips_channels, rotation_laws, twist_channels,
@@ -82,16 +84,15 @@ pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>
 /// Turns channels as they are in the mirror, where bodies that a node above them mirrors are moved, into those of the file.
 fn in_file(transfer: &Transfer, channels: Vec<NewChannel>) -> Vec<NewChannel> {
     let reflection = transfer.target_skeleton.reflection();
-    channels.into_iter().map(|channel| channel.in_mirror(&reflection)).collect()
+    channels.into_iter().map(|channel| channel.in_mirror(reflection)).collect()
 }
 
 impl Retargeted {
     /// Replaces channels of the clip by others of the same joint and property.
     fn with(self, transfer: &Transfer, others: Vec<NewChannel>) -> Result<Self, RetargetError> {
         let mut channels = NewChannel::corrected(&self.clip, &self.resampled, &[], None, Vec::new());
-        let is_replaced =
-            |channel: &NewChannel| others.iter().any(|other| other.is_of(channel.joint, channel.keys.property()));
-        channels.retain(|channel| !is_replaced(channel));
+        let replaced = written(&others);
+        channels.retain(|channel| !replaced.contains(&(channel.joint, channel.keys.property())));
         channels.extend(others);
         Ok(Self { unplanted: self.unplanted, planting: self.planting, ..build(transfer, channels)? })
     }
@@ -163,15 +164,16 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
 
     let policy = CopyPolicy::new(transfer);
     let copied = copied_channels(transfer, policy);
-    let is_copied = |joint: JointIndex| copied.iter().any(|channel| channel.joint == joint);
+    let copies = written(&copied);
     if let Some(hips) = transfer.hips.filter(|_| !policy.path) {
         channels.extend(hips_channels(transfer, hips, &laws, root_turn.as_ref()));
     }
     let ends = detached_ends(transfer);
     if !policy.is_same_skeleton {
+        let new = written(&channels);
         let moves = |joint: JointIndex| {
-            let is_translation = |channel: &NewChannel| channel.is_of(joint, Property::Translation);
-            channels.iter().chain(&copied).any(is_translation) || ends.iter().any(|(end, _)| *end == joint)
+            let channel = (joint, Property::Translation);
+            new.contains(&channel) || copies.contains(&channel) || ends.iter().any(|(end, _)| *end == joint)
         };
         let offsets = rest_translations(transfer, &rest, moves);
         channels.extend(offsets);
@@ -184,13 +186,19 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         let so_far = build(transfer, channels.clone())?;
         detached_channels(transfer, &ends, &so_far.clip)
     };
+    let is_copied = |joint: JointIndex| copied.iter().any(|channel| channel.joint == joint);
     let detached: Vec<NewChannel> = detached.into_iter().filter(|channel| !is_copied(channel.joint)).collect();
     let mut expressions = expression_channels(transfer);
-    expressions.retain(|new| !copied.iter().any(|channel| channel.is_of(new.joint, Property::MorphWeights)));
+    expressions.retain(|new| !copies.contains(&(new.joint, Property::MorphWeights)));
     channels.extend(expressions);
     channels.extend(copied);
     channels.extend(detached);
     build(transfer, channels)
+}
+
+/// What channels animate.
+fn written(channels: &[NewChannel]) -> HashSet<(JointIndex, Property)> {
+    channels.iter().map(|channel| (channel.joint, channel.keys.property())).collect()
 }
 
 /// Returns constant translations for mapped joints whose rest isn't where their nodes are, so that limbs are as long as in the rest
@@ -207,8 +215,7 @@ fn rest_translations(transfer: &Transfer, nodes: &[Local], moves: impl Fn(JointI
 /// Builds the clip from its channels.
 fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargeted, RetargetError> {
     let (skeleton, source_clip) = (transfer.target_skeleton, transfer.tracks.clip);
-    let written: Vec<(JointIndex, Property)> =
-        channels.iter().map(|channel| (channel.joint, channel.keys.property())).collect();
+    let written = written(&channels);
     let mut builder = ClipBuilder::new(source_clip.name(), skeleton);
     let mut resampled: Vec<JointIndex> = Vec::new();
     let last = channels.iter().filter_map(|channel| channel.times.last().copied()).fold(0.0, f32::max);
@@ -218,14 +225,13 @@ fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargete
     }
     let keys_out = channels.iter().map(|channel| channel.times.len()).sum();
     for channel in channels {
-        if channel.resampled && !resampled.contains(&channel.joint) {
-            resampled.push(channel.joint);
-        }
+        resampled.extend(Some(channel.joint).filter(|_| channel.resampled));
         builder
             .channel(channel.joint, channel.interpolation, &channel.times, channel.keys)
             .map_err(|problem| RetargetError::Channel { joint: skeleton.name(channel.joint).to_owned(), problem })?;
     }
     resampled.sort();
+    resampled.dedup();
     let has_no_extraction_joint = || transfer.hips.is_none_or(|hips| extraction_joint(transfer, hips).is_none());
     Ok(Retargeted {
         clip: builder.build(),
@@ -239,29 +245,27 @@ fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargete
     })
 }
 
+/// What is carried over channel by channel, whereas a rotation follows from all that lead to its joint.
+const NOT_ROTATIONS: [Property; 3] = [Property::Translation, Property::Scale, Property::MorphWeights];
+
 /// Number of keys in the source channels behind these target properties: rotations of all joints on the way to a mapped
 /// one, everything that carries the hips, and what was copied.
-fn count_source_keys(transfer: &Transfer, written: &[(JointIndex, Property)]) -> usize {
+fn count_source_keys(transfer: &Transfer, written: &HashSet<(JointIndex, Property)>) -> usize {
     let Transfer { map, tracks, .. } = *transfer;
-    let hips = transfer.hips_pair();
     let mut leads_to_mapped = vec![false; tracks.skeleton.len()];
+    let mut carried = HashSet::new();
     for pair in &map.pairs {
         ancestry(tracks.skeleton, pair.source).for_each(|joint| leads_to_mapped[joint.get()] = true);
+        let copied = NOT_ROTATIONS.into_iter().filter(|&property| written.contains(&(pair.target, property)));
+        carried.extend(copied.map(|property| (pair.source, property)));
     }
-    let is_used = |joint: JointIndex, property: Property| match property {
-        Property::Rotation => leads_to_mapped[joint.get()],
-        property => {
-            let is_copied = |pair: &Pair| pair.source == joint && written.contains(&(pair.target, property));
-            let carries = |hips: &Pair| {
-                written.contains(&(hips.target, Property::Translation))
-                    && is_within(tracks.skeleton, hips.source, joint)
-            };
-            map.pairs.iter().any(is_copied) || hips.is_some_and(carries)
-        }
+    let hips = transfer.hips_pair().filter(|hips| written.contains(&(hips.target, Property::Translation)));
+    let carriers = hips.into_iter().flat_map(|hips| ancestry(tracks.skeleton, hips.source));
+    carried.extend(carriers.flat_map(|joint| NOT_ROTATIONS.map(|property| (joint, property))));
+    let is_used = |channel: &&Channel| match channel.keys.property() {
+        Property::Rotation => leads_to_mapped[channel.joint.get()],
+        property => carried.contains(&(channel.joint, property)),
     };
-    let channels = tracks.clip.channels().iter().filter(|channel| {
-        let property = channel.keys.property();
-        is_used(channel.joint, property) && !map.muted.contains(&(channel.joint, property))
-    });
+    let channels = tracks.clip.channels().iter().filter(is_used).filter(|channel| !tracks.is_muted(channel));
     channels.map(|channel| tracks.clip.timelines()[channel.timeline as usize].len()).sum()
 }

@@ -8,18 +8,26 @@ use crate::map::Pair;
 
 /// Steps of a measurement times joints of the skeleton: 2 hours at 60 a second for 75 joints.
 const MAX_MEASURED: usize = 1 << 25;
-/// Steps at which bodies are compared, which are held all at once: 16 minutes.
-pub const MAX_TOUCH_STEPS: usize = 1 << 15;
-/// Times that are added between the keys of a clip, or of one channel.
-pub const MAX_ADDED_TIMES: usize = 1 << 20;
+/// Steps at which bodies are compared, which are held all at once: 8 minutes.
+pub const MAX_TOUCH_STEPS: usize = 1 << 14;
+/// Chains of joints of one body times those of the other that are compared by their places: a thousand of each.
+const MAX_COMPARED_CHAINS: usize = 1 << 20;
+/// Moments that are added between the keys of a clip, with the whole body at each.
+const MAX_ADDED_MOMENTS: usize = 1 << 15;
+/// Times that are added between the keys of one channel.
+const MAX_ADDED_TIMES: usize = 1 << 20;
+/// Of these, those that a channel with few keys gets, and those for each key: real motion needs fewer than one for a key, and all
+/// channels together take no more than their keys are worth.
+const MIN_ADDED_TIMES: usize = 1 << 14;
+const ADDED_FOR_KEY: usize = 4;
 /// Keys of a layer that is repeated as long as a clip lasts, in all of its channels.
 const MAX_REPEATED_KEYS: usize = 1 << 22;
 /// Poses that are held all at once while layers and pins are baked, times joints.
 const MAX_HELD: usize = 12 << 20;
+/// Poses at the keys of layers that are repeated, times joints.
+const MAX_REPEATED_POSES: usize = 2 << 20;
 /// Poses that are added to those where a curve needs more, times joints.
 const MAX_ADDED: usize = 2 << 20;
-/// Frames of a video or a sequence of images: more than four hours at 60 a second.
-pub const MAX_VIDEO_FRAMES: u32 = 1_000_000;
 
 /// Ancestors of all mapped joints, of both skeletons, since much walks up from every one of them: those of a chain of 4,096 joints.
 pub const MAX_ANCESTORS: usize = 1 << 24;
@@ -47,9 +55,25 @@ pub fn measured_steps(steps: f32, joints: usize) -> usize {
     (steps as usize).min(MAX_MEASURED / joints.max(1))
 }
 
+/// Returns whether so many chains of joints of two bodies may be compared, each with each.
+pub fn may_compare_chains(targets: usize, sources: usize) -> bool {
+    targets.saturating_mul(sources) <= MAX_COMPARED_CHAINS
+}
+
 /// Returns at how many times a clip may be baked for a skeleton of this many joints, or a mesh of this many morph targets.
 pub fn held_poses(joints: usize) -> usize {
     MAX_HELD / joints.max(1)
+}
+
+/// Returns how often something with keys at so many times may be repeated and sampled at each of them, for a skeleton of this many
+/// joints.
+pub fn sampled_rounds(keys: usize, joints: usize) -> usize {
+    MAX_REPEATED_POSES / joints.max(1) / keys.max(1)
+}
+
+/// Returns how many times may be added to so many where linear interpolation doesn't follow.
+pub fn added_times(keys: usize) -> usize {
+    keys.saturating_mul(ADDED_FOR_KEY).clamp(MIN_ADDED_TIMES, MAX_ADDED_TIMES)
 }
 
 /// Returns how many poses may be added to the given ones where linear interpolation doesn't follow.
@@ -59,7 +83,7 @@ pub fn added_poses(joints: usize) -> usize {
 
 /// Returns into how many parts the time between two keys may be divided, `parts` at most, if there are so many keys.
 pub fn parts_between(keys: usize, parts: usize) -> usize {
-    parts.min(MAX_ADDED_TIMES / keys.max(1)).max(1)
+    parts.min(MAX_ADDED_MOMENTS / keys.max(1)).max(1)
 }
 
 /// Returns how often something with so many keys may be repeated, `rounds` at most.
@@ -75,8 +99,9 @@ mod tests {
     fn what_is_affordable_is_whole_and_the_rest_is_not() {
         assert_eq!(measured_steps(3600.0 * 60.0, 75), 216_000);
         assert_eq!([measured_steps(3e38, 64), measured_steps(f32::INFINITY, 0)], [1 << 19, 1 << 25]);
-        assert_eq!([parts_between(1000, 600), parts_between(1 << 19, 600), parts_between(1 << 22, 600)], [600, 2, 1]);
+        assert_eq!([parts_between(40, 600), parts_between(1 << 14, 600), parts_between(1 << 22, 600)], [600, 2, 1]);
         assert_eq!([added_poses(64), added_poses(0)], [1 << 15, 2 << 20]);
+        assert_eq!([added_times(2), added_times(10_000), added_times(usize::MAX)], [1 << 14, 40_000, 1 << 20]);
         assert_eq!([held_poses(65), held_poses(0), held_poses(usize::MAX)], [193_583, 12 << 20, 0]);
         assert_eq!(
             [affordable_rounds(10, 2.5), affordable_rounds(1 << 20, 1e30), affordable_rounds(0, 0.0)],

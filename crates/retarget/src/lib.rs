@@ -67,7 +67,6 @@ mod two_bones;
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
 pub use body::{Anatomy, Chain, ChainJoint, ChainPart, Follower, Segment, TwistJoint};
-pub use budget::MAX_VIDEO_FRAMES;
 pub use change::{ChangedClip, ClipChanges, HeldValues, Seam, Symmetry, change_clip, hold_values};
 pub use feet::Planting;
 pub use fewer_keys::{KeyTolerance, Thinned, fewer_keys};

@@ -16,6 +16,11 @@ pub fn clamped(value: f64, default: f64, min: f64, max: f64) -> f64 {
     if value.is_finite() { value.clamp(min, max) } else { default }
 }
 
+/// Limits a number to a range. Far from the origin, where numbers overflow, neither need be one.
+pub fn limited(value: f64, min: f64, max: f64) -> f64 {
+    value.max(min).min(max)
+}
+
 /// Interpolates along the shorter arc at constant speed (glTF 2.0, appendix C.3).
 pub fn slerp(from: DQuat, to: DQuat, factor: f64) -> DQuat {
     let cos = from.dot(to);

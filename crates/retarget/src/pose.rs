@@ -158,7 +158,7 @@ pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
 fn locals_in_mirror(skeleton: &Skeleton, pose: &Pose) -> Vec<Local> {
     let reflection = skeleton.reflection();
     let locals = skeleton.joints().zip(pose.locals());
-    locals.map(|(joint, local)| Local::from(&local).in_mirror(&reflection, joint)).collect()
+    locals.map(|(joint, local)| Local::from(&local).in_mirror(reflection, joint)).collect()
 }
 
 pub fn locals_of(pose: &Pose) -> Vec<Local> {

@@ -4,7 +4,7 @@
 use gaitway_character::anim::{JointIndex, Skeleton};
 use glam::{DQuat, DVec3};
 
-use super::math::unit;
+use super::math::{limited, unit};
 use super::pose::{WorldPose, is_within};
 
 /// A limb is never stretched beyond this share of its length: a straight one has no plane.
@@ -17,7 +17,7 @@ const COMFORTABLE_REACH: f64 = 0.99;
 /// How far a limb of two bones, vectors from joint to joint, may reach.
 pub fn max_reach([upper, lower]: [DVec3; 2]) -> f64 {
     let length = upper.length() + lower.length();
-    (upper + lower).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length)
+    limited((upper + lower).length(), COMFORTABLE_REACH * length, MAX_REACH * length)
 }
 
 /// Returns two turns that bring the end of two bones, vectors from joint to joint, towards `goal`, to `distance` from their

@@ -25,8 +25,8 @@ enum Place {
 }
 
 impl Skeleton {
-    /// Returns the reflection that puts the skeleton right, the identity unless most joints are mirrored at rest.
-    pub fn reflection(&self) -> Reflection {
+    /// Finds the reflection that puts the skeleton right, the identity unless most joints are mirrored at rest.
+    pub(super) fn find_reflection(&self) -> Reflection {
         let rest = self.rest();
         let scale = |joint: JointIndex| rest.local(joint).scale;
         if !self.joints().any(|joint| is_mirroring(scale(joint))) {

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 
 use super::joint::JointIndex;
 use super::pose::Pose;
+use super::reflection::Reflection;
 use super::transform::Transform;
 
 /// Input for building a skeleton; `parent` is an index into the same list.
@@ -53,6 +54,7 @@ pub struct Skeleton {
     /// All joints with their parents, sorted by depth: the order of a pose's lanes.
     by_depth: Vec<(JointIndex, Option<JointIndex>)>,
     rest: Pose,
+    reflection: Reflection,
     morph_ranges: Vec<Range<u32>>,
     /// Each joint's index in the list the skeleton was built from, and the inverse mapping.
     source_of_joint: Vec<u32>,
@@ -100,6 +102,7 @@ impl Skeleton {
         }
         skeleton.by_depth = sorted_by_depth(&skeleton.parents);
         skeleton.rest = Pose::new(&locals, morph_weights, skeleton.by_depth.iter().map(|&(joint, _)| joint));
+        skeleton.reflection = skeleton.find_reflection();
         Ok(skeleton)
     }
 
@@ -151,6 +154,11 @@ impl Skeleton {
     /// The rest pose, including the rest morph weights.
     pub fn rest(&self) -> &Pose {
         &self.rest
+    }
+
+    /// The reflection that puts the skeleton right, the identity unless most joints are mirrored at rest.
+    pub fn reflection(&self) -> &Reflection {
+        &self.reflection
     }
 
     /// Range of this joint's mesh in [`Pose::morph_weights`]; empty without morph targets.

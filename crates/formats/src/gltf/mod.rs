@@ -47,8 +47,8 @@ pub(super) use data::find as find_file;
 pub use early::{Early, early};
 pub(super) use images::image_header;
 pub use pointer::pointer_to;
-pub use write::{OwnClips, WriteError, insert_root};
 pub(super) use write::check_frames;
+pub use write::{OwnClips, WriteError, insert_root};
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion, vrma as write_vrma};
 
 /// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.

@@ -109,8 +109,16 @@ impl Column {
         if changes[1..].iter().all(|&at| times[at - 1].next_up() == times[at]) {
             return Some(Track { interpolation: Interpolation::Step, ..self.with_keys(samples, &changes) });
         }
+        // Each is compared many times.
+        let turns: Vec<DQuat> = match self.target {
+            Target::Rotation(_) => values.iter().map(|sample| rotation(self.of(sample))).collect(),
+            _ => Vec::new(),
+        };
         let is_close = |from: usize, to: usize, at: usize| {
             let factor = f64::from(times[at] - times[from]) / f64::from(times[to] - times[from]);
+            if let Target::Rotation(_) = self.target {
+                return angle_between(slerp(turns[from], turns[to], factor), turns[at]) <= limit;
+            }
             self.error([&values[from], &values[to]], factor, &values[at]) <= limit.max(self.rounding(&values[at]))
         };
         let keys = fewest(times.len(), |from, to| (from + 1..to).all(|at| is_close(from, to, at)));
@@ -148,11 +156,8 @@ impl Column {
         0.5 * ROUNDING * squares.sum::<f64>().sqrt()
     }
 
-    /// How far a value is from the one between two others, in radians for rotations.
+    /// How far numbers that aren't a rotation are from those between two others.
     pub fn error(&self, ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
-        if let Target::Rotation(_) = self.target {
-            return angle_between(self.rotation(ends, factor), rotation(self.of(at)));
-        }
         let parts = self.numbers(ends, factor).zip(self.of(at)).map(|(found, &exact)| found - f64::from(exact));
         parts.map(|part| part * part).sum::<f64>().sqrt()
     }

@@ -4,6 +4,8 @@
 //! of the model. So the rest pose needn't be quite symmetric, and the joints' own axes don't matter. In the space of a joint,
 //! both are linear maps of the keys, so no keys are added, and mirroring twice restores the clip.
 
+use std::collections::HashMap;
+
 use gaitway_character::anim::{JointIndex, PropertyTarget};
 use gaitway_character::asset::Asset;
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
@@ -54,6 +56,11 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
     let reflection = symmetry.reflection();
     let names = asset.avatar.expressions.iter().map(|expression| expression.name.as_str());
     let expressions: Vec<[usize; 2]> = pairs_by_side(names).collect();
+    // The names of a node's morph targets, as far as they have any.
+    let named =
+        asset.instances.iter().rev().map(|instance| (instance.joint, &asset.meshes[instance.mesh].target_names));
+    let named: HashMap<JointIndex, &Vec<String>> = named.collect();
+    let target_names = |node: &JointIndex| named.get(node).into_iter().copied().flatten().map(String::as_str);
     for track in &mut tracks.tracks {
         match &mut track.target {
             Target::Rotation(joint) => {
@@ -95,10 +102,10 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
                 *index = partner(expressions.iter().copied(), *index);
             }
             Target::Property(PropertyTarget::MorphWeight(joint, target)) => {
-                *target = partner(pairs_by_side(target_names(asset, *joint)), *target);
+                *target = partner(pairs_by_side(target_names(joint)), *target);
             }
             Target::Weights(joint) => {
-                for [left, right] in pairs_by_side(target_names(asset, *joint).take(track.width)) {
+                for [left, right] in pairs_by_side(target_names(joint).take(track.width)) {
                     track.map(|weights| weights.swap(left, right), &[]);
                 }
             }
@@ -110,11 +117,4 @@ pub fn mirror(tracks: &mut Tracks, asset: &Asset, symmetry: &Symmetry) {
 /// Returns the other one of the pair that an index is in, else the index itself.
 fn partner(mut pairs: impl Iterator<Item = [usize; 2]>, index: usize) -> usize {
     pairs.find(|pair| pair.contains(&index)).map_or(index, |[left, right]| if index == left { right } else { left })
-}
-
-/// Returns the names of a node's morph targets, as far as they have any.
-fn target_names(asset: &Asset, node: JointIndex) -> impl Iterator<Item = &str> {
-    let instance = asset.instances.iter().find(|instance| instance.joint == node);
-    let names = instance.map_or(&[][..], |instance| &asset.meshes[instance.mesh].target_names);
-    names.iter().map(String::as_str)
 }

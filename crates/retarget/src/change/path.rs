@@ -1,13 +1,13 @@
 //! Moves and turns a character along with its path.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use gaitway_character::anim::{JointIndex, Skeleton};
 use gaitway_character::asset::Asset;
 use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 
-use super::track::{Target, Tracks};
+use super::track::{Target, Track, Tracks};
 use crate::math::unit;
 use crate::pose::{Local, Scratch, WorldPose, ancestry, is_within, locals_of, parent_frame};
 
@@ -70,27 +70,41 @@ pub fn place(tracks: &mut Tracks, asset: &Asset, offset: [f64; 2], radians: f64)
     let moved = DVec3::new(offset[0], 0.0, offset[1]);
     let placed =
         DAffine3::from_translation(start + moved) * DAffine3::from_quat(turn) * DAffine3::from_translation(-start);
+    let mut animated: HashSet<Target> = tracks.tracks.iter().map(|track| track.target).collect();
+    let mut moves = HashMap::new();
     for joint in handles(tracks, asset) {
         let above = model_from_parent(skeleton, joint);
         let local = above.inverse() * placed * above;
         let above_turn = unit(above.to_scale_rotation_translation().1);
-        let local_turn = above_turn.inverse() * turn * above_turn;
+        moves.insert(joint, (local, above_turn.inverse() * turn * above_turn));
         let rest = skeleton.rest().local(joint);
-        tracks.ensure(Target::Translation(joint), &rest.translation.to_array());
-        tracks.ensure(Target::Rotation(joint), &rest.rotation.to_array());
-        for track in &mut tracks.tracks {
-            if track.target == Target::Translation(joint) {
+        let (translation, rotation) = (rest.translation.to_array(), rest.rotation.to_array());
+        for (target, value) in
+            [(Target::Translation(joint), &translation[..]), (Target::Rotation(joint), &rotation[..])]
+        {
+            if animated.insert(target) {
+                tracks.tracks.push(Track::constant(target, value));
+            }
+        }
+    }
+    for track in &mut tracks.tracks {
+        match track.target {
+            Target::Translation(joint) => {
+                let Some((local, _)) = moves.get(&joint) else { continue };
                 let affine = local.translation.as_vec3().to_array();
                 let linear = |entry: &mut [f32]| {
                     (local.matrix3 * Vec3::from_slice(entry).as_dvec3()).as_vec3().write_to_slice(entry);
                 };
                 track.map(linear, &affine);
-            } else if track.target == Target::Rotation(joint) && radians != 0.0 {
+            }
+            Target::Rotation(joint) if radians != 0.0 => {
+                let Some((_, local_turn)) = moves.get(&joint) else { continue };
                 let linear = |entry: &mut [f32]| {
-                    (local_turn * Quat::from_slice(entry).as_dquat()).as_quat().write_to_slice(entry);
+                    (*local_turn * Quat::from_slice(entry).as_dquat()).as_quat().write_to_slice(entry);
                 };
                 track.map(linear, &[]);
             }
+            _ => {}
         }
     }
 }

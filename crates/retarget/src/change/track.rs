@@ -1,12 +1,14 @@
 //! A clip's channels as plain numbers, so that changes treat joints, morph weights and properties alike.
 
-use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, PropertyTarget, Skeleton};
+use std::collections::HashSet;
+
+use gaitway_character::anim::{Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, PropertyTarget, Skeleton};
 use glam::{DQuat, Quat, Vec3};
 
 use crate::math::{slerp, unit};
 
 /// What a track animates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Target {
     Translation(JointIndex),
     Rotation(JointIndex),
@@ -37,7 +39,11 @@ pub struct Tracks {
 impl Tracks {
     pub fn of(clip: &Clip) -> Self {
         let mut found = Self { tracks: Vec::new(), duration_secs: clip.duration_secs() };
-        for channel in clip.channels() {
+        let mut seen = HashSet::new();
+        let mut is_new = |channel: &&Channel| seen.insert((channel.joint, channel.keys.property()));
+        let mut channels: Vec<&Channel> = clip.channels().iter().rev().filter(|channel| is_new(channel)).collect();
+        channels.reverse();
+        for channel in channels {
             let joint = channel.joint;
             let flat = |values: &[Vec3]| values.iter().flat_map(|value| value.to_array()).collect();
             let (target, width, values) = match &channel.keys {
@@ -49,7 +55,7 @@ impl Tracks {
                 Keys::MorphWeights { values, targets } => (Target::Weights(joint), *targets, values.clone()),
             };
             let times = clip.timelines()[channel.timeline as usize].clone();
-            found.replace(Track { target, interpolation: channel.interpolation, times, width, values });
+            found.tracks.push(Track { target, interpolation: channel.interpolation, times, width, values });
         }
         for channel in clip.properties() {
             let times = clip.property_timelines()[channel.timeline as usize].clone();

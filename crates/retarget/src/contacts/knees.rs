@@ -11,7 +11,7 @@ use crate::feet::{Leg, solve_leg};
 use crate::keys::channel::NewChannel;
 use crate::limit::limit_turns;
 use crate::map::Feet;
-use crate::math::{HORIZONTAL, slerp, smooth};
+use crate::math::{HORIZONTAL, limited, slerp, smooth};
 use crate::pose::{WorldPose, moved};
 use crate::two_bones::limb_rotations;
 
@@ -37,7 +37,7 @@ pub fn grounded_knees(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> O
     let [limit, least] = [MAX_MOVE, MIN_MOVE].map(|share| share * scene.bodies.target.height);
     let carrier = transfer.hips_carrier();
     let hips = (0..times.len()).map(|at| match carrier.and_then(|_| hips_wish(&legs, &poses[at], at)) {
-        Some(by) => (by.clamp(-limit, limit) * DVec3::Y, 1.0),
+        Some(by) => (limited(by, -limit, limit) * DVec3::Y, 1.0),
         None => (DVec3::ZERO, 0.0),
     });
     let hips = eased(times, &hips.collect::<Vec<_>>());
@@ -46,7 +46,9 @@ pub fn grounded_knees(scene: &Scene, clip: &Clip, resampled: &[JointIndex]) -> O
     for (leg, wishes) in &legs {
         // The share of the leg that kneels, and the moves of knee and ankle, come and go alike.
         let wanted = wishes.iter().map(|wish| match wish {
-            Some(Wish { knee, ankle }) => (DVec3::new(1.0, knee.clamp(-limit, limit), ankle.clamp(-limit, limit)), 1.0),
+            Some(Wish { knee, ankle }) => {
+                (DVec3::new(1.0, limited(*knee, -limit, limit), limited(*ankle, -limit, limit)), 1.0)
+            }
             None => (DVec3::ZERO, 0.0),
         });
         let moves = eased(times, &wanted.collect::<Vec<_>>());

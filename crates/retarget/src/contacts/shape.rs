@@ -108,7 +108,8 @@ impl Side<'_> {
 
     /// Vertices at the rest in which the mesh is measured, with the joints that they follow most.
     fn points(&self, transfer: &Transfer) -> Vec<(JointIndex, DVec3)> {
-        let is_mapped = |joint| transfer.map.pairs.iter().any(|pair| (self.joint)(pair) == joint);
+        let mut is_mapped = vec![false; self.skeleton.len()];
+        transfer.map.pairs.iter().for_each(|pair| is_mapped[(self.joint)(pair).get()] = true);
         let mut frames = Vec::new();
         for joint in self.skeleton.joints() {
             let local = self.skinned.locals[joint.get()].to_affine();
@@ -123,7 +124,7 @@ impl Side<'_> {
         for instance in &self.asset.instances {
             let skin = instance.skin.map(|skin| &self.asset.skins[skin]);
             // Unskinned meshes on joints of their own are things that a character wears or holds.
-            if skin.is_none() && !is_mapped(instance.joint) {
+            if skin.is_none() && !is_mapped[instance.joint.get()] {
                 continue;
             }
             for geometry in &self.asset.meshes[instance.mesh].primitives {

@@ -4,7 +4,7 @@
 use gaitway_character::asset::Slot;
 use glam::DVec3;
 
-use crate::math::HORIZONTAL;
+use crate::math::{HORIZONTAL, limited};
 use crate::pose::WorldPose;
 use crate::transfer::Transfer;
 
@@ -41,7 +41,7 @@ pub fn spreads(transfer: &Transfer, times: &[f32], poses: &[WorldPose], height: 
         let source = stance(pairs.map(|pair| transfer.source_position(pair.source, time)))?;
         let target = stance(pairs.map(|pair| pose.position(pair.target)))?;
         let wanted = target.hips * (source.feet / source.hips).min(1.0);
-        Some(0.5 * (wanted - target.feet).clamp(0.0, MAX_GAP * height) * target.to_left)
+        Some(0.5 * limited(wanted - target.feet, 0.0, MAX_GAP * height) * target.to_left)
     };
     poses.iter().zip(times).map(|at| spread(at).unwrap_or_default()).collect()
 }

@@ -32,11 +32,6 @@ impl NewChannel {
         Self::resampled(joint, positions.times, Keys::Translation(values))
     }
 
-    /// Whether the channel animates this property of this joint.
-    pub fn is_of(&self, joint: JointIndex, property: Property) -> bool {
-        self.joint == joint && self.keys.property() == property
-    }
-
     /// Returns the channel of a mirrored skeleton, from the one in the mirror.
     pub fn in_mirror(mut self, reflection: &Reflection) -> Self {
         reflection.change_keys(self.joint, &mut self.keys);
@@ -44,7 +39,7 @@ impl NewChannel {
     }
 
     /// Copies the channels of a clip, with one joint's translation and the rotations of others replaced by keys at the given times.
-    /// `resampled` lists the joints whose keys in `clip` are not the source's own.
+    /// `resampled` lists the joints, ascending, whose keys in `clip` are not the source's own.
     pub fn corrected(
         clip: &Clip,
         resampled: &[JointIndex],
@@ -64,7 +59,7 @@ impl NewChannel {
             interpolation: channel.interpolation,
             times: clip.timelines()[channel.timeline as usize].clone(),
             keys: channel.keys.clone(),
-            resampled: resampled.contains(&channel.joint),
+            resampled: resampled.binary_search(&channel.joint).is_ok(),
         }));
         let new = |joint, keys| Self::resampled(joint, times.to_vec(), keys);
         channels.extend(translation.map(|(joint, keys)| new(joint, Keys::Translation(keys))));

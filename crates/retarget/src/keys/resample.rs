@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::limits::ROUNDING;
-use crate::budget::MAX_ADDED_TIMES;
+use crate::budget::added_times;
 
 /// Maximum number of times an interval between two given times is halved.
 pub const MAX_HALVINGS: u32 = 8;
@@ -47,10 +47,10 @@ pub fn resample<T>(
     jumps: &[f32],
     curve: Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
 ) -> Resampled<T> {
-    resample_adding(times, jumps, curve, MAX_ADDED_TIMES)
+    resample_adding(times, jumps, curve, added_times(times.len()))
 }
 
-/// Like [`resample`], but adds no more than `max_added` keys between the given times: the rest is interpolated.
+/// Like [`resample`], but halves intervals between the given times no more than `max_added` times: the rest is interpolated.
 pub fn resample_adding<T>(
     times: &[f32],
     jumps: &[f32],
@@ -112,7 +112,7 @@ fn refine<T>(
         return;
     }
     if halvings == MAX_HALVINGS {
-        close_in(curve, end, keys);
+        close_in(curve, end, budget, keys);
         return;
     }
     let middle = (middle_secs, (curve.value)(middle_secs));
@@ -127,6 +127,7 @@ fn refine<T>(
 fn close_in<T>(
     curve: &mut Curve<impl FnMut(f32) -> T, impl FnMut(&T, &T, f64, &T) -> f64>,
     end: &(f32, T),
+    budget: &mut usize,
     keys: &mut Resampled<T>,
 ) {
     let (Some(&start_secs), Some(start)) = (keys.times.last(), keys.values.last()) else { return };
@@ -137,6 +138,7 @@ fn close_in<T>(
         let to = after.as_ref().map_or((end.0, &end.1), |(time, value)| (*time, value));
         let Some(middle_secs) = middle(from.0, to.0) else { break };
         let value = (curve.value)(middle_secs);
+        *budget = budget.saturating_sub(1);
         let mut difference = |other: &T| (curve.error)(other, other, 0.0, &value);
         if difference(from.1) <= difference(to.1) {
             before = Some((middle_secs, value));
@@ -177,4 +179,25 @@ pub fn fewest(count: usize, mut fits: impl FnMut(usize, usize) -> bool) -> Vec<u
         from = near;
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Jumps that no one announced are searched for, which costs more than the keys that it adds.
+    #[test]
+    fn noise_is_evaluated_as_often_as_the_budget_says() {
+        let mut evaluations = 0;
+        let value = |time: f32| {
+            evaluations += 1;
+            f64::from(time.to_bits().wrapping_mul(0x9E37_79B9) >> 16)
+        };
+        let error = |from: &f64, to: &f64, factor: f64, at: &f64| (from + (to - from) * factor - at).abs();
+        let times: Vec<f32> = (0..100).map(|second| second as f32).collect();
+        let keys = resample_adding(&times, &[], Curve { value, error, tolerance: 1e-3 }, 2000);
+        assert!(keys.times.len() < 2100, "{} keys", keys.times.len());
+        // Each of them looks at up to three times between its ends.
+        assert!(evaluations < 4 * 2100, "{evaluations} evaluations");
+    }
 }

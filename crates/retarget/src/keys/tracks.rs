@@ -1,6 +1,8 @@
 //! The source's channels by joint and property, in double precision. Gives the values that the player samples (glTF 2.0,
 //! appendix C), whereas the player's sampler works on whole poses in single precision.
 
+use std::collections::HashSet;
+
 use gaitway_character::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Reflection, Skeleton};
 use glam::{DQuat, DVec3, DVec4, Quat, Vec3};
 
@@ -49,15 +51,16 @@ pub struct SourceTracks<'a> {
     pub scales: Vec<Track<'a, DVec3>>,
     /// Which joints have a channel at all, even a constant one.
     pub has_channel: Vec<bool>,
+    muted: HashSet<(JointIndex, Property)>,
     /// Tracks have the values of the file; transforms are those in the mirror.
-    reflection: Reflection,
+    reflection: &'a Reflection,
 }
 
 impl<'a> SourceTracks<'a> {
     /// `unmoved` holds the local transforms of joints that the clip does not animate.
     pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
         let reflection = skeleton.reflection();
-        let in_file = |(joint, local): (JointIndex, &Local)| local.in_mirror(&reflection, joint);
+        let in_file = |(joint, local): (JointIndex, &Local)| local.in_mirror(reflection, joint);
         let unmoved: Vec<Local> = skeleton.joints().zip(unmoved).map(in_file).collect();
         let mut tracks = Self {
             skeleton,
@@ -66,14 +69,20 @@ impl<'a> SourceTracks<'a> {
             rotations: unmoved.iter().map(|local| Track::Constant(local.rotation)).collect(),
             scales: unmoved.iter().map(|local| Track::Constant(local.scale)).collect(),
             has_channel: vec![false; unmoved.len()],
+            muted: muted.iter().copied().collect(),
             reflection,
         };
         for channel in clip.channels() {
-            if !muted.contains(&(channel.joint, channel.keys.property())) {
+            if !tracks.is_muted(channel) {
                 tracks.set(&clip.timelines()[channel.timeline as usize], channel);
             }
         }
         tracks
+    }
+
+    /// Whether the map ignores a channel of the clip.
+    pub fn is_muted(&self, channel: &Channel) -> bool {
+        self.muted.contains(&(channel.joint, channel.keys.property()))
     }
 
     fn set(&mut self, times: &'a [f32], channel: &'a Channel) {
@@ -111,7 +120,7 @@ impl<'a> SourceTracks<'a> {
                 rotation: rotation(&self.rotations[joint.get()], &mut search),
                 scale: vector(&self.scales[joint.get()], &mut search),
             };
-            local.in_mirror(&self.reflection, joint)
+            local.in_mirror(self.reflection, joint)
         }
     }
 

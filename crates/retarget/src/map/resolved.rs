@@ -59,7 +59,7 @@ pub struct Layer {
 impl ResolvedMap {
     /// Index of the pair with this target.
     pub fn pair_index(&self, target: JointIndex) -> Option<usize> {
-        self.pairs.iter().position(|pair| pair.target == target)
+        self.pairs.binary_search_by_key(&target, |pair| pair.target).ok()
     }
 
     /// Returns the source of a target joint; `None` if it has none.

@@ -8,6 +8,7 @@ use gaitway_character::anim::{JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Humanoid};
 use glam::{DQuat, DVec3};
 
+use crate::budget::may_compare_chains;
 use crate::map::ResolvedMap;
 use crate::math::angle_between;
 use crate::skin::moves_skin;
@@ -136,7 +137,11 @@ pub fn limbs(transfer: &Transfer, [source_slots, target_slots]: [&Humanoid; 2]) 
         let joint = slots.find_map(|slot| source_slots.joint(slot))?;
         source_chain[joint.get()].filter(|&source| is_free[source])
     };
+    let may_compare = may_compare_chains(targets.len(), sources.len());
     let by_place = |target: &[JointIndex]| {
+        if !may_compare {
+            return None;
+        }
         let length: f64 =
             target.windows(2).map(|ends| target_position(ends[0]).distance(target_position(ends[1]))).sum();
         let ends = |chain: &[JointIndex]| [chain.first().copied(), chain.last().copied()];

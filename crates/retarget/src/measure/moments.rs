@@ -68,7 +68,7 @@ pub fn moments(transfer: &Transfer, slots: [&Humanoid; 2], clip: &Clip, soles: S
         }
         if let Some(hips) = transfer.hips_pair() {
             let source = source_pose.update(transfer.tracks.locals_at(time));
-            let target = played.pose(clip, time);
+            let target = played.in_pose(&pose);
             let turn_back = removed.turn(time).conjugate();
             let restored = removed.restored(transfer, target, hips.target, index, turn_back);
             headings.push([

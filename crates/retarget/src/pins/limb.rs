@@ -5,7 +5,7 @@ use gaitway_character::asset::Slot;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::Pinning;
-use crate::math::{smooth, unit};
+use crate::math::{limited, smooth, unit};
 use crate::pose::{Local, is_within, parent_frame};
 use crate::two_bones::reach_goal;
 
@@ -84,7 +84,7 @@ impl Pinning<'_> {
         // From a straight limb, which has no side, any distance is reached exactly.
         let straighten = DQuat::from_rotation_arc(onwards, along);
         let bones = [upper, lower.length() * along];
-        let [swing, bend] = reach_goal(bones, hinge, goal, goal.length().clamp(shortest, reach), 1.0)?;
+        let [swing, bend] = reach_goal(bones, hinge, goal, limited(goal.length(), shortest, reach), 1.0)?;
         Some([swing, bend * straighten])
     }
 

@@ -95,15 +95,15 @@ impl LayerMask {
         for (&slot, &joint) in &slots.0 {
             parts[joint.get()] = Some(BodyPart::of(slot));
         }
-        let roots: Vec<usize> =
-            self.joints.iter().filter_map(|&root| Some(skeleton.joint_of_source(root)?.get())).collect();
         let mut is_below = vec![false; skeleton.len()];
+        let roots = self.joints.iter().filter_map(|&root| skeleton.joint_of_source(root));
+        roots.for_each(|root| is_below[root.get()] = true);
         let mut included = vec![self.is_all(); skeleton.len()];
         for (at, parent) in skeleton.parents().iter().enumerate() {
             let above = parent.map(|parent| (parts[parent.get()], is_below[parent.get()]));
             let (part_above, below) = above.unwrap_or((None, false));
             let part = *parts[at].get_or_insert(part_above.unwrap_or(BodyPart::Hips));
-            is_below[at] = below || roots.contains(&at);
+            is_below[at] |= below;
             included[at] |= is_below[at] || self.has(part);
         }
         included

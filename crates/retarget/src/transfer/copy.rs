@@ -41,9 +41,10 @@ impl CopyPolicy {
 /// Whether the options leave the path alone, and all that carries the source's hips has a joint that follows it.
 fn follows_path(transfer: &Transfer) -> bool {
     let Some(hips) = transfer.hips_pair() else { return true };
-    let is_followed = |joint: JointIndex| transfer.map.pairs.iter().any(|pair| pair.source == joint);
+    let mut is_followed = vec![false; transfer.tracks.skeleton.len()];
+    transfer.map.pairs.iter().for_each(|pair| is_followed[pair.source.get()] = true);
     let mut above = ancestry(transfer.tracks.skeleton, hips.source);
-    keeps_everything(transfer.map) && above.all(|joint| !transfer.tracks.is_moving(joint) || is_followed(joint))
+    keeps_everything(transfer.map) && above.all(|joint| !transfer.tracks.is_moving(joint) || is_followed[joint.get()])
 }
 
 /// Whether the joints of every pair have the same name, the same parent's name and the same rest.
@@ -75,11 +76,13 @@ pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChanne
     let carries = |pair: &Pair| {
         is_creature && map.translations == Keep::Auto && tracks.translations[pair.source.get()].is_moving()
     };
+    let mut by_joint: Vec<Vec<&Channel>> = vec![Vec::new(); tracks.skeleton.len()];
+    tracks.clip.channels().iter().for_each(|channel| by_joint[channel.joint.get()].push(channel));
     let mut channels = Vec::new();
     for pair in &map.pairs {
         let is_same_name = target_skeleton.name(pair.target) == tracks.skeleton.name(pair.source);
         let morphs = if is_same_name { target_skeleton.morph_range(pair.target).len() } else { 0 };
-        for channel in tracks.clip.channels().iter().filter(|channel| channel.joint == pair.source) {
+        for channel in &by_joint[pair.source.get()] {
             let property = channel.keys.property();
             let is_wanted = match property {
                 Property::Translation if is_on_path(pair.target) => policy.translations && policy.path,
@@ -88,7 +91,7 @@ pub fn copied_channels(transfer: &Transfer, policy: CopyPolicy) -> Vec<NewChanne
                 Property::MorphWeights => morphs > 0,
                 Property::Rotation => false,
             };
-            if is_wanted && !map.muted.contains(&(pair.source, property)) {
+            if is_wanted && !tracks.is_muted(channel) {
                 let conversion = Conversion::new(transfer, policy, &rests, pair);
                 channels.extend(conversion.channel(transfer, channel, morphs));
             }

@@ -1,6 +1,8 @@
 //! Expressions of the motion on a model that doesn't have them: its morph targets of the same names. Expressions that the model has
 //! are added by the library, which knows what else they change.
 
+use std::collections::HashSet;
+
 use gaitway_character::anim::{
     Interpolation, JointIndex, Keys, PropertyChannel, PropertyTarget, PropertyValues, SampleCursor,
 };
@@ -23,6 +25,7 @@ pub fn expression_channels(transfer: &Transfer) -> Vec<NewChannel> {
     };
     let expressions: Vec<(&str, PropertyTarget)> = clip.properties().iter().filter_map(named).collect();
     let mut channels: Vec<NewChannel> = Vec::new();
+    let mut moved_joints = HashSet::new();
     for instance in &model.instances {
         let weights = &model.skeleton.rest().morph_weights[model.skeleton.morph_range(instance.joint)];
         let targets = model.meshes[instance.mesh].target_names.iter().take(weights.len()).enumerate();
@@ -32,7 +35,7 @@ pub fn expression_channels(transfer: &Transfer) -> Vec<NewChannel> {
                 Some((at, same.1))
             })
             .collect();
-        if !moved.is_empty() && !channels.iter().any(|channel| channel.joint == instance.joint) {
+        if !moved.is_empty() && moved_joints.insert(instance.joint) {
             channels.push(weights_channel(transfer, instance.joint, weights, &moved));
         }
     }

@@ -3,9 +3,7 @@
 
 use std::ops::Mul;
 
-use gaitway_character::anim::{
-    Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton,
-};
+use gaitway_character::anim::{Channel, Clip, ClipBuilder, Interpolation, Keys, Pose, SampleCursor, Skeleton};
 use gaitway_character::asset::Asset;
 
 use crate::budget::affordable_rounds;
@@ -47,10 +45,10 @@ pub fn layer_clips(model: &Asset, map: &ResolvedMap) -> Vec<LayerClip> {
     kinds.dedup();
     for (index, frozen) in kinds {
         let Some(clip) = model.clips.get(index) else { continue };
-        let plays = |joint: JointIndex| {
-            map.layers.iter().any(|layer| layer.joint == joint && layer.clip == index && layer.frozen == frozen)
-        };
-        let channels = clip.channels().iter().filter(|channel| plays(channel.joint));
+        let mut plays = vec![false; model.skeleton.len()];
+        let of_kind = map.layers.iter().filter(|layer| layer.clip == index && layer.frozen == frozen);
+        of_kind.for_each(|layer| plays[layer.joint.get()] = true);
+        let channels = clip.channels().iter().filter(|channel| plays[channel.joint.get()]);
         layers.push(LayerClip { clip: clip_of(model, clip, channels), duration_secs: clip.duration_secs(), frozen });
     }
     layers

@@ -1,11 +1,13 @@
 //! Clips of a few keys that last for ages, lie light years away, or repeat for ever: each is retargeted, measured and baked in a
 //! bounded time. Without budgets, these tests don't end.
 
-use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys};
+use std::time::Instant;
+
+use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Property};
 use gaitway_character::asset::{Asset, AssetParts, Humanoid};
 use gaitway_retarget::{
-    Body, ClipLayer, ClipOverLayers, Contacts, Feet, LayerClip, Pair, ResolvedMap, RetargetError, Retargeting,
-    StackedLayer, bake_layers, bake_stack, baking,
+    Body, ClipChanges, ClipLayer, ClipOverLayers, Contacts, Feet, Keep, Layer, LayerClip, Pair, ResolvedMap,
+    RetargetError, Retargeting, StackedLayer, bake_layers, bake_stack, baking, change_clip, layer_clips,
 };
 use glam::{Quat, Vec3};
 
@@ -14,15 +16,17 @@ use crate::figure::{Figure, Rig};
 use crate::laws::{body, map};
 use crate::skeletons::{asset, chain};
 
-/// The clip with its times and its translations multiplied.
-fn stretched(figure: &Figure, time_factor: f32, factor: f32) -> Clip {
+/// The clip with its times and its translations multiplied, and an offset added to these.
+fn stretched(figure: &Figure, time_factor: f32, factor: f32, offset: f32) -> Clip {
     let clip = &figure.asset.clips[0];
     let mut stretched = ClipBuilder::new(clip.name(), &figure.asset.skeleton);
     for channel in clip.channels() {
         let times: Vec<f32> =
             clip.timelines()[channel.timeline as usize].iter().map(|time| time * time_factor).collect();
         let keys = match channel.keys.clone() {
-            Keys::Translation(places) => Keys::Translation(places.iter().map(|place| *place * factor).collect()),
+            Keys::Translation(places) => {
+                Keys::Translation(places.iter().map(|place| *place * factor + offset).collect())
+            }
             keys => keys,
         };
         stretched.channel(channel.joint, channel.interpolation, &times, keys).expect("a good channel");
@@ -33,17 +37,27 @@ fn stretched(figure: &Figure, time_factor: f32, factor: f32) -> Clip {
 #[test]
 fn ages_and_light_years_are_retargeted_and_measured() {
     let model = with_boxes(&Rig::default(), 0.22);
-    for (time_factor, factor) in [(2e38, 1.0), (1e-6, 1.0), (1.0, 1e18), (1e5, 1e-18), (1.0, 1e36)] {
+    let cases = [
+        (2e38, 1.0, 0.0),
+        (1e-6, 1.0, 0.0),
+        (1e-43, 1.0, 0.0),
+        (1.0, 1e18, 0.0),
+        (1e5, 1e-18, 0.0),
+        (1.0, 1e36, 0.0),
+        (1.0, 1.0, 1e30),
+        (1.0, 1.0, 3.4e38),
+    ];
+    for (time_factor, factor, offset) in cases {
         let mut motion = with_boxes(&Rig::default(), 0.1);
         motion.dance(3, 60.0, Interpolation::Linear);
-        motion.set_clip(stretched(&motion, time_factor, factor));
+        motion.set_clip(stretched(&motion, time_factor, factor, offset));
         let map = ResolvedMap { contacts: Contacts::Keep, feet: Feet::Plant, ..map(&model, &motion) };
         let pair = Retargeting::new(body(&model), body(&motion), 0, &map).expect("a map with pairs");
         // Numbers that no clip can hold are an error.
         let Ok(done) = pair.bake() else { continue };
         let figures = pair.figures(&done);
-        assert!(figures.coverage.is_some(), "{time_factor} {factor}");
-        assert!(done.keys_out < 1 << 20, "{time_factor} {factor}: {} keys", done.keys_out);
+        assert!(figures.coverage.is_some(), "{time_factor} {factor} {offset}");
+        assert!(done.keys_out < 1 << 20, "{time_factor} {factor} {offset}: {} keys", done.keys_out);
     }
 }
 
@@ -66,6 +80,46 @@ fn joints_that_are_nested_too_deep_are_refused() {
     };
     assert_eq!(outcome(100_000), Err(RetargetError::TooDeep));
     assert_eq!(outcome(1000), Ok(()));
+}
+
+/// Work is proportional to the number of joints: if each were compared with each, this would take minutes.
+#[test]
+fn a_hundred_thousand_joints_are_retargeted_layered_and_changed_in_seconds() {
+    let count = 100_000;
+    let star = chain(std::iter::repeat_n("joint", count), Vec3::Y).into_iter();
+    let star = asset(star.map(|joint| Joint { parent: joint.parent.map(|_| 0), ..joint }).collect());
+    let mut clip = ClipBuilder::new("all", &star.skeleton);
+    for joint in star.skeleton.joints() {
+        let turns = Keys::Rotation(vec![Quat::IDENTITY, Quat::from_rotation_x(0.1)]);
+        clip.channel(joint, Interpolation::Linear, &[0.0, 1.0], turns).expect("a good channel");
+        let sizes = Keys::Scale(vec![Vec3::ONE, Vec3::splat(2.0)]);
+        clip.channel(joint, Interpolation::Linear, &[0.0, 1.0], sizes).expect("a good channel");
+    }
+    let star = Asset::new(AssetParts { clips: vec![clip.build()], ..star.into_parts() }).expect("a good asset");
+    let pair = |joint| Pair { target: joint, source: joint, correction: Quat::IDENTITY };
+    // Every other joint is mapped, the rest plays a clip of the model.
+    let (mapped, own): (Vec<_>, Vec<_>) = star.skeleton.joints().partition(|joint| joint.get() % 2 == 0);
+    let map = ResolvedMap {
+        pairs: mapped.into_iter().map(pair).collect(),
+        layers: own.into_iter().map(|joint| Layer { joint, clip: 0, frozen: false }).collect(),
+        muted: star.skeleton.joints().map(|joint| (joint, Property::Translation)).collect(),
+        scales: Keep::Keep,
+        ..ResolvedMap::default()
+    };
+    let slots = Humanoid::default();
+    let body = || Body { asset: &star, slots: &slots };
+    let begun = Instant::now();
+    let pair = Retargeting::new(body(), body(), 0, &map).expect("a map with pairs");
+    let retargeted = pair.bake().expect("a clip");
+    pair.figures(&retargeted);
+    let layers = layer_clips(&star, &map);
+    let baked = bake_layers(&star, &retargeted.clip, &layers, &baking(&retargeted.clip, &layers, &[], None));
+    assert_eq!(baked.channels().len(), 2 * count);
+    let changes = ClipChanges { reverse: true, speed: 2.0, ..ClipChanges::NONE };
+    let changed = change_clip(&star, &baked, &changes, || unreachable!("nothing is mirrored"));
+    assert_eq!(changed.clip.channels().len(), 2 * count);
+    let secs = begun.elapsed().as_secs();
+    assert!(secs < 20, "{secs} s");
 }
 
 /// A joint that moves back and forth within so many seconds.

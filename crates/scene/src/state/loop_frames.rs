@@ -1,7 +1,6 @@
 //! The frames of a video that shows one loop of the active clip. Their times depend only on the view, not on a clock.
 
 use gaitway_character::anim::LoopMode;
-use gaitway_retarget::MAX_VIDEO_FRAMES;
 
 use super::playhead::{active_clip, play_range};
 use super::{CameraChoice, Command, ViewerState, apply, resolve_camera};
@@ -16,8 +15,8 @@ pub struct LoopFrames {
 }
 
 impl LoopFrames {
-    /// Maximum number of frames to draw: a damaged file may have a clip of a thousand years.
-    pub const MAX_COUNT: u32 = MAX_VIDEO_FRAMES;
+    /// Maximum number of frames to draw, more than four hours at 60 a second: a damaged file may have a clip of a thousand years.
+    pub const MAX_COUNT: u32 = 1_000_000;
 
     /// Starts at the in point, with the loop mode and speed of the view; `None` if there is nothing to play. `aspect` is the
     /// video's width over height.

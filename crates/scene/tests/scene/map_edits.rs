@@ -6,7 +6,7 @@ use std::sync::Arc;
 use gaitway_character::anim::Transform;
 use gaitway_character::asset::Asset;
 use gaitway_retarget::{
-    ClipRef, Contacts, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices,
+    Chains, ClipRef, Contacts, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices,
     RootOptions, RootPart, Unmapped, UpChoice,
 };
 use gaitway_scene::editor::reconciled_maps;
@@ -338,6 +338,7 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
         root: _,
         translations: _,
         scales: _,
+        chains: _,
         muted_channels: _,
         feet: _,
         contacts: _,
@@ -366,6 +367,7 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
         ("root", with(&|map| map.root = RootOptions { yaw: RootPart::InPlace, extract: true, ..Default::default() })),
         ("translations", with(&|map| map.translations = Keep::Keep)),
         ("scales", with(&|map| map.scales = Keep::Drop)),
+        ("chains", with(&|map| map.chains = Chains::Share)),
         (
             "muted_channels",
             with(&|map| {
@@ -384,7 +386,9 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
 #[test]
 fn the_map_key_holds_every_member() {
     let members = one_member_each();
-    let form = serde_json::to_value(JointMap::default()).expect("plain data");
+    // Only chains that share their bend are written.
+    let form = JointMap { chains: Chains::Share, ..JointMap::default() };
+    let form = serde_json::to_value(form).expect("plain data");
     let all: BTreeSet<&str> = form.as_object().expect("an object").keys().map(String::as_str).collect();
     let tried: BTreeSet<&str> = members.iter().map(|(name, _)| *name).collect();
     assert_eq!(tried, all);
