@@ -28,6 +28,8 @@ const MAX_HELD: usize = 12 << 20;
 const MAX_REPEATED_POSES: usize = 2 << 20;
 /// Poses that are added to those where a curve needs more, times joints.
 const MAX_ADDED: usize = 2 << 20;
+/// Of these, those that few poses get, however far they are apart.
+const MIN_ADDED: usize = 1 << 18;
 
 /// Ancestors of all mapped joints, of both skeletons, since much walks up from every one of them: those of a chain of 4,096 joints.
 pub const MAX_ANCESTORS: usize = 1 << 24;
@@ -76,9 +78,10 @@ pub fn added_times(keys: usize) -> usize {
     keys.saturating_mul(ADDED_FOR_KEY).clamp(MIN_ADDED_TIMES, MAX_ADDED_TIMES)
 }
 
-/// Returns how many poses may be added to the given ones where linear interpolation doesn't follow.
-pub fn added_poses(joints: usize) -> usize {
-    MAX_ADDED / joints.max(1)
+/// Returns how many poses of so many joints may be added to the given ones where linear interpolation doesn't follow.
+pub fn added_poses(joints: usize, given: usize) -> usize {
+    let [min, max] = [MIN_ADDED, MAX_ADDED].map(|poses| poses / joints.max(1));
+    given.saturating_mul(ADDED_FOR_KEY).clamp(min, max)
 }
 
 /// Returns into how many parts the time between two keys may be divided, `parts` at most, if there are so many keys.
@@ -100,7 +103,7 @@ mod tests {
         assert_eq!(measured_steps(3600.0 * 60.0, 75), 216_000);
         assert_eq!([measured_steps(3e38, 64), measured_steps(f32::INFINITY, 0)], [1 << 19, 1 << 25]);
         assert_eq!([parts_between(40, 600), parts_between(1 << 14, 600), parts_between(1 << 22, 600)], [600, 2, 1]);
-        assert_eq!([added_poses(64), added_poses(0)], [1 << 15, 2 << 20]);
+        assert_eq!([added_poses(64, 2), added_poses(64, 5000), added_poses(0, usize::MAX)], [1 << 12, 20_000, 2 << 20]);
         assert_eq!([added_times(2), added_times(10_000), added_times(usize::MAX)], [1 << 14, 40_000, 1 << 20]);
         assert_eq!([held_poses(65), held_poses(0), held_poses(usize::MAX)], [193_583, 12 << 20, 0]);
         assert_eq!(

@@ -7,7 +7,7 @@ mod times;
 use gaitway_character::anim::{Clip, JointIndex, Pose, Property, PropertyTarget, SampleCursor, Skeleton};
 use glam::{DQuat, DVec3};
 
-use crate::budget::{added_poses, added_times, held_poses, sampled_rounds};
+use crate::budget::{added_poses, held_poses, sampled_rounds};
 use crate::change::track::{Target, Track, Tracks};
 use crate::keys::limits::{BETWEEN_KEYS, BETWEEN_SAMPLES, Limits};
 use crate::keys::resample::{Curve, resample_adding};
@@ -98,7 +98,7 @@ impl<'a> Baker<'a> {
             &times,
             &jumps,
             Curve { value, error, tolerance: BETWEEN_SAMPLES },
-            added_poses(skeleton.len()).min(added_times(times.len())),
+            added_poses(skeleton.len(), times.len()),
         );
         let mut kept = Tracks::of(clip);
         kept.tracks.retain(|track| {
