@@ -1,30 +1,42 @@
-//! What is fuzzed: one function per reader. Whatever it returns must be consistent, and it must not panic, hang or use
-//! unbounded memory. The fuzz targets call these with libFuzzer's bytes, and `tests/damage/fuzz.rs` with damaged files
-//! for a moment in every test run.
+//! What is fuzzed: one function per reader, and one for all that follows reading. Whatever it returns must be consistent, and it must
+//! not panic, hang or use unbounded memory. The fuzz targets call these with libFuzzer's bytes, and `tests/damage/fuzz.rs` with
+//! damaged files for a moment in every test run.
 
 // Each target uses one of them.
 #![allow(dead_code)]
 
+#[path = "follow.rs"]
+mod follow;
+
 use gaitway_character::asset::Asset;
-use gaitway_formats::{Early, FileSet, LoadOptions, convert, early, load, load_with, missing_files, prepare, read_hdr};
+use gaitway_formats::{
+    Early, FileSet, LoadOptions, Part, convert, early, load, load_with, missing_files, prepare, read_hdr,
+};
 use gaitway_retarget::JointMapFile;
 use gaitway_scene::library::Library;
 use gaitway_scene::state::{from_link, to_link};
+
+pub use follow::follow;
 
 /// A reader's name and its entry point.
 pub type Entry = (&'static str, fn(&[u8]));
 
 /// All entries; each has a fuzz target of the same name in `fuzz_targets`.
-pub const ENTRIES: [Entry; 9] = [
+pub const ENTRIES: [Entry; 14] = [
     ("gltf", gltf),
     ("bvh", bvh),
+    ("fbx", fbx),
     ("x", x),
     ("npz", npz),
+    ("draco", draco),
+    ("meshopt", meshopt),
+    ("ktx2", ktx2),
     ("exercise", exercise),
     ("archive", archive),
     ("map", map),
     ("link", link),
     ("hdr", hdr),
+    ("follow", follow),
 ];
 
 /// A .glb, or a .gltf whose data is inside; also as if its images had not arrived.
@@ -46,6 +58,11 @@ pub fn bvh(bytes: &[u8]) {
     check_model(&one("motion.bvh", bytes));
 }
 
+/// An .fbx, text or binary, read by a library in C.
+pub fn fbx(bytes: &[u8]) {
+    check_converted(one("model.fbx", bytes));
+}
+
 /// A .x, text or binary, compressed or not.
 pub fn x(bytes: &[u8]) {
     check_converted(one("model.x", bytes));
@@ -56,12 +73,39 @@ pub fn npz(bytes: &[u8]) {
     check_converted(one("motion.npz", bytes));
 }
 
+/// A .glb with compressed meshes, or the decoder's own input.
+pub fn draco(bytes: &[u8]) {
+    compressed(Part::Draco, bytes);
+}
+
+/// A .glb with compressed buffers, or the decoder's own input.
+pub fn meshopt(bytes: &[u8]) {
+    compressed(Part::Meshopt, bytes);
+}
+
+/// An image, or what precedes it in the decoder's input.
+pub fn ktx2(bytes: &[u8]) {
+    compressed(Part::Ktx2, bytes);
+}
+
+fn compressed(part: Part, bytes: &[u8]) {
+    if bytes.starts_with(b"glTF") {
+        check_converted(one("model.glb", bytes));
+    } else if let Err(problem) = part.run(bytes) {
+        check_problem(&problem);
+    }
+}
+
 fn check_converted(mut files: FileSet) {
     match prepare(&mut files) {
         Ok(()) => check_model(&files),
-        // Programs report a panic in a part as an error.
-        Err(problem) => assert!(!problem.to_string().contains("unexpectedly"), "{problem}"),
+        Err(problem) => check_problem(&problem.to_string()),
     }
+}
+
+/// Programs report a panic in a part as an error.
+fn check_problem(problem: &str) {
+    assert!(!problem.contains("unexpectedly"), "{problem}");
 }
 
 /// Four texts separated by 0xFF: the .obj, .skel, .attach and .mtl of one model.

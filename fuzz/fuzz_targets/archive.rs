@@ -1,6 +1,6 @@
 //! Reads any bytes as a zip, or a file without a name. Real files in `corpus/archive` serve as seeds.
 //!
-//! `cargo +nightly fuzz run archive -- -max_len=300000 -rss_limit_mb=4096`
+//! `cargo +nightly fuzz run archive -- -max_len=300000 -timeout=10 -rss_limit_mb=2048`
 
 #![no_main]
 

@@ -1,6 +1,6 @@
 //! Reads any bytes as a .glb or .gltf. Real files in `corpus/gltf` serve as seeds.
 //!
-//! `cargo +nightly fuzz run gltf -- -max_len=300000 -dict=fuzz/gltf.dict -rss_limit_mb=4096`
+//! `cargo +nightly fuzz run gltf -- -max_len=300000 -dict=fuzz/gltf.dict -timeout=10 -rss_limit_mb=2048`
 
 #![no_main]
 

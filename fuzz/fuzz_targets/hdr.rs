@@ -1,6 +1,6 @@
 //! Reads any bytes as an .hdr image.
 //!
-//! `cargo +nightly fuzz run hdr -- -max_len=20000 -rss_limit_mb=4096`
+//! `cargo +nightly fuzz run hdr -- -max_len=20000 -timeout=10 -rss_limit_mb=2048`
 
 #![no_main]
 

@@ -3,6 +3,7 @@
 #[allow(dead_code)]
 #[path = "../support/build_gltf.rs"]
 mod build_gltf;
+mod compressed;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
 #[path = "../support/examples.rs"]
@@ -10,6 +11,7 @@ mod examples;
 #[path = "../support/file_set.rs"]
 mod file_set;
 mod fuzz;
+mod memory;
 mod mutation;
 #[path = "../support/numpy.rs"]
 mod numpy;
