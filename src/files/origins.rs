@@ -2,6 +2,7 @@
 //! again.
 
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::sort_by_key;
 use gaitway_formats::{FileSet, with_references};
 use gaitway_scene::editor::{Contents, ModelFiles, OpenedModel};
 use gaitway_scene::library::{Derived, Environment, ImageData, Model, Motion, container_of};
@@ -72,7 +73,7 @@ impl Origins {
         name_members(&mut models);
         let place_of = |origin: &str| self.known.iter().position(|(_, known)| known == origin);
         let place = |origin: &str| place_of(origin).or_else(|| place_of(container_of(origin))).unwrap_or(usize::MAX);
-        models.sort_by_key(|opened| place(&opened.model.origin));
+        sort_by_key(&mut models, |opened| place(&opened.model.origin));
         let problems = if role == Role::Motion { Vec::new() } else { self.missing_members(&models) };
         let motions = (!motions.is_empty()).then_some(motions);
         let environment = sorted.environment.map(|(name, panorama)| Environment {

@@ -10,9 +10,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may use only lower ranks and its own folder. ARCHITECTURE.md has the same table.
-const RANKS: [(&str, u32); 18] = [
+const RANKS: [(&str, u32); 19] = [
     ("anim", 0),
     ("json_text", 0),
+    ("sort", 0),
     ("avatar", 1),
     ("mesh", 1),
     ("asset", 2),

@@ -9,3 +9,4 @@ pub mod anim;
 pub mod asset;
 pub mod avatar;
 pub mod mesh;
+pub mod sort;

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use gaitway_character::anim::{Channel, ChannelError, Clip, ClipBuilder, JointIndex, Keys, Property};
+use gaitway_character::sort::sort_by;
 
 use super::budget::MAX_ANCESTORS;
 use super::contacts::{Bodies, Scene, grounded_knees, kept_limbs, leaning_trunk};
@@ -230,7 +231,7 @@ fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargete
             .channel(channel.joint, channel.interpolation, &channel.times, channel.keys)
             .map_err(|problem| RetargetError::Channel { joint: skeleton.name(channel.joint).to_owned(), problem })?;
     }
-    resampled.sort();
+    sort_by(&mut resampled, Ord::cmp);
     resampled.dedup();
     let has_no_extraction_joint = || transfer.hips.is_none_or(|hips| extraction_joint(transfer, hips).is_none());
     Ok(Retargeted {

@@ -2,6 +2,7 @@
 //! except for the rounding of its arithmetic.
 
 use gaitway_character::anim::{Clip, ClipBuilder, JointIndex, Pose, SampleCursor, Skeleton, Transform};
+use gaitway_character::sort::sort_floats;
 
 use crate::map::shared_names;
 
@@ -66,7 +67,7 @@ impl Tolerance {
     /// Whether two clips have the same poses at their keys and halfway to the next ones.
     fn are_alike(&self, skeleton: &Skeleton, one: &Clip, other: &Clip) -> bool {
         let mut times: Vec<f32> = one.key_times_secs().chain(other.key_times_secs()).collect();
-        times.sort_by(f32::total_cmp);
+        sort_floats(&mut times);
         times.dedup();
         let halfway: Vec<f32> = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         let mut sampled = [one, other].map(|clip| (clip, SampleCursor::default(), skeleton.rest().clone()));

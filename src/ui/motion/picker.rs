@@ -2,6 +2,7 @@
 
 use egui::{Context, Key, ScrollArea, Ui};
 use gaitway_character::anim::JointIndex;
+use gaitway_character::sort::sort_by;
 use gaitway_scene::library::MotionId;
 use gaitway_scene::state::{Command, title};
 
@@ -140,6 +141,6 @@ fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
             (exact || finds(&wanted, &name)).then_some((!exact, at, joint))
         })
         .collect();
-    found.sort_unstable();
+    sort_by(&mut found, Ord::cmp);
     found.into_iter().map(|(_, _, joint)| joint).collect()
 }

@@ -3,6 +3,7 @@
 
 use gaitway_character::asset::{Warning, Warnings};
 use gaitway_character::mesh::{Influences, MAX_INFLUENCES};
+use gaitway_character::sort::sort_by;
 
 use crate::error::Problem;
 use crate::limits::Budget;
@@ -76,7 +77,7 @@ impl Rows {
             self.normalized += 1;
         }
         // Stable: equal weights keep the file's order.
-        row.sort_by(|a, b| b.1.total_cmp(&a.1));
+        sort_by(row, |a, b| b.1.total_cmp(&a.1));
         self.max_count = self.max_count.max(row.len());
         if let Some(lost) = row.get(MAX_INFLUENCES) {
             self.largest_lost_weight = self.largest_lost_weight.max((lost.1 / total) as f32);

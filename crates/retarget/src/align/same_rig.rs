@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{Clip, JointIndex, Keys, Skeleton};
+use gaitway_character::sort::sort_by;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::map::{ResolvedMap, shared_names};
@@ -121,7 +122,7 @@ impl Rigs<'_> {
     /// Whether names, hierarchy and local frames of the mapped joints agree.
     fn agree(&self, map: &ResolvedMap) -> bool {
         let mut sources: Vec<JointIndex> = map.pairs.iter().map(|pair| pair.source).collect();
-        sources.sort_unstable();
+        sort_by(&mut sources, Ord::cmp);
         sources.dedup();
         let named = sources.iter().filter(|source| self.target_of[source.get()].is_some()).count();
         let (mut same_place, mut offsets) = (0, Vec::new());

@@ -3,6 +3,7 @@
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::Slot;
+use gaitway_character::sort::sort_by;
 
 use super::Form;
 use crate::pose::ancestry;
@@ -91,7 +92,7 @@ fn of_segment(form: &Form, segment: Segment, ends: [JointIndex; 2]) -> Option<Ve
             leaves.extend(twist(joint, false));
         }
     }
-    leaves.sort_by(|a, b| a.along.total_cmp(&b.along));
+    sort_by(&mut leaves, |a, b| a.along.total_cmp(&b.along));
     Some(inside.into_iter().chain(leaves).collect())
 }
 

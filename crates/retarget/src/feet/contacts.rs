@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use gaitway_character::anim::JointIndex;
+use gaitway_character::sort::sort_by;
 use glam::DVec3;
 
 use crate::align::Alignment;
@@ -114,7 +115,8 @@ fn velocity(times: &[f32], positions: &[DVec3], at: usize) -> DVec3 {
 /// heights: such a foot is never in contact.
 fn low_height(mut heights: Vec<f64>) -> f64 {
     let at = heights.len() / 20;
-    if at < heights.len() { *heights.select_nth_unstable_by(at, f64::total_cmp).1 } else { f64::INFINITY }
+    sort_by(&mut heights, f64::total_cmp);
+    heights.get(at).copied().unwrap_or(f64::INFINITY)
 }
 
 /// The ground below a figure that walks or runs in place moves like its feet while they are low: at their median velocity or,
@@ -139,7 +141,7 @@ fn moving_ground(times: &[f32], positions: &[Vec<DVec3>], hips: &[DVec3], body_h
     }
     // Feet that stand for a quarter of the time stand on ground that stands.
     let mut speeds: Vec<f64> = all.iter().map(|low| low.length()).collect();
-    speeds.sort_unstable_by(f64::total_cmp);
+    sort_by(&mut speeds, f64::total_cmp);
     let slowest = speeds.get(speeds.len() / 4).copied().unwrap_or(0.0);
     let sum = all.iter().sum::<DVec3>().length();
     let speed = sum / all.len().max(1) as f64;
@@ -195,7 +197,8 @@ pub fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     let at = values.len() / 2;
-    if at < values.len() { *values.select_nth_unstable_by(at, f64::total_cmp).1 } else { 0.0 }
+    sort_by(&mut values, f64::total_cmp);
+    values.get(at).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

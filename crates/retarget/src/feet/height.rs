@@ -1,6 +1,7 @@
 //! Height of the body above the ground before its feet are planted: in motion capture, bodies often hover or sink.
 
 use gaitway_character::anim::JointIndex;
+use gaitway_character::sort::sort_by;
 
 use super::body::means;
 use super::plan::LegContacts;
@@ -40,7 +41,8 @@ pub fn standing_height(feet: &[(Vec<f64>, &[bool])]) -> Option<f64> {
         heights = (0..feet.first()?.0.len()).map(lower).collect();
         at = heights.len() / 20;
     }
-    (!heights.is_empty()).then(|| *heights.select_nth_unstable_by(at, f64::total_cmp).1)
+    sort_by(&mut heights, f64::total_cmp);
+    heights.get(at).copied()
 }
 
 /// Returns by how much the body is too high above the ground that its soles rest on. `None` without legs.

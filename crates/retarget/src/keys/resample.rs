@@ -1,6 +1,7 @@
 //! Resamples where no single channel suffices: evaluates a function of time at the given times, then subdivides until
 //! linear interpolation follows it closely enough. [`fewest`] does the reverse: it drops samples that interpolation restores.
 
+use gaitway_character::sort::sort_floats;
 use glam::DVec3;
 
 use super::limits::ROUNDING;
@@ -35,7 +36,7 @@ pub struct Curve<V, E> {
 /// Merges timelines: ascending, without duplicates.
 pub fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f32> {
     let mut times: Vec<f32> = timelines.into_iter().flatten().copied().collect();
-    times.sort_by(f32::total_cmp);
+    sort_floats(&mut times);
     times.dedup();
     times
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use gaitway_character::sort::sort_by;
 use gaitway_json_text::{offset_of, path_at, place};
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -162,7 +163,7 @@ fn blank_members(blanked: &mut [u8], text: &str, object: &str, names: &[&str]) {
         .iter()
         .map(|(name, value)| (start_of(value.get()), value.get().len(), names.contains(&name.as_str())))
         .collect();
-    members.sort_unstable();
+    sort_by(&mut members, Ord::cmp);
     let mut before = start_of(object) + object.find('{').map_or(0, |brace| brace + 1);
     let mut is_first = true;
     for (start, length, is_unwanted) in members {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway_character::anim::{Clip, JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Side};
 use gaitway_character::mesh::Skin;
+use gaitway_character::sort::sort_by;
 
 use super::error::MapError;
 use super::file::SourceRef;
@@ -91,14 +92,14 @@ impl<'a> Names<'a> {
             })
             .filter(|(score, _)| *score >= MIN_SIMILARITY)
             .collect();
-        scored.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
+        sort_by(&mut scored, |a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
         scored.into_iter().take(MAX_SUGGESTIONS).map(|(_, other)| other.to_owned()).collect()
     }
 
     /// The joints' numbers in the file.
     fn numbers(&self, joints: &[JointIndex]) -> Vec<usize> {
         let mut numbers: Vec<usize> = joints.iter().map(|&joint| self.skeleton.source_index(joint)).collect();
-        numbers.sort_unstable();
+        sort_by(&mut numbers, Ord::cmp);
         numbers
     }
 }

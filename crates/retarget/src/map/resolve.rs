@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use gaitway_character::anim::{JointIndex, Property, Skeleton, find_clip};
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::{sort_by, sort_by_key};
 use glam::{DQuat, Quat};
 
 use super::error::MapError;
@@ -85,8 +86,8 @@ fn resolve_joints(map: &JointMap, model: &Asset, motion: &Asset) -> Result<Resol
             None => None,
         };
     }
-    pairs.sort_by_key(|pair: &Pair| pair.target);
-    without_source.sort_unstable();
+    sort_by_key(&mut pairs, |pair: &Pair| pair.target);
+    sort_by(&mut without_source, Ord::cmp);
     Ok(ResolvedJoints { pairs, without_source, layers })
 }
 

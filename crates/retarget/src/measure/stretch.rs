@@ -7,6 +7,7 @@
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Asset, MeshInstance};
 use gaitway_character::mesh::{Bounds, Geometry, Influences, Topology};
+use gaitway_character::sort::{sort_by, sort_floats};
 use glam::{Affine3A, Vec3A};
 
 /// Edges that are measured around each joint, and the fewest that say something.
@@ -115,7 +116,7 @@ impl<'a> SkinEdges<'a> {
         for instance in &asset.instances {
             let mut edges = skin_edges(asset, instance);
             let mut scales: Vec<f32> = edges.iter().map(|edge| edge.length(&found.posed) / edge.bound_length).collect();
-            scales.sort_by(f32::total_cmp);
+            sort_floats(&mut scales);
             let Some(&scale) = scales.get(scales.len() / 2).filter(|scale| scale.is_normal()) else { continue };
             for edge in &mut edges {
                 edge.bound_length *= scale;
@@ -212,7 +213,7 @@ fn skin_edges(asset: &Asset, instance: &MeshInstance) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (joint, candidates) in asset.skeleton.joints().zip(&mut candidates) {
         // What comes apart shows where weights change most.
-        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        sort_by(candidates, |a, b| b.0.total_cmp(&a.0));
         edges.extend(candidates.iter().take(MAX_EDGES).map(|&(_, [primitive, from, to])| {
             let geometry = &primitives[primitive];
             let ends = [from, to].map(|end| End::new(geometry, end));

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::Side;
 use gaitway_character::asset::Slot::{self, *};
+use gaitway_character::sort::sort_by;
 
 use super::assemble::spread;
 use super::evidence::Evidence;
@@ -75,7 +76,7 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
             }
         }
     }
-    found.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+    sort_by(&mut found, |a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
     Some(found)
 }
 

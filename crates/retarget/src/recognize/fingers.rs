@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Side, Slot};
+use gaitway_character::sort::sort_by;
 
 use super::known::finger_slots;
 use super::shape::Shape;
@@ -23,11 +24,11 @@ pub(super) fn find(shape: &Shape, hand: JointIndex) -> Vec<(Slot, JointIndex, f3
     // The thumb begins nearest to the wrist.
     let base = |finger: &Vec<JointIndex>| shape.position(segments(shape, hand, finger, false)[0]);
     let wrist = shape.position(hand);
-    fingers.sort_by(|a, b| base(a).distance(wrist).total_cmp(&base(b).distance(wrist)));
+    sort_by(&mut fingers, |a, b| base(a).distance(wrist).total_cmp(&base(b).distance(wrist)));
     let thumb = fingers.remove(0);
     let thumb_base = shape.position(thumb[0]);
     let second = shape.position(thumb[1]);
-    fingers.sort_by(|a, b| base(a).distance(second).total_cmp(&base(b).distance(second)));
+    sort_by(&mut fingers, |a, b| base(a).distance(second).total_cmp(&base(b).distance(second)));
     let (Some(index), Some(last)) = (fingers.first().map(&base), fingers.last().map(&base)) else { return Vec::new() };
     let palm = last - index;
     let steps: Vec<f32> =

@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::Slot::{self, *};
+use gaitway_character::sort::sort_by;
 use glam::Vec3;
 
 use super::shape::{Halves, Shape, Twins};
@@ -81,7 +82,7 @@ fn triples(count: usize, cost: impl Fn([usize; 3]) -> f32) -> Vec<Triple> {
         }
     }
     found.retain(|(_, cost)| cost.is_finite());
-    found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    sort_by(&mut found, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
     found
 }
 
@@ -176,7 +177,7 @@ pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[LimbJoint]) -> Option<Vec
         let near_spine = (1.0 - sideways(twins, 1) / hips_width).max(0.0);
         let cost = off(arm / forearm, 1.05) + 0.6 * near_spine + 0.3 * off((arm + forearm) / leg_length, 0.62);
         triples.push(([1, 2, 3], cost));
-        triples.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        sort_by(&mut triples, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
     }
     let mut parts = decide(&triples, [LeftUpperArm, LeftLowerArm, LeftHand]);
     let upper = *parts.first()?;

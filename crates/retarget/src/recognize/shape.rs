@@ -2,6 +2,7 @@
 //! its end. Pairs of limbs are found by equal lengths, which no pose changes.
 
 use gaitway_character::anim::JointIndex;
+use gaitway_character::sort::sort_by;
 use glam::Vec3;
 
 use super::evidence::Evidence;
@@ -130,7 +131,7 @@ impl<'a> Shape<'a> {
     /// All pairs of limbs, the longest first.
     pub fn limbs(&self) -> Vec<Twins> {
         let mut pairs: Vec<Twins> = self.tree.skeleton.joints().flat_map(|joint| self.twins(joint)).collect();
-        pairs.sort_by(|a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
+        sort_by(&mut pairs, |a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
         pairs.truncate(MAX_PAIRS);
         pairs
     }

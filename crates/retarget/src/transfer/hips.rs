@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::{JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Humanoid, Slot};
+use gaitway_character::sort::sort_by;
 use glam::DVec3;
 
 use crate::align::Alignment;
@@ -231,7 +232,7 @@ fn rests_in_the_ground(input: HipsInput, pair: usize, legs: &[JointIndex], sourc
         heights.fold(f64::INFINITY, f64::min)
     };
     let mut lows: Vec<f64> = times.iter().map(lowest_at).collect();
-    lows.sort_by(f64::total_cmp);
+    sort_by(&mut lows, f64::total_cmp);
     let median = lows[lows.len() / 2];
     median.abs() < (median - source_ground).abs()
 }

@@ -5,6 +5,7 @@ use std::ops::Mul;
 
 use gaitway_character::anim::{Channel, Clip, ClipBuilder, Interpolation, Keys, Pose, SampleCursor, Skeleton};
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::sort_by;
 
 use crate::budget::affordable_rounds;
 use crate::change::{time::trim, track::Tracks};
@@ -41,7 +42,7 @@ impl LayerClip {
 pub fn layer_clips(model: &Asset, map: &ResolvedMap) -> Vec<LayerClip> {
     let mut layers: Vec<LayerClip> = Vec::new();
     let mut kinds: Vec<(usize, bool)> = map.layers.iter().map(|layer| (layer.clip, layer.frozen)).collect();
-    kinds.sort_unstable();
+    sort_by(&mut kinds, Ord::cmp);
     kinds.dedup();
     for (index, frozen) in kinds {
         let Some(clip) = model.clips.get(index) else { continue };

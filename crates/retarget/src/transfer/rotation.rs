@@ -11,6 +11,7 @@
 use std::ops::Range;
 
 use gaitway_character::anim::{JointIndex, Keys, Skeleton};
+use gaitway_character::sort::sort_by;
 use glam::{DQuat, DVec4, Quat};
 
 use super::Transfer;
@@ -87,7 +88,7 @@ impl<'a> RotationLaw<'a> {
 
     fn with_shared(mut self, transfer: &Transfer, above: Option<Turn>, own: Turn) -> Self {
         let mut joints: Vec<JointIndex> = above.into_iter().chain([own]).flat_map(Turn::joints).collect();
-        joints.sort_unstable();
+        sort_by(&mut joints, Ord::cmp);
         joints.dedup();
         let (skeleton, rest) = (self.tracks.skeleton, &transfer.alignment.source);
         let is_common = |above: &JointIndex| joints.iter().all(|&joint| is_within(skeleton, joint, *above));

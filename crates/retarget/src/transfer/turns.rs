@@ -6,6 +6,7 @@
 //! of its joints.
 
 use gaitway_character::anim::JointIndex;
+use gaitway_character::sort::sort_by;
 use glam::DQuat;
 
 use crate::body::{Anatomy, Chain, ChainJoint, ChainPart, Segment, shares};
@@ -80,7 +81,7 @@ impl Turns {
                 }
             }
             Segment::ALL.into_iter().for_each(|segment| turns.take_twist(map, source, target, segment));
-            turns.unpaired.sort_unstable();
+            sort_by(&mut turns.unpaired, Ord::cmp);
         }
         turns
     }

@@ -6,6 +6,7 @@
 use std::f64::consts::PI;
 
 use gaitway_character::anim::{Clip, JointIndex, Keys};
+use gaitway_character::sort::sort_by_key;
 use glam::{DQuat, DVec3};
 
 use super::Transfer;
@@ -80,8 +81,8 @@ impl<'a> TwistedSegment<'a> {
     ) -> Self {
         let rest = &transfer.alignment.unaligned_target;
         let (mut inside, mut leaves): (Vec<_>, Vec<_>) = twists.into_iter().partition(|twist| twist.in_chain);
-        inside.sort_by_key(|twist| twist.joint);
-        leaves.sort_by_key(|twist| twist.joint);
+        sort_by_key(&mut inside, |twist| twist.joint);
+        sort_by_key(&mut leaves, |twist| twist.joint);
         Self { tracks, times, rest, segment, root, tip, axis: axis(rest, root, tip), inside, leaves }
     }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use gaitway_character::anim::{Clip, JointIndex};
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::sort_by;
 use gaitway_formats::OwnClips;
 use gaitway_retarget::{ChangedClip, ClipChanges, ClipOverLayers, LayerClip, Symmetry, change_clip};
 use serde::{Deserialize, Serialize};
@@ -365,7 +366,7 @@ impl Clips {
             };
             add(&mut clips, ClipId::Own(index), untitled, ModelClip::of(clip.clone(), root, None));
         }
-        clips.list.sort_by(|first, second| first.id.cmp(&second.id));
+        sort_by(&mut clips.list, |first, second| first.id.cmp(&second.id));
         for borrowed in borrowed {
             let id = ClipId::Borrowed(borrowed.motion.clone(), borrowed.source_clip);
             let named = is_named(&borrowed.clip);

@@ -18,6 +18,7 @@ pub use clips::{
 use gaitway_character::anim::Clip;
 use gaitway_character::asset::{Panorama, SharedBytes};
 use gaitway_character::mesh::Bounds;
+use gaitway_character::sort::sort_by_key;
 use gaitway_formats::FileSet;
 use gaitway_retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice, has_expressions_alone};
 pub use image::{ImageData, Images};
@@ -208,7 +209,7 @@ impl Library {
     pub fn set_listed(&mut self, ids: &[ModelId]) {
         let all = self.closed.drain(..).chain(self.models.drain(..));
         (self.models, self.closed) = all.partition(|model| ids.contains(&model.id) || model.id == self.active);
-        self.models.sort_by_key(|model| model.id);
+        sort_by_key(&mut self.models, |model| model.id);
     }
 
     /// Captures the active model and its motions for [`Library::restore`].

@@ -3,6 +3,7 @@
 use gaitway_character::anim::{Clip, JointIndex, Keys, model_from_joint};
 use gaitway_character::asset::Asset;
 use gaitway_character::mesh::Bounds;
+use gaitway_character::sort::sort_floats;
 use glam::{Affine3A, Vec3};
 
 /// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh, all but
@@ -163,7 +164,7 @@ fn drop_distant(asset: &Asset, real: &mut [bool]) {
         .map(|(_, length)| length)
         .filter(|length| *length > 0.0)
         .collect();
-    lengths.sort_by(f32::total_cmp);
+    sort_floats(&mut lengths);
     let Some(&median) = lengths.get(lengths.len() / 2) else { return };
     // Of each joint, the first one of those that bones connect it to.
     let mut group: Vec<JointIndex> = skeleton.joints().collect();

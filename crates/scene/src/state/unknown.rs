@@ -1,5 +1,6 @@
 //! Names in a view that the model doesn't have.
 
+use gaitway_character::sort::sort_by;
 use std::fmt;
 
 /// What a name refers to.
@@ -46,7 +47,7 @@ impl UnknownName {
         let similarity = |name: &String| strsim::jaro_winkler(&wanted, &beginning(name));
         let mut names: Vec<(f64, &str)> = self.names.iter().map(|name| (similarity(name), name.as_str())).collect();
         if names.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
-            names.sort_by(|a, b| b.0.total_cmp(&a.0));
+            sort_by(&mut names, |a, b| b.0.total_cmp(&a.0));
         }
         names.into_iter().map(|(_, name)| name).take(Self::MAX_NAMES).collect()
     }

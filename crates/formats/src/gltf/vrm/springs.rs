@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::avatar::{Collider, SpringJoint, Springs};
+use gaitway_character::sort::sort_by;
 use glam::Vec3;
 use serde_json::Value;
 
@@ -146,7 +147,7 @@ fn within_test_budget(
 
 fn distinct(indices: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut indices: Vec<u32> = indices.collect();
-    indices.sort_unstable();
+    sort_by(&mut indices, Ord::cmp);
     indices.dedup();
     indices
 }

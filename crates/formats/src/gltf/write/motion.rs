@@ -2,6 +2,7 @@
 
 use gaitway_character::anim::{Clip, JointIndex, Skeleton};
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::sort_by;
 use serde_json::{Value, json};
 
 use super::{WriteError, clip, glb};
@@ -36,7 +37,7 @@ pub(super) fn nodes_and_scenes(asset: &Asset, skeleton: &Skeleton) -> Value {
         json!({ "asset": { "version": "2.0", "generator": concat!("Gaitway ", env!("CARGO_PKG_VERSION")) } });
     let source = |joints: &mut dyn Iterator<Item = JointIndex>| -> Vec<usize> {
         let mut sources: Vec<usize> = joints.map(|joint| skeleton.source_index(joint)).collect();
-        sources.sort_unstable();
+        sort_by(&mut sources, Ord::cmp);
         sources
     };
     if !nodes.is_empty() {

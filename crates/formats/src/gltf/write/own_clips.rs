@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use gaitway_character::sort::sort_by_key;
 use gltf::json::Root;
 use gltf::json::animation::Animation;
 use gltf::json::mesh::Primitive;
@@ -153,7 +154,7 @@ fn cuts(unused: impl Iterator<Item = Range<usize>>, kept: &[Range<usize>], lengt
     };
     let mut ranges: Vec<Range<usize>> =
         unused.map(aligned).filter(|range| range.start < range.end).filter(is_free).collect();
-    ranges.sort_by_key(|range| range.start);
+    sort_by_key(&mut ranges, |range| range.start);
     let mut cuts: Vec<Range<usize>> = Vec::new();
     for range in ranges {
         match cuts.last_mut().filter(|last| range.start <= last.end) {

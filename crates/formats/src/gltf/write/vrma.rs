@@ -14,6 +14,7 @@ use gaitway_character::anim::{
     PropertyTarget, PropertyValues, SampleCursor, Skeleton, Transform, model_from_joint, model_from_single_joint,
 };
 use gaitway_character::asset::{Asset, Humanoid, Slot};
+use gaitway_character::sort::{sort_by_key, sort_floats};
 use glam::{Affine3A, DAffine3, DQuat, DVec3, EulerRot, Quat, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -117,7 +118,7 @@ fn bones(
     let written = slots.0.iter().filter(|(slot, _)| !matches!(slot, Slot::LeftEye | Slot::RightEye));
     let mut written: Vec<(Slot, JointIndex)> = written.map(|(&slot, &joint)| (slot, joint)).collect();
     let is_below_hips = |joint| chain(skeleton, joint).any(|above| above == hips);
-    written.sort_by_key(|&(_, joint)| (!is_below_hips(joint), joint));
+    sort_by_key(&mut written, |&(_, joint)| (!is_below_hips(joint), joint));
     written.dedup_by_key(|&mut (_, joint)| joint);
     for (slot, joint) in written {
         let bone_of = |joint: JointIndex| bones.iter().position(|bone| bone.joint == joint);
@@ -343,7 +344,7 @@ impl Source<'_> {
 fn resampled_times(mut times: Vec<f32>) -> Vec<f32> {
     let last = times.iter().copied().fold(0.0, f32::max);
     times.extend((0..=(last * RESAMPLED_PER_SEC) as usize).map(|frame| frame as f32 / RESAMPLED_PER_SEC));
-    times.sort_by(f32::total_cmp);
+    sort_floats(&mut times);
     times.dedup();
     times
 }

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use gaitway_character::anim::{JointIndex, model_from_joint};
 use gaitway_character::asset::SceneJoints;
 use gaitway_character::mesh::Bounds;
+use gaitway_character::sort::{sort_by, sort_floats};
 use glam::Vec3;
 
 use super::fingerprint::Fingerprint;
@@ -60,14 +61,14 @@ impl Take<'_> {
         let samples = (Self::SAMPLES_PER_SEC * duration_secs).clamp(Self::MIN_SAMPLES, Self::MAX_SAMPLES);
         let timelines = self.clip.map_or(&[][..], |over| over.clip.timelines());
         let mut keys: Vec<f32> = timelines.iter().flatten().copied().collect();
-        keys.sort_unstable_by(f32::total_cmp);
+        sort_floats(&mut keys);
         keys.dedup();
         if keys.len() > Self::MAX_SAMPLES as usize {
             keys.clear();
         }
         let regular = (0..=samples as usize).map(|sample| duration_secs * sample as f64 / samples);
         let mut times: Vec<f64> = regular.chain(keys.into_iter().map(f64::from)).collect();
-        times.sort_unstable_by(f64::total_cmp);
+        sort_by(&mut times, f64::total_cmp);
         times.dedup();
         times
     }
