@@ -1,7 +1,9 @@
-//! Sorting, compiled once. The standard library's sort is compiled for every type and every order: each time takes four kilobytes of
-//! the page's program. Lists that are sorted in each frame or for each vertex are left to it.
+//! Sorting, compiled once. The standard library's sort is compiled for every type and every order, and for every map that is
+//! collected: each takes four kilobytes of the page's program. Lists that are sorted in each frame or for each vertex are left
+//! to it.
 
 use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Sorts like [`slice::sort_by`]: equal items keep their order.
 pub fn sort_by<T>(items: &mut [T], mut order: impl FnMut(&T, &T) -> Ordering) {
@@ -23,6 +25,20 @@ pub fn sort_by_key<T, K: Ord>(items: &mut [T], key: impl Fn(&T) -> K) {
 /// Sorts numbers as fast as the standard library does: there may be many.
 pub fn sort_floats(numbers: &mut [f32]) {
     numbers.sort_by(f32::total_cmp);
+}
+
+/// Collects a map: of several values for a key, the last.
+pub fn collect_map<K: Ord, V>(entries: impl IntoIterator<Item = (K, V)>) -> BTreeMap<K, V> {
+    let mut map = BTreeMap::new();
+    map.extend(entries);
+    map
+}
+
+/// Collects a set.
+pub fn collect_set<T: Ord>(items: impl IntoIterator<Item = T>) -> BTreeSet<T> {
+    let mut set = BTreeSet::new();
+    set.extend(items);
+    set
 }
 
 /// Returns the places of the items in their order.

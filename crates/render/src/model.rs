@@ -8,6 +8,7 @@ use gaitway_character::asset::Asset;
 use gaitway_character::mesh::{
     AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals,
 };
+use gaitway_character::sort::collect_map;
 use gaitway_scene::library::{Model, ModelId};
 use wgpu::util::DeviceExt;
 
@@ -129,9 +130,9 @@ impl ModelUploader {
             meshes.push(primitives);
         }
         let uploaded = materials.images.drain().filter_map(|(key, view)| Some((key, view?)));
-        let images: BTreeMap<_, _> = uploaded.collect();
+        let images = collect_map(uploaded);
         let of_file = |(index, material): (Option<usize>, GpuMaterial)| Some((index?, material.uniform));
-        let materials = materials.created.into_iter().filter_map(of_file).collect();
+        let materials = collect_map(materials.created.into_iter().filter_map(of_file));
         let primitives = meshes.iter().flatten().flatten();
         let geometry_bytes = primitives.map(|primitive| primitive.geometry.device_bytes()).sum();
         let device_bytes = [geometry_bytes, images.values().map(texture_bytes).sum()];

@@ -376,7 +376,8 @@ impl Session {
         let visits = self.visits.iter().chain(asked).flat_map(|visit| visit.files.iter());
         let jobs = self.jobs.iter().flat_map(Job::items);
         let items = self.held.iter().chain(self.companions.iter()).chain(visits).chain(jobs);
-        let referred: BTreeSet<FileId> = items.filter_map(Item::id).collect();
+        let mut referred = BTreeSet::new();
+        referred.extend(items.filter_map(Item::id));
         let files: Vec<FileId> = self.files.keys().filter(|id| !referred.contains(id)).copied().collect();
         if !files.is_empty() {
             files.iter().for_each(|id| _ = self.files.remove(id));

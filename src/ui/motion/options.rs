@@ -1,8 +1,7 @@
 //! Retargeting options (root motion, feet, joints without a source), and the tab's files.
 
-use std::collections::BTreeSet;
-
 use egui::{RichText, Ui};
+use gaitway_character::sort::collect_set;
 use gaitway_retarget::{
     ClipRef, Contacts, Feet, JointMap, Keep, PathOrigin, RestChoice, RestChoices, RootOptions, RootPart, Unmapped,
     UpChoice,
@@ -140,7 +139,7 @@ fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
 
 /// Says how many joints of the motion have ignored channels; `None` if none has.
 pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
-    let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
+    let joints = collect_set(map.muted_channels.iter().map(|channel| channel.source));
     match joints.len() {
         0 => None,
         1 => Some("Channels of 1 joint in the motion.".to_owned()),

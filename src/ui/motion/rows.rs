@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Asset, Side, Slot};
+use gaitway_character::sort::collect_map;
 use gaitway_retarget::{BodyPart, Contradiction, JointMap, Recognized, Unmapped};
 use gaitway_scene::state::muted_properties;
 
@@ -215,7 +216,7 @@ impl<'a> PairFacts<'a> {
         };
         if let Some(proposal) = pairing.proposal {
             let slots = |parts: &BTreeMap<Slot, gaitway_retarget::RecognizedJoint>| {
-                parts.iter().map(|(&slot, part)| (part.joint, slot)).collect()
+                collect_map(parts.iter().map(|(&slot, part)| (part.joint, slot)))
             };
             whole.target_slots = slots(&proposal.model.parts);
             whole.source_slots = slots(&proposal.motion.parts);

@@ -10,11 +10,12 @@ mod mtl;
 mod skel;
 mod text;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use gaitway_character::anim::{Joint, Skeleton, Transform, model_from_joint};
 use gaitway_character::asset::{Asset, AssetParts, Image, MeshInstance, SharedBytes, Warning, Warnings};
 use gaitway_character::mesh::{Geometry, Influences, Mesh, Sampler, Skin, Texture, TextureRef, UvTransform};
+use gaitway_character::sort::collect_set;
 use glam::Affine3A;
 
 use super::file_set::{bare_name, without_query};
@@ -56,7 +57,7 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
             None => missing.push(library),
         }
     }
-    let images: BTreeSet<String> = materials.into_values().filter_map(|material| material.image).collect();
+    let images = collect_set(materials.into_values().filter_map(|material| material.image));
     missing.extend(images.into_iter().take(MAX_IMAGES).filter(|image| files.resolve(file, image).is_none()));
     missing
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Asset, Humanoid, Slot};
+use gaitway_character::sort::collect_map;
 use glam::{DQuat, DVec3};
 
 use crate::map::ResolvedMap;
@@ -124,7 +125,7 @@ impl Side<'_> {
 
 /// Returns for each pair the rotation, in the common frame, from the target joint's rest to its aligned rest.
 pub fn swings(input: SwingInput) -> Vec<DQuat> {
-    let slot_of_pair: BTreeMap<usize, Slot> = input.pair_of_slot.iter().map(|(&slot, &pair)| (pair, slot)).collect();
+    let slot_of_pair = collect_map(input.pair_of_slot.iter().map(|(&slot, &pair)| (pair, slot)));
     let torso = input
         .directions(Slot::Hips, Slot::Head)
         .filter(|[source, target]| degrees_between(*source, *target) > MIN_TORSO_TURN_DEGREES)

@@ -1,10 +1,11 @@
 //! Moves and turns a character along with its path.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use gaitway_character::anim::{JointIndex, Skeleton};
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::collect_set;
 use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 
 use super::track::{Target, Track, Tracks};
@@ -35,7 +36,7 @@ pub fn traveller(tracks: &Tracks, skeleton: &Skeleton) -> Option<JointIndex> {
 /// Returns the joints to move the whole character by: the handles of its carriers.
 fn handles(tracks: &Tracks, asset: &Asset) -> Vec<JointIndex> {
     let carriers = carriers(tracks, &asset.skeleton);
-    let handles: BTreeSet<JointIndex> = carriers.into_iter().map(|carrier| handle(asset, carrier)).collect();
+    let handles = collect_set(carriers.into_iter().map(|carrier| handle(asset, carrier)));
     let has_handle_above =
         |joint: JointIndex| ancestry(&asset.skeleton, joint).skip(1).any(|above| handles.contains(&above));
     handles.iter().copied().filter(|&joint| !has_handle_above(joint)).collect()

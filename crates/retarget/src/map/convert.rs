@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gaitway_character::anim::Skeleton;
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::collect_map;
 
 use super::error::MapError;
 use super::file::{JointMapFile, SourceRef};
@@ -144,7 +145,7 @@ impl JointMap {
         let muted = muted.map(|channel| MutedChannel { source: source(channel.source), property: channel.property });
         JointMapFile {
             gaitway_map: 1,
-            joints: self.joints.iter().map(joint).collect(),
+            joints: collect_map(self.joints.iter().map(joint)),
             unmapped: self.unmapped.clone(),
             rest: self.rest,
             root: self.root,
@@ -167,5 +168,6 @@ fn unique_names(skeleton: &Skeleton) -> BTreeMap<usize, &str> {
         joints.entry(skeleton.name(joint)).and_modify(|shared| *shared = None).or_insert(Some(number));
     }
     let is_name = |name: &str| !name.is_empty() && !name.starts_with('#');
-    joints.into_iter().filter(|(name, _)| is_name(name)).filter_map(|(name, number)| Some((number?, name))).collect()
+    let named = joints.into_iter().filter(|(name, _)| is_name(name));
+    collect_map(named.filter_map(|(name, number)| Some((number?, name))))
 }

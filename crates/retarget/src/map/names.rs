@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway_character::anim::{Clip, JointIndex, Skeleton};
 use gaitway_character::asset::{Asset, Side};
 use gaitway_character::mesh::Skin;
-use gaitway_character::sort::sort_by;
+use gaitway_character::sort::{collect_set, sort_by};
 
 use super::error::MapError;
 use super::file::SourceRef;
@@ -119,5 +119,5 @@ fn spelled_alike(name: &str) -> String {
 fn moving_joints(asset: &Asset) -> BTreeSet<JointIndex> {
     let skinned = asset.skins.iter().flat_map(Skin::joints).copied();
     let animated = asset.clips.iter().flat_map(Clip::channels).map(|channel| channel.joint);
-    skinned.chain(animated).collect()
+    collect_set(skinned.chain(animated))
 }

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway_character::anim::{JointIndex, Keys, Skeleton};
 use gaitway_character::asset::{Asset, Slot};
+use gaitway_character::sort::{collect_map, collect_set};
 
 use super::joint_map::{JointMap, MapEntry};
 use super::shared_names::shared_names;
@@ -113,8 +114,8 @@ fn moved_joints(motion: &Asset) -> Vec<JointIndex> {
 
 /// Joints of the skins; all joints if there is no skin.
 fn skinned_joints(model: &Asset) -> BTreeSet<JointIndex> {
-    let skinned: BTreeSet<JointIndex> = model.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
-    if skinned.is_empty() { model.skeleton.joints().collect() } else { skinned }
+    let skinned = collect_set(model.skins.iter().flat_map(|skin| skin.joints().iter().copied()));
+    if skinned.is_empty() { collect_set(model.skeleton.joints()) } else { skinned }
 }
 
 /// Whether the skeletons share enough names, and mean the same joints by them.
@@ -124,7 +125,7 @@ fn names_decide(
     targets: &Recognized,
     sources: &Recognized,
 ) -> bool {
-    let named: BTreeSet<JointIndex> = shared.values().copied().collect();
+    let named = collect_set(shared.values().copied());
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
     // Of two files with the same names, only one may show that they are wrong about the sides: the other one's rest may be a
     // pose in motion.
@@ -189,7 +190,7 @@ const MIN_CREATURE_NAMES: usize = 4;
 
 /// Pairs the joints of two creatures: by the names they share, then along trunk, tail, legs and wings.
 fn pair_creatures(pairs: &mut Pairs, shared: &BTreeMap<JointIndex, JointIndex>, model: &Asset, motion: &Asset) {
-    let sources: BTreeSet<JointIndex> = shared.values().copied().collect();
+    let sources = collect_set(shared.values().copied());
     let above_target = nearest_above(&model.skeleton, |joint| shared.get(&joint).copied());
     let above_source = nearest_above(&motion.skeleton, |joint| sources.contains(&joint).then_some(joint));
     let hangs_alike = |(target, source): &(&JointIndex, &JointIndex)| {
@@ -272,6 +273,6 @@ impl Proposal {
         };
         let open = self.unmapped_targets.iter().filter(|_| self.pairs.is_empty());
         let open = open.map(|&joint| (model.skeleton.source_index(joint), MapEntry::following(None)));
-        JointMap { joints: self.pairs.iter().map(entry).chain(open).collect(), ..JointMap::with_proposed_options() }
+        JointMap { joints: collect_map(self.pairs.iter().map(entry).chain(open)), ..JointMap::with_proposed_options() }
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway_character::anim::{JointIndex, Skeleton};
+use gaitway_character::sort::collect_map;
 
 use crate::recognize::Name;
 
@@ -11,7 +12,7 @@ use crate::recognize::Name;
 pub fn shared_names(model: &Skeleton, motion: &Skeleton) -> BTreeMap<JointIndex, JointIndex> {
     let is_same = |joint: JointIndex| model.name(joint) == motion.name(joint);
     if model.parents() == motion.parents() && model.joints().all(is_same) {
-        return model.joints().map(|joint| (joint, joint)).collect();
+        return collect_map(model.joints().map(|joint| (joint, joint)));
     }
     let mut found = BTreeMap::new();
     let mut taken = BTreeSet::new();

@@ -22,6 +22,7 @@ use std::fmt;
 
 use gaitway_character::anim::{JointIndex, Pose, SampleCursor};
 use gaitway_character::asset::{Asset, Humanoid, Slot};
+use gaitway_character::sort::collect_map;
 use glam::Vec3;
 
 use crate::body::Anatomy;
@@ -149,7 +150,7 @@ impl Recognized {
 
     /// Returns the joints by slot, without how they were found.
     pub fn humanoid(&self) -> Humanoid {
-        Humanoid(self.parts.iter().map(|(&slot, part)| (slot, part.joint)).collect())
+        Humanoid(collect_map(self.parts.iter().map(|(&slot, part)| (slot, part.joint))))
     }
 }
 
@@ -229,12 +230,12 @@ fn with_sides_swapped(parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, 
                 (other, RecognizedJoint { joint, reason: Reason::Geometry, confidence })
             }
         });
-    swapped.collect()
+    collect_map(swapped)
 }
 
 fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {
     let declared = |joint| RecognizedJoint { joint, reason: Reason::File, confidence: 1.0 };
-    humanoid.0.iter().map(|(&slot, &joint)| (slot, declared(joint))).collect()
+    collect_map(humanoid.0.iter().map(|(&slot, &joint)| (slot, declared(joint))))
 }
 
 /// Adds what a humanoid map lacks: fingers, which maps often leave out, while other slots may be left out on purpose; to a map of a

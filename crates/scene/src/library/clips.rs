@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use gaitway_character::anim::{Clip, JointIndex};
 use gaitway_character::asset::Asset;
-use gaitway_character::sort::sort_by;
+use gaitway_character::sort::{collect_map, collect_set, sort_by};
 use gaitway_formats::OwnClips;
 use gaitway_retarget::{ChangedClip, ClipChanges, ClipOverLayers, LayerClip, Symmetry, change_clip};
 use serde::{Deserialize, Serialize};
@@ -188,7 +188,7 @@ impl ClipEdits {
     /// Keeps the edits of clips for which `is_kept` holds, and drops copies of the others along with theirs.
     pub fn retain(&mut self, mut is_kept: impl FnMut(&ClipId) -> bool) {
         self.copies.retain(|copy| is_kept(&copy.of));
-        let copies: BTreeSet<CopyId> = self.copies.iter().map(|copy| copy.id).collect();
+        let copies = collect_set(self.copies.iter().map(|copy| copy.id));
         let mut is_kept = |clip: &ClipId| match clip {
             ClipId::Copy(id) => copies.contains(id),
             clip => is_kept(clip),
@@ -536,7 +536,7 @@ struct Titles(BTreeMap<String, usize>);
 
 impl Titles {
     fn taken<'a>(names: impl Iterator<Item = &'a str>) -> Self {
-        Self(names.map(|name| (name.to_owned(), 1)).collect())
+        Self(collect_map(names.map(|name| (name.to_owned(), 1))))
     }
 
     /// Numbers a title that was taken before.

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{ClipQuery, find_clip};
+use gaitway_character::sort::collect_map;
 
 use super::playhead::chosen_clip;
 use super::{ClipChoice, NameKind, UnknownName, ViewerState};
@@ -115,11 +116,11 @@ pub(super) fn with_link_names(view: &ViewerState, library: &Library) -> ViewerSt
     let clips = &mut state.character.edits.clips;
     clips.copies.retain_mut(|copy| called(&copy.of).map(|name| copy.of = name).is_some());
     let changes = std::mem::take(&mut clips.changes).into_iter();
-    clips.changes = changes.filter_map(|(clip, changes)| Some((called(&clip)?, changes))).collect();
+    clips.changes = collect_map(changes.filter_map(|(clip, changes)| Some((called(&clip)?, changes))));
     // The key `copy` has those of copies.
     let names = std::mem::take(&mut clips.names).into_iter();
     let name = |(clip, name)| Some((if let ClipId::Copy(_) = clip { clip } else { called(&clip)? }, name));
-    clips.names = names.filter_map(name).collect();
+    clips.names = collect_map(names.filter_map(name));
     state
 }
 
@@ -168,6 +169,6 @@ pub(super) fn resolved(model: &Model, clip: ClipId) -> ClipId {
 
 fn resolve_keys<T>(map: &mut BTreeMap<ClipId, T>, model: &Model) {
     if map.keys().any(|clip| clip.name().is_some()) {
-        *map = std::mem::take(map).into_iter().map(|(clip, value)| (resolved(model, clip), value)).collect();
+        *map = collect_map(std::mem::take(map).into_iter().map(|(clip, value)| (resolved(model, clip), value)));
     }
 }

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::Asset;
+use gaitway_character::sort::collect_set;
 use serde::{Deserialize, Serialize};
 
 /// Nodes and materials that the user hides, in addition to those that the file or the clip hides.
@@ -115,10 +116,8 @@ fn nodes_beside(asset: &Asset, joint: JointIndex) -> BTreeSet<usize> {
 /// Returns the materials of all primitives, in all variants; `None` is the default material.
 pub fn used_materials(asset: &Asset) -> BTreeSet<Option<usize>> {
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    primitives()
-        .flat_map(|geometry| {
-            let variants = geometry.variants.iter().map(|&(_, material)| Some(material));
-            std::iter::once(geometry.material).chain(variants)
-        })
-        .collect()
+    collect_set(primitives().flat_map(|geometry| {
+        let variants = geometry.variants.iter().map(|&(_, material)| Some(material));
+        std::iter::once(geometry.material).chain(variants)
+    }))
 }

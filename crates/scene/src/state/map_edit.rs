@@ -1,7 +1,5 @@
 //! Edits of a motion's joint map, besides choosing a source.
 
-use std::collections::BTreeMap;
-
 use gaitway_character::asset::Asset;
 use gaitway_retarget::{
     JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, Unmapped, opposite_joints,
@@ -153,11 +151,10 @@ fn swap_sides(map: &mut JointMap, model: &Asset, motion: &Asset, proposal: &Prop
         return;
     }
     let opposite = opposite_joints(&model.skeleton, &proposal.model);
-    let old: BTreeMap<usize, Option<usize>> =
-        map.joints.iter().map(|(&target, entry)| (target, entry.source)).collect();
+    let old = map.joints.clone();
     for joint in model.skeleton.joints() {
         let Some(other) = opposite[joint.get()] else { continue };
-        let other = old.get(&model.skeleton.source_index(other)).copied().flatten();
+        let other = old.get(&model.skeleton.source_index(other)).and_then(|entry| entry.source);
         let target = model.skeleton.source_index(joint);
         if other.is_some() || old.contains_key(&target) {
             entry(map, target).source = other;

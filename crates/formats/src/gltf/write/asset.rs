@@ -1,11 +1,10 @@
 //! Writes a model that came from another format as GLB: nodes, meshes, skins, materials, images and clips. What only glTF files
 //! have (morph targets, cameras, lights) is not written.
 
-use std::collections::BTreeSet;
-
 use gaitway_character::anim::{Clip, Skeleton};
 use gaitway_character::asset::Asset;
 use gaitway_character::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, Texture, TextureRef, Topology};
+use gaitway_character::sort::collect_set;
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
@@ -42,7 +41,7 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, own: usize, clips: &[&Clip]) ->
         Some(name) => json!({ "extensions": { name: { "source": texture.image } } }),
         None => json!({ "source": texture.image }),
     };
-    let needed: BTreeSet<&str> = asset.textures.iter().filter_map(image_extension).collect();
+    let needed = collect_set(asset.textures.iter().filter_map(image_extension));
     if !needed.is_empty() {
         root["extensionsUsed"] = json!(needed);
         root["extensionsRequired"] = json!(needed);

@@ -295,7 +295,12 @@ pub(super) fn read_fade(text: &str) -> Option<Fade> {
 
 /// Reads comma-separated entries; `None` if any of them is invalid.
 fn each<K: Ord, V>(text: &str, read: impl Fn(&str) -> Option<(K, V)>) -> Option<BTreeMap<K, V>> {
-    text.split(',').filter(|part| !part.is_empty()).map(read).collect()
+    let mut entries = BTreeMap::new();
+    for part in text.split(',').filter(|part| !part.is_empty()) {
+        let (key, value) = read(part)?;
+        entries.insert(key, value);
+    }
+    Some(entries)
 }
 
 pub(super) fn write_morph(morph: &BTreeMap<usize, f32>) -> Written {
