@@ -1,13 +1,12 @@
-//! Sorting, compiled once. The standard library's sort is compiled for every type and every order, and for every map that is
-//! collected: each takes four kilobytes of the page's program. Lists that are sorted in each frame or for each vertex are left
-//! to it.
+//! Sorting that is compiled only once. The standard library's sort is compiled for every type and every order, and for every map
+//! that is collected, and takes four kilobytes of the page's program each time. Lists that are sorted every frame still use it.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sorts like [`slice::sort_by`]: equal items keep their order.
 pub fn sort_by<T>(items: &mut [T], mut order: impl FnMut(&T, &T) -> Ordering) {
-    let mut from = sorted(items.len(), &mut |a, b| order(&items[a], &items[b]));
+    let mut from = sorted_indices(items.len(), &mut |a, b| order(&items[a], &items[b]));
     for to in 0..items.len() {
         // The item that belongs here may have been swapped for one that belonged to its place.
         while from[to] < to {
@@ -22,7 +21,7 @@ pub fn sort_by_key<T, K: Ord>(items: &mut [T], key: impl Fn(&T) -> K) {
     sort_by(items, |a, b| key(a).cmp(&key(b)));
 }
 
-/// Sorts numbers as fast as the standard library does: there may be many.
+/// Sorts numbers with the standard library's sort, since there may be many.
 pub fn sort_floats(numbers: &mut [f32]) {
     numbers.sort_by(f32::total_cmp);
 }
@@ -42,7 +41,7 @@ pub fn collect_set<T: Ord>(items: impl IntoIterator<Item = T>) -> BTreeSet<T> {
 }
 
 /// Returns the places of the items in their order.
-fn sorted(count: usize, order: &mut dyn FnMut(usize, usize) -> Ordering) -> Vec<usize> {
+fn sorted_indices(count: usize, order: &mut dyn FnMut(usize, usize) -> Ordering) -> Vec<usize> {
     let mut places: Vec<usize> = (0..count).collect();
     places.sort_by(|&a, &b| order(a, b));
     places

@@ -46,7 +46,7 @@ pub enum Limit {
     SkinMatrices,
     /// Each node of a mesh, and each copy, draws all its vertices.
     DrawnVertices,
-    /// Each primitive is a draw call for each node of its mesh; copies share one.
+    /// Each primitive takes a draw call for each node of its mesh; consecutive copies that are mirrored alike share one.
     DrawCalls,
 }
 

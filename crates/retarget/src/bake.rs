@@ -79,10 +79,10 @@ pub fn bake<'a>(transfer: &Transfer, bodies: impl FnOnce() -> Option<&'a Bodies>
     let made = bake_body(transfer, bodies)?;
     let mut channels = twist_channels(transfer, &made.clip);
     channels.extend(follower_channels(transfer, &made.clip));
-    if channels.is_empty() { Ok(made) } else { made.with(transfer, in_file(transfer, channels)) }
+    if channels.is_empty() { Ok(made) } else { made.with_replaced(transfer, in_file(transfer, channels)) }
 }
 
-/// Turns channels as they are in the mirror, where bodies that a node above them mirrors are moved, into those of the file.
+/// Converts channels from the mirror, where mirrored bodies are retargeted, to those of the file.
 fn in_file(transfer: &Transfer, channels: Vec<NewChannel>) -> Vec<NewChannel> {
     let reflection = transfer.target_skeleton.reflection();
     channels.into_iter().map(|channel| channel.in_mirror(reflection)).collect()
@@ -90,7 +90,7 @@ fn in_file(transfer: &Transfer, channels: Vec<NewChannel>) -> Vec<NewChannel> {
 
 impl Retargeted {
     /// Replaces channels of the clip by others of the same joint and property.
-    fn with(self, transfer: &Transfer, others: Vec<NewChannel>) -> Result<Self, RetargetError> {
+    fn with_replaced(self, transfer: &Transfer, others: Vec<NewChannel>) -> Result<Self, RetargetError> {
         let mut channels = NewChannel::corrected(&self.clip, &self.resampled, &[], None, Vec::new());
         let replaced = written(&others);
         channels.retain(|channel| !replaced.contains(&(channel.joint, channel.keys.property())));
@@ -197,7 +197,7 @@ fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
     build(transfer, channels)
 }
 
-/// What channels animate.
+/// Returns the joints and properties that channels animate.
 fn written(channels: &[NewChannel]) -> HashSet<(JointIndex, Property)> {
     channels.iter().map(|channel| (channel.joint, channel.keys.property())).collect()
 }
@@ -246,7 +246,7 @@ fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargete
     })
 }
 
-/// What is carried over channel by channel, whereas a rotation follows from all that lead to its joint.
+/// Properties that are carried over channel by channel. A rotation follows from all rotations that lead to its joint.
 const NOT_ROTATIONS: [Property; 3] = [Property::Translation, Property::Scale, Property::MorphWeights];
 
 /// Number of keys in the source channels behind these target properties: rotations of all joints on the way to a mapped

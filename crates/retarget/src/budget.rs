@@ -16,8 +16,8 @@ const MAX_COMPARED_CHAINS: usize = 1 << 20;
 const MAX_ADDED_MOMENTS: usize = 1 << 15;
 /// Times that are added between the keys of one channel.
 const MAX_ADDED_TIMES: usize = 1 << 20;
-/// Of these, those that a channel with few keys gets, and those for each key: real motion needs fewer than one for a key, and all
-/// channels together take no more than their keys are worth.
+/// Of these, those that a channel with few keys gets, and those for each key. Real motion needs fewer than one for a key, and this
+/// keeps the time for all channels in proportion to their keys.
 const MIN_ADDED_TIMES: usize = 1 << 14;
 const ADDED_FOR_KEY: usize = 4;
 /// Keys of a layer that is repeated as long as a clip lasts, in all of its channels.
@@ -28,7 +28,7 @@ const MAX_HELD: usize = 12 << 20;
 const MAX_REPEATED_POSES: usize = 2 << 20;
 /// Poses that are added to those where a curve needs more, times joints.
 const MAX_ADDED: usize = 2 << 20;
-/// Of these, those that few poses get, however far they are apart.
+/// Of these, those that a few given poses get, however far they are apart.
 const MIN_ADDED: usize = 1 << 18;
 
 /// Ancestors of all mapped joints, of both skeletons, since much walks up from every one of them: those of a chain of 4,096 joints.

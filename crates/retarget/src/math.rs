@@ -16,7 +16,8 @@ pub fn clamped(value: f64, default: f64, min: f64, max: f64) -> f64 {
     if value.is_finite() { value.clamp(min, max) } else { default }
 }
 
-/// Limits a number to a range. Far from the origin, where numbers overflow, neither need be one.
+/// Limits a number to a range. Unlike `clamp`, never panics: far from the origin, where numbers overflow, the range may be empty or
+/// not a number.
 pub fn limited(value: f64, min: f64, max: f64) -> f64 {
     value.max(min).min(max)
 }

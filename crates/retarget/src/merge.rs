@@ -1,5 +1,5 @@
-//! Merging: clips of several files for one rig keep their keys, bit for bit. Retargeting between such files gives the same motion,
-//! except for the rounding of its arithmetic.
+//! Merges clips of several files for one rig: they keep their keys, bit for bit. Retargeting between such files gives the same motion
+//! except for rounding.
 
 use gaitway_character::anim::{Clip, ClipBuilder, JointIndex, Pose, SampleCursor, Skeleton, Transform};
 use gaitway_character::sort::sort_floats;
@@ -20,7 +20,7 @@ pub fn merged_clip(model: &Skeleton, motion: &Skeleton, clip: &Clip, retargeted:
     for (target, source) in shared_names(model, motion) {
         target_of[source.get()] = Some(target).filter(|_| model.name(target) == motion.name(source));
     }
-    let is_one = |source: JointIndex, target: JointIndex| {
+    let is_same_joint = |source: JointIndex, target: JointIndex| {
         let parent = motion.parent(source).map(|parent| target_of[parent.get()]);
         let has_its_parent =
             parent.map_or(model.parent(target).is_none(), |parent| parent.is_some() && parent == model.parent(target));
@@ -29,7 +29,7 @@ pub fn merged_clip(model: &Skeleton, motion: &Skeleton, clip: &Clip, retargeted:
     for channel in clip.channels() {
         let mut above = Some(channel.joint);
         while let Some(source) = above {
-            target_of[source.get()].filter(|&target| is_one(source, target))?;
+            target_of[source.get()].filter(|&target| is_same_joint(source, target))?;
             above = motion.parent(source);
         }
     }

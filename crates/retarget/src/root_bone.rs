@@ -10,6 +10,7 @@ use gaitway_character::anim::{
 };
 use glam::{DAffine3, DQuat, DVec3};
 
+use crate::keys::channel::continuous;
 use crate::keys::limits::{ROUNDING, height_or_metre};
 use crate::keys::resample::{Curve, Resampled, resample, union};
 
@@ -23,7 +24,7 @@ const MAX_SHARE: f64 = 1e-5;
 pub struct RootTravel {
     /// Height as well, not only the way over the ground.
     pub vertical: bool,
-    /// The way is dropped: the body stays where it is at rest.
+    /// Drops the travel: the body stays where it is at rest.
     pub in_place: bool,
 }
 
@@ -38,16 +39,16 @@ pub enum RootError {
         /// Label of the joint.
         joint: String,
     },
-    /// The hips are in a space that is stretched differently along its axes.
-    #[error("a joint above the hips has scales that differ by axis, so no root bone can carry them")]
+    /// The hips are in a space that is mirrored, or stretched differently along its axes.
+    #[error("a joint above the hips is mirrored or has scales that differ by axis, so no root bone can carry them")]
     Stretched,
 }
 
-/// Returns a clip of a skeleton with the travel of the `hips` on their parent, the `root`, which rests without a transform and which
-/// the clip doesn't animate.
+/// Returns a clip with the travel of the `hips` on their parent, the `root`, which rests without a transform and which the clip
+/// doesn't animate.
 ///
 /// # Errors
-/// If the joints above don't stand still, or not in a space that a joint can turn in.
+/// If a joint above the root moves, or mirrors or stretches its space.
 pub fn with_root_motion(
     skeleton: &Skeleton,
     clip: &Clip,
@@ -75,7 +76,7 @@ pub fn with_root_motion(
     if !times.is_empty() {
         let interpolation = if is_stepped { Interpolation::Step } else { Interpolation::Linear };
         let mut add = |joint, parts: Vec<Local>| {
-            let turns = Keys::Rotation(continuous(parts.iter().map(|part| part.turn)));
+            let turns = continuous(parts.iter().map(|part| part.turn));
             let places = Keys::Translation(parts.iter().map(|part| part.place.as_vec3()).collect());
             for keys in [places, turns] {
                 let _ = builder.channel(joint, interpolation, &times, keys);
@@ -87,16 +88,6 @@ pub fn with_root_motion(
         add(hips, values.iter().map(|parts| parts.hips).collect());
     }
     Ok(builder.build().with_properties_of(clip, &Some))
-}
-
-/// Quaternions of which each is on the side of the one before, as interpolation between keys needs them.
-fn continuous(turns: impl Iterator<Item = DQuat>) -> Vec<glam::Quat> {
-    let mut before = DQuat::IDENTITY;
-    let mut on_its_side = |turn: DQuat| {
-        before = if before.dot(turn) < 0.0 { -turn } else { turn };
-        before.as_quat()
-    };
-    turns.map(&mut on_its_side).collect()
 }
 
 /// Where a joint is and how it is turned, without its scale.

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Item, Link, RequestId, TaskId};
 
-/// Something that has happened. Its text is its name, or an object with what it holds under that name: with the name among
-/// the rest, reading it takes twice as much of the page's program.
+/// Something that has happened. Its JSON is its name, or an object with its data under that name: code that reads the name from among
+/// the data takes twice as much of the page's program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", rename_all_fields = "camelCase")]
 pub enum Event {

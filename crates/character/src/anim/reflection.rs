@@ -108,7 +108,7 @@ impl Reflection {
         }
     }
 
-    /// Changes keys of a joint's translation or rotation to those in the mirror, and back again.
+    /// Converts a joint's translation or rotation keys to those in the mirror, or back. Other keys stay as they are.
     pub fn change_keys(&self, joint: JointIndex, keys: &mut Keys) {
         match keys {
             Keys::Translation(values) => {

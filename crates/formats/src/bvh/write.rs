@@ -60,8 +60,8 @@ pub fn write(
         model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
         pose_bones(bones, &world);
     };
-    // The header says which joints have positions. All frames together would take more memory than the file, so they are sampled
-    // twice.
+    // The header says which joints have positions. Frames are sampled twice, since keeping them all would take more memory than the
+    // file.
     let size = bones.iter().map(|bone| bone.offset.length()).sum::<f64>();
     for frame in 0..count {
         move_to(&mut bones, frame);
@@ -202,7 +202,7 @@ fn hierarchy(bones: &[Bone]) -> String {
         let positions = if bone.has_positions { POSITIONS } else { "" };
         let channels = if bone.has_positions { 6 } else { 3 };
         // Writing to a string cannot fail.
-        let _ = write!(out, "{indent}{keyword} {}\n{indent}{{\n{indent}\tOFFSET", bone.name,);
+        let _ = write!(out, "{indent}{keyword} {}\n{indent}{{\n{indent}\tOFFSET", bone.name);
         add_numbers(&mut out, bone.offset.to_array());
         let _ = write!(out, "\n{indent}\tCHANNELS {channels} {positions}Zrotation Xrotation Yrotation\n");
         path.push(index);

@@ -38,7 +38,7 @@ pub fn copies(
     }
 }
 
-/// Returns how many draw calls the copies of a primitive take: neighbours share one, unless one of them is mirrored.
+/// Returns how many draw calls the copies of a primitive take: consecutive ones share a call if both or neither are mirrored.
 pub fn draw_calls(copies: &[Affine3A]) -> usize {
     copies.chunk_by(|copy, next| is_mirrored(copy) == is_mirrored(next)).count()
 }

@@ -129,7 +129,8 @@ pub fn instances(
         let drawn = get(&vertices, mesh.value(), &place, "meshes")?.saturating_mul(copies.as_ref().map_or(1, Vec::len));
         budget.spend(Limit::DrawnVertices, drawn, &place)?;
         let calls = copies.as_ref().map_or(1, |copies| instancing::draw_calls(copies));
-        budget.spend(Limit::DrawCalls, calls * meshes[mesh.value()].primitives.len(), &place)?;
+        let calls = calls.saturating_mul(meshes[mesh.value()].primitives.len());
+        budget.spend(Limit::DrawCalls, calls, &place)?;
         let skin = node.skin.map(|skin| skin.value());
         if let Some(skin) = skin {
             let joints = get(skins, skin, &format_args!("{place}.skin"), "skins")?.joints().len();

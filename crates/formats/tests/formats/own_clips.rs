@@ -99,7 +99,7 @@ fn other_clips_are_added_after_those_that_stay() {
     assert_eq!(keys(&asset.clips[1]), keys(&original.clips[1]));
 }
 
-/// Views that meshes and clips share keep their bytes, whoever leaves.
+/// Views that meshes and clips share keep their bytes, whichever clips are left out.
 #[test]
 fn keys_in_a_shared_view_stay() {
     let mut build = three_clips();

@@ -53,8 +53,7 @@ impl Rest<'_> {
 }
 
 /// `target_nodes` is the target's rest pose as the player sees it; `unpaired` are the joints that turn without a pair.
-/// `target_from_source` is set if the rest poses match;
-/// it rotates one model space into the other, and nothing else needs aligning.
+/// `target_from_source` is set if the rest poses match; it rotates one model space into the other, and nothing else needs aligning.
 pub fn align(
     map: &ResolvedMap,
     source: &Rest,

@@ -115,7 +115,7 @@ fn chosen_rest(input: RestInput) -> SourceRest {
         };
     }
     let confidence = stance.map_or(1.0, Stance::confidence);
-    // A moment of the clip that is less upright and symmetric than rests are is one in motion.
+    // A rest that is a moment of the clip, and less upright and symmetric than rests are, is a pose in motion.
     let is_rest = is_standing && (confidence >= 1.0 || !is_moment_of(skeleton, clip, &locals));
     let better = stance.filter(|_| !is_rest);
     match better.and_then(|stance| best_standing(skeleton, slots, clip, stance)) {

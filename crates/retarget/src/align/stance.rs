@@ -14,7 +14,7 @@ const REST_SAMPLES: usize = 64;
 /// Minimum gain in score for a pose of the clip to replace the rest, or a later one an earlier one.
 const MIN_GAIN: f64 = 0.01;
 
-/// A body in motion is straighter than this; bones that are written along one axis are not.
+/// Even in motion, bodies are more upright than this; rests whose bones all lie along one axis aren't.
 const MIN_BODY_UPRIGHTNESS: f64 = 0.3;
 
 /// Poses whose joints are turned by less than this on average are the same.
@@ -94,7 +94,7 @@ fn sample_times(clip: &Clip) -> impl Iterator<Item = f32> {
     (0..=REST_SAMPLES).map(move |sample| first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32)
 }
 
-/// Whether a clip passes through a pose.
+/// Whether a clip passes through a pose, as far as it rotates joints.
 pub fn is_moment_of(skeleton: &Skeleton, clip: &Clip, pose: &[Local]) -> bool {
     let turning = clip.channels().iter().filter(|channel| matches!(channel.keys, Keys::Rotation(_)));
     let moved: Vec<usize> = turning.map(|channel| channel.joint.get()).collect();

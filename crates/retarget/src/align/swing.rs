@@ -88,7 +88,7 @@ impl SwingInput<'_> {
         let (source, target) = (self.source, self.target);
         let ends = match end.map(|&end| &self.map.pairs[end]) {
             Some(end) => [source.pose.position(end.source), target.pose.position(end.target)],
-            // Where neither side has the end, nothing says that both go on alike.
+            // If neither side has the end, nothing says that both limbs continue alike.
             None if LIMBS.contains(&(from, to)) && [source, target].iter().any(|side| side.has(to)) => {
                 [source.unmapped_end(pair.source, to)?, target.unmapped_end(pair.target, to)?]
             }
@@ -105,7 +105,8 @@ impl Side<'_> {
         self.slots.joint(slot).is_some()
     }
 
-    /// Where a limb leads whose end isn't mapped: to the joint in its slot, or else its farthest child, or the middle of its skin.
+    /// Returns where a limb without a mapped end leads: to the joint in the end's slot, or else to its farthest child or the middle of
+    /// its skin.
     fn unmapped_end(&self, joint: JointIndex, slot: Slot) -> Option<DVec3> {
         let skeleton = &self.asset.skeleton;
         if let Some(end) = self.slots.joint(slot).filter(|&end| is_within(skeleton, end, joint)) {

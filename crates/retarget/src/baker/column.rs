@@ -109,7 +109,7 @@ impl Column {
         if changes[1..].iter().all(|&at| times[at - 1].next_up() == times[at]) {
             return Some(Track { interpolation: Interpolation::Step, ..self.with_keys(samples, &changes) });
         }
-        // Each is compared many times.
+        // Converted only once, since each is compared many times.
         let turns: Vec<DQuat> = match self.target {
             Target::Rotation(_) => values.iter().map(|sample| rotation(self.of(sample))).collect(),
             _ => Vec::new(),
@@ -156,7 +156,7 @@ impl Column {
         0.5 * ROUNDING * squares.sum::<f64>().sqrt()
     }
 
-    /// How far numbers that aren't a rotation are from those between two others.
+    /// Returns how far numbers other than rotations are from the ones interpolated between two others.
     pub fn error(&self, ends: [&Sample; 2], factor: f64, at: &Sample) -> f64 {
         let parts = self.numbers(ends, factor).zip(self.of(at)).map(|(found, &exact)| found - f64::from(exact));
         parts.map(|part| part * part).sum::<f64>().sqrt()

@@ -47,7 +47,7 @@ const FINGERS: [[Slot; 3]; 5] = [
     [Slot::LeftLittleProximal, Slot::LeftLittleIntermediate, Slot::LeftLittleDistal],
 ];
 
-/// The joint that carries neck and arms: the one below the neck that the arms hang on, or else the highest slot of the trunk.
+/// Returns the joint that carries neck and arms: the one below the neck that the arms hang on, or else the highest slot of the trunk.
 fn trunk_top(form: &Form) -> Option<JointIndex> {
     let slot = |slot: Slot| form.slots.joint(slot);
     let highest = [Slot::UpperChest, Slot::Chest, Slot::Spine].into_iter().find_map(slot);
@@ -64,15 +64,15 @@ fn trunk_top(form: &Form) -> Option<JointIndex> {
     top.filter(|&joint| above.is_none_or(|above| form.path(joint, above).is_some()))
 }
 
-/// Whether a joint without a slot lies no higher than the hips: it carries the skin of the pelvis, or nothing at all, and no trunk bends
-/// there.
+/// Whether a joint without a slot lies no higher than the hips: it carries the skin of the pelvis, or nothing at all, and trunks don't
+/// bend there.
 fn is_level_with(form: &Form, hips: JointIndex, joint: JointIndex, top: Option<JointIndex>) -> bool {
     let [hips, top] = [hips, top.unwrap_or(joint)].map(|joint| form.position(joint));
     let up = top - hips;
     !form.is_slot(joint) && (form.position(joint) - hips).dot(up) < MIN_RISE * up.length_squared()
 }
 
-/// How far above the hips a trunk may begin at least, as a share of the way to the head.
+/// Minimum height of a trunk's first joint above the hips, as a share of the way to the head.
 const MIN_RISE: f64 = 0.025;
 
 fn with_shares(form: &Form, carrier: JointIndex, joints: &[JointIndex]) -> Vec<ChainJoint> {
@@ -87,7 +87,8 @@ fn with_shares(form: &Form, carrier: JointIndex, joints: &[JointIndex]) -> Vec<C
     joints.map(|((&joint, &along), share)| ChainJoint { joint, share, along }).collect()
 }
 
-/// Shares of a chain's length, from the joints' places. The first and the last joint reach as far beyond the chain as into it.
+/// Returns each joint's share of a chain's length, from the joints' distances along it. The first and the last joint reach as
+/// far beyond the chain as into it.
 pub fn shares(along: &[f64]) -> Vec<f64> {
     let gaps: Vec<f64> = along.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let length = |at: usize| {

@@ -6,7 +6,7 @@ use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Side, Slot};
 
 use super::{Form, on};
-use crate::pose::{ancestry, is_within};
+use crate::pose::ancestry;
 use crate::recognize::Name;
 
 /// A joint beside the body that moves as if it hung on a joint of the body.
@@ -18,22 +18,17 @@ pub struct Follower {
     pub follows: JointIndex,
 }
 
-/// What helpers belong to.
+/// Slots that helpers belong to; the right ones are mirrored.
 const FOLLOWED: [Slot; 2] = [Slot::LeftHand, Slot::LeftFoot];
 
-/// Greatest distance at rest from the joint that a helper rests at, as a share of the body's height.
+/// Maximum distance at rest between a helper and the joint that it belongs to, as a share of the body's height.
 const MAX_DISTANCE: f64 = 0.005;
 
+/// Maximum number of helpers: rigs have a dozen, damaged files may have thousands in one place.
+const MAX_FOLLOWERS: usize = 64;
+
 pub fn find(form: &Form) -> Vec<Follower> {
-    let hangs_on_body = |joint: JointIndex| {
-        let hips = form.slots.joint(Slot::Hips);
-        hips.is_some_and(|hips| is_within(form.skeleton, joint, hips) || is_within(form.skeleton, hips, joint))
-    };
-    let mut carries_skin = vec![false; form.skeleton.len()];
-    let moving = form.skeleton.joints().filter(|joint| form.moves_skin[joint.get()] || form.is_slot(*joint));
-    for joint in moving {
-        ancestry(form.skeleton, joint).for_each(|above| carries_skin[above.get()] = true);
-    }
+    let (hangs_on_body, carries_skin) = (hanging_on_body(form), carrying_skin(form));
     let height = height(form);
     let ends: Vec<(Side, Slot, JointIndex)> = [Side::Left, Side::Right]
         .into_iter()
@@ -50,8 +45,35 @@ pub fn find(form: &Form) -> Vec<Follower> {
         let end = ends.iter().find(is_meant).or_else(|| ends.iter().find(is_there));
         end.map(|&(.., follows)| Follower { joint, follows })
     };
-    let is_helper = |joint: &JointIndex| !carries_skin[joint.get()] && !hangs_on_body(*joint);
-    form.skeleton.joints().filter(is_helper).filter_map(followed).collect()
+    let is_helper = |joint: &JointIndex| !carries_skin[joint.get()] && !hangs_on_body[joint.get()];
+    form.skeleton.joints().filter(is_helper).filter_map(followed).take(MAX_FOLLOWERS).collect()
+}
+
+/// Which joints are above or below the hips, or the hips themselves.
+fn hanging_on_body(form: &Form) -> Vec<bool> {
+    let mut hanging = vec![false; form.skeleton.len()];
+    let Some(hips) = form.slots.joint(Slot::Hips) else { return hanging };
+    hanging[hips.get()] = true;
+    // Parents come before their children.
+    for (at, parent) in form.skeleton.parents().iter().enumerate() {
+        if parent.is_some_and(|parent| hanging[parent.get()]) {
+            hanging[at] = true;
+        }
+    }
+    ancestry(form.skeleton, hips).for_each(|above| hanging[above.get()] = true);
+    hanging
+}
+
+/// Which joints move skin or have a slot, or carry one that does.
+fn carrying_skin(form: &Form) -> Vec<bool> {
+    let carries = |joint: JointIndex| form.moves_skin[joint.get()] || form.is_slot(joint);
+    let mut carrying: Vec<bool> = form.skeleton.joints().map(carries).collect();
+    for (at, parent) in form.skeleton.parents().iter().enumerate().rev() {
+        if let Some(parent) = parent.filter(|_| carrying[at]) {
+            carrying[parent.get()] = true;
+        }
+    }
+    carrying
 }
 
 fn height(form: &Form) -> f64 {

@@ -26,7 +26,7 @@ pub struct Anatomy {
     pub twists: Vec<TwistJoint>,
     /// Joints beside the body that belong to one of its joints.
     pub followers: Vec<Follower>,
-    /// The segments of limbs whose ends are both there, with these.
+    /// The segments of limbs that have both ends, with the joints of these.
     pub segments: Vec<(Segment, [JointIndex; 2])>,
 }
 
@@ -110,6 +110,8 @@ struct Form<'a> {
     rest: WorldPose,
     /// Which joints move skin; all of them without one.
     moves_skin: Vec<bool>,
+    /// Which joints have a slot or carry one that has.
+    carries_slot: Vec<bool>,
 }
 
 impl<'a> Form<'a> {
@@ -117,7 +119,11 @@ impl<'a> Form<'a> {
         let skeleton = &asset.skeleton;
         let moves_skin = moves_skin(asset).unwrap_or_else(|| vec![true; skeleton.len()]);
         let rest = WorldPose::new(skeleton, node_locals(skeleton), DQuat::IDENTITY);
-        Self { skeleton, slots, rest, moves_skin }
+        let mut carries_slot = vec![false; skeleton.len()];
+        for &joint in slots.0.values() {
+            ancestry(skeleton, joint).for_each(|above| carries_slot[above.get()] = true);
+        }
+        Self { skeleton, slots, rest, moves_skin, carries_slot }
     }
 
     fn position(&self, joint: JointIndex) -> DVec3 {

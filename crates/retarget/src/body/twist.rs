@@ -6,7 +6,6 @@ use gaitway_character::asset::Slot;
 use gaitway_character::sort::sort_by;
 
 use super::Form;
-use crate::pose::ancestry;
 use crate::recognize::Name;
 
 /// A part of a limb that turns about its own axis.
@@ -51,7 +50,7 @@ impl Segment {
     ];
 }
 
-/// Greatest distance of a twist joint from the line, as a share of the segment's length: with a name that says so, and without.
+/// Maximum distance of a twist joint from the line, as a share of the segment's length: with a name that says so, and without.
 const MAX_NAMED_OFFSET: f64 = 0.25;
 const MAX_OFFSET: f64 = 0.03;
 
@@ -61,7 +60,10 @@ const UNNAMED_RANGE: std::ops::RangeInclusive<f64> = 0.15..=0.92;
 /// Where any twist joint may lie.
 const NAMED_RANGE: std::ops::RangeInclusive<f64> = -0.05..=1.05;
 
-/// The segments of a body whose end hangs below their root.
+/// Maximum number of joints inside a segment, and of leaves beside it: rigs have a few, damaged files may have thousands.
+const MAX_TWISTS: usize = 64;
+
+/// Returns the segments of a body whose end hangs below their root, with both joints.
 pub fn segments(form: &Form) -> Vec<(Segment, [JointIndex; 2])> {
     let ends = |segment: Segment| {
         let ends = [form.slots.joint(segment.from)?, form.slots.joint(segment.to)?];
@@ -74,21 +76,21 @@ pub fn find(form: &Form, segments: &[(Segment, [JointIndex; 2])]) -> Vec<TwistJo
     segments.iter().flat_map(|&(segment, ends)| of_segment(form, segment, ends).unwrap_or_default()).collect()
 }
 
-/// `None` for a limb with more parts than this one: what lies inside of it isn't on the line.
+/// `None` for a limb with more segments than these, whose joints in between aren't on the line.
 fn of_segment(form: &Form, segment: Segment, ends: [JointIndex; 2]) -> Option<Vec<TwistJoint>> {
     let [from, to] = ends;
     let twist = |joint: JointIndex, in_chain: bool| {
         let along = placed(form, ends, joint)?.clamp(0.0, 1.0);
         Some(TwistJoint { joint, segment, along, in_chain })
     };
-    let path = form.path(from, to)?;
+    let path = form.path(from, to).filter(|path| path.len() <= MAX_TWISTS)?;
     let inside = path.iter().filter(|&&joint| joint != to).map(|&joint| twist(joint, true));
     let inside = inside.collect::<Option<Vec<_>>>()?;
     let mut leaves: Vec<TwistJoint> = Vec::new();
     for joint in form.skeleton.joints().filter(|&joint| form.moves_skin[joint.get()] && !form.is_slot(joint)) {
         let parent = form.skeleton.parent(joint);
         let is_beside = parent == Some(from) || leaves.iter().any(|leaf| parent == Some(leaf.joint));
-        if is_beside && !path.contains(&joint) && carries_no_slot(form, joint) {
+        if is_beside && !form.carries_slot[joint.get()] && leaves.len() < MAX_TWISTS && !path.contains(&joint) {
             leaves.extend(twist(joint, false));
         }
     }
@@ -107,8 +109,4 @@ fn placed(form: &Form, [from, to]: [JointIndex; 2], joint: JointIndex) -> Option
     let is_named = name.has("twist") || name.has("roll");
     let (max_offset, range) = if is_named { (MAX_NAMED_OFFSET, NAMED_RANGE) } else { (MAX_OFFSET, UNNAMED_RANGE) };
     (offset <= max_offset && range.contains(&along)).then_some(along)
-}
-
-fn carries_no_slot(form: &Form, joint: JointIndex) -> bool {
-    form.slots.0.values().all(|&slot| ancestry(form.skeleton, slot).all(|above| above != joint))
 }

@@ -90,3 +90,14 @@ fn hold<T: Copy>(values: &mut Vec<T>, is_spline: bool, zero: T) {
         values.push(value);
     }
 }
+
+/// Returns rotation keys, each on the same side of the sphere as the one before, as interpolation between keys needs them.
+pub fn continuous(rotations: impl IntoIterator<Item = DQuat>) -> Keys {
+    let mut values: Vec<Quat> = rotations.into_iter().map(DQuat::as_quat).collect();
+    for key in 1..values.len() {
+        if values[key - 1].dot(values[key]) < 0.0 {
+            values[key] = -values[key];
+        }
+    }
+    Keys::Rotation(values)
+}

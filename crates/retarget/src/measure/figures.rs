@@ -70,8 +70,8 @@ pub struct Figures {
     pub skin_stretch_mean: Option<f64>,
     /// The joint of `skin_stretch_max`.
     pub skin_stretch_max_joint: Option<String>,
-    /// The same as `skin_stretch_max`, only for what joints add that aren't where they rest on their parents: 1 if the body is in one
-    /// piece. `None` where translations are the motion's, on the same skeleton or between creatures.
+    /// Like `skin_stretch_max`, but only the part that is due to joints away from where they rest on their parents: 1 if the body is
+    /// in one piece. `None` where translations are the motion's, on the same skeleton or between creatures.
     pub skin_tear_max: Option<f64>,
     /// The joint of `skin_tear_max`.
     pub skin_tear_max_joint: Option<String>,
@@ -200,7 +200,7 @@ pub fn measure(
     (figures, tracks)
 }
 
-/// How deep any of the joints has been below the ground: in a pose, or in those before.
+/// Returns how deep any of the joints has been below the ground, in this pose or in those before.
 fn deepest(before: Option<f64>, ground: Option<f64>, joints: &[JointIndex], pose: &WorldPose) -> Option<f64> {
     let depths = |ground: f64| joints.iter().map(move |&joint| ground - pose.position(joint).y);
     let depths = ground.into_iter().flat_map(depths);

@@ -59,8 +59,8 @@ impl fmt::Display for FitWarning {
             }
             Self::TornSkin { joint, stretch } => write!(
                 f,
-                "the skin around “{joint}” is torn, {stretch:.1} times as long as it should be: a joint leaves its place on its parent; \
-                 check which joint follows which"
+                "the skin around “{joint}” is torn, {stretch:.1} times as long as it should be: a joint leaves its place on its \
+                 parent; check which joint follows which"
             ),
             Self::FacesAway { degrees } => write!(
                 f,

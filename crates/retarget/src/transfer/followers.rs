@@ -1,14 +1,13 @@
-//! Moves helpers beside the body along with the hands and feet that they belong to, in a finished clip: an engine's inverse kinematics
-//! would otherwise pull these back to where the helpers rest.
+//! Moves helpers beside the body along with the hands and feet that they belong to, in a finished clip. Otherwise an engine's inverse
+//! kinematics would pull these back to where the helpers rest.
 
-use gaitway_character::anim::{Clip, JointIndex, Keys};
+use gaitway_character::anim::{Clip, Keys};
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::Transfer;
-use super::rotation::continuous;
 use super::turns::is_free;
 use crate::body::Follower;
-use crate::keys::channel::NewChannel;
+use crate::keys::channel::{NewChannel, continuous};
 use crate::keys::limits::MAX_TURN;
 use crate::keys::resample::fewest;
 use crate::keys::tracks::SourceTracks;
@@ -25,10 +24,11 @@ type Placed = (DVec3, DQuat);
 /// Returns the translations and rotations of all followers that the map leaves free.
 pub fn follower_channels(transfer: &Transfer, clip: &Clip) -> Vec<NewChannel> {
     let skeleton = transfer.target_skeleton;
-    let is_still = |joint: JointIndex| clip.channels().iter().all(|channel| channel.joint != joint);
+    let mut has_channel = vec![false; skeleton.len()];
+    clip.channels().iter().for_each(|channel| has_channel[channel.joint.get()] = true);
     let is_open = |follower: &&Follower| {
         let turns = transfer.turns.of(follower.follows).is_some();
-        turns && is_free(transfer.map, follower.joint) && is_still(follower.joint)
+        turns && is_free(transfer.map, follower.joint) && !has_channel[follower.joint.get()]
     };
     let followers: Vec<Follower> = transfer.anatomy.followers.iter().filter(is_open).copied().collect();
     if followers.is_empty() || clip.channels().is_empty() {

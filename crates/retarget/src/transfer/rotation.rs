@@ -17,7 +17,7 @@ use glam::{DQuat, DVec4, Quat};
 use super::Transfer;
 use super::turns::Turn;
 use super::yaw::Yaw;
-use crate::keys::channel::NewChannel;
+use crate::keys::channel::{NewChannel, continuous};
 use crate::keys::limits::MAX_TURN;
 use crate::keys::resample::{Curve, Resampled, resample, union};
 use crate::keys::tracks::{SourceTracks, Track};
@@ -211,17 +211,6 @@ pub fn resampled_rotation(joint: JointIndex, times: &[f32], jumps: &[f32], at: i
     };
     let Resampled { times, values } = resample(times, jumps, curve);
     NewChannel::resampled(joint, times, continuous(values))
-}
-
-/// Returns keys of which none is on the other side of the sphere than the one before.
-pub fn continuous(rotations: impl IntoIterator<Item = DQuat>) -> Keys {
-    let mut values: Vec<Quat> = rotations.into_iter().map(DQuat::as_quat).collect();
-    for key in 1..values.len() {
-        if values[key - 1].dot(values[key]) < 0.0 {
-            values[key] = -values[key];
-        }
-    }
-    Keys::Rotation(values)
 }
 
 /// The locals that lead from joint `from` (or the model's origin) to joint `to`: up to their common ancestor inverted, then

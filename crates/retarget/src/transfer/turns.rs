@@ -26,7 +26,7 @@ pub struct Turn {
 const MIN_SHARE: f64 = 1e-6;
 
 impl Turn {
-    /// That of one joint.
+    /// The whole turn of one joint.
     pub const fn whole(joint: JointIndex) -> Self {
         Self { from: joint, to: joint, share: 1.0 }
     }
@@ -39,12 +39,12 @@ impl Turn {
         }
     }
 
-    /// The joint, if it is that of a single one.
+    /// Returns the joint, if the turn is that of a single one.
     pub fn joint(self) -> Option<JointIndex> {
         (self.from == self.to).then_some(self.to)
     }
 
-    /// The joints that it depends on.
+    /// Returns the joints that the turn depends on.
     pub fn joints(self) -> impl Iterator<Item = JointIndex> {
         [self.from, self.to].into_iter().take(if self.from == self.to { 1 } else { 2 })
     }
@@ -162,7 +162,7 @@ pub fn is_free(map: &ResolvedMap, joint: JointIndex) -> bool {
         && map.layers.binary_search_by_key(&joint, |layer| layer.joint).is_err()
 }
 
-/// Without joints that neither move nor have a counterpart: the chain would bend there if they were part of it.
+/// Returns a source's chain without joints that neither move nor have a counterpart, which would take a share of the bend.
 fn bending(chain: &Chain, map: &ResolvedMap, tracks: &SourceTracks) -> Chain {
     let is_mapped = |joint: JointIndex| map.pairs.iter().any(|pair| pair.source == joint);
     let is_part = |joint: &&ChainJoint| is_mapped(joint.joint) || tracks.rotations[joint.joint.get()].is_moving();

@@ -27,7 +27,7 @@ const MIN_TWIST_RADIANS: f64 = 1e-3;
 /// From this angle on, the turn is spread less and less: at half a turn, both directions are equally right.
 const FADE_RADIANS: f64 = PI * 5.0 / 6.0;
 
-/// The same for limbs that point backwards from where they rest, which can turn about their axis in no time. Cosines of half the angle.
+/// The same for limbs that point almost opposite to their rest, where the turn about their axis can jump. Cosines of half the angle.
 const FADE_SWING: [f64; 2] = [0.1, 0.3];
 
 /// A segment of the target with its twist joints.

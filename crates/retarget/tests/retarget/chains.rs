@@ -36,7 +36,7 @@ enum Twist {
     Between,
 }
 
-/// Joints with unlike names on either side of a test, so that slots decide and not shared names.
+/// The joints of a body, added by name.
 struct Builder {
     joints: Vec<Joint>,
 }
@@ -145,7 +145,7 @@ fn check_shared(name: &str, [source, target]: [usize; 2], build: fn(usize) -> Bu
     let names: Vec<String> = named(source).collect();
     let turns: Vec<(&str, Quat)> = names.iter().map(|name| (name.as_str(), bend)).collect();
     let (model, motion) = (body(build(target)), moving(body(build(source)), &turns));
-    // The humanoid is declared: shared names would decide instead of chains.
+    // With the same names, these would decide instead of chains. Without them, the humanoid has to be declared.
     let slots = recognize(&motion).humanoid();
     let joints = motion.skeleton.joints().map(|at| {
         let parent = motion.skeleton.parent(at).map(JointIndex::get);
@@ -191,7 +191,7 @@ fn the_options_of_old_maps_leave_chains_alone() {
 }
 
 #[test]
-fn equal_numbers_of_joints_keep_the_source_s_keys() {
+fn equal_numbers_of_joints_keep_the_keys_of_the_source() {
     let motion = body(Build { spine: 4, ..PLAIN });
     let model = Asset::from(crate::rests::with_rest(&motion.skeleton, |_, rest| rest.translation *= 1.1));
     let names = ["spine 1", "spine 2", "spine 3", "spine 4"];

@@ -39,9 +39,9 @@ fn turning(figure: &mut Figure, from_degrees: f64, to_degrees: f64) {
 /// The motion as some motion capture files write it: without rest rotations, so that each bone points along its own axes.
 fn without_rest_rotations(figure: &Figure) -> Asset {
     let skeleton = &figure.asset.skeleton;
-    let keeps = |joint| !figure.slots.0.values().any(|other| *other == joint);
+    let is_part = |joint| figure.slots.0.values().any(|other| *other == joint);
     let rested = with_rest(skeleton, |joint, rest| {
-        if !keeps(joint) {
+        if is_part(joint) {
             rest.rotation = Quat::IDENTITY;
         }
     });

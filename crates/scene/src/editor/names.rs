@@ -26,7 +26,7 @@ pub(super) fn stem(source: &str) -> String {
     name.rsplit_once('.').map_or(name.clone(), |(stem, _)| stem.to_owned())
 }
 
-/// Returns a file name for all systems, without what some of them don't allow.
+/// Returns a file name that every system allows: other characters become hyphens.
 pub(super) fn plain_name(name: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ()".contains(letter);
     name.chars().map(|letter| if is_plain(letter) { letter } else { '-' }).collect()

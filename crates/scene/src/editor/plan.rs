@@ -1,5 +1,5 @@
-//! What leaves: which clips, under which names, in which files. The page, the command line and Python make one [`ExportPlan`] and
-//! have it written by the same code, so that a bad plan is refused in the same words, before anything is written.
+//! Export plans: which clips are written, under which names, in which files. The page, the command line and Python write an
+//! [`ExportPlan`] with the same code, so that a bad plan is refused in the same words, before anything is written.
 
 use std::collections::BTreeMap;
 
@@ -34,12 +34,12 @@ pub enum Recipient {
 }
 
 impl Recipient {
-    /// How many keys suit them: a web page is downloaded.
+    /// Returns the tolerance for dropping keys that suits them; a web page gets fewer keys, since it is downloaded.
     pub fn fewer_keys(self) -> Option<KeyTolerance> {
         (self == Self::Web).then(KeyTolerance::default)
     }
 
-    /// Why nothing suits them yet; `None` if something does.
+    /// Returns why nothing that Gaitway writes suits them yet; `None` if something does.
     fn refusal(self) -> Option<&'static str> {
         match self {
             Self::Unity => Some("Unity imports FBX, which Gaitway can't write yet; choose “as is” for a .glb"),
@@ -66,7 +66,7 @@ pub struct PlannedClip {
     pub clip: ClipId,
     /// What it is called in the file; with a file per clip, what that is called.
     pub name: String,
-    /// With a root bone, whether the body stays in its place, so that the engine moves it.
+    /// With a root bone, whether the travel is dropped, because the engine moves the body.
     pub in_place: bool,
 }
 
@@ -170,7 +170,7 @@ impl ExportPlan {
         self.has_new_root(model) || self.fewer_keys.is_some()
     }
 
-    /// What the files can't hold of the clips, by name, such as `scale of “Wave”, “Run”`.
+    /// Returns what the files can't hold of the clips, by name, such as `scale of “Wave”, “Run”`.
     pub fn losses(&self, model: &Model, state: &ViewerState) -> Vec<String> {
         let mut lost: BTreeMap<&'static str, Vec<&str>> = BTreeMap::new();
         for PlannedClip { clip, name, .. } in &self.clips {

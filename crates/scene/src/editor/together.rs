@@ -22,8 +22,8 @@ pub(super) struct Together {
 }
 
 impl Editor {
-    /// Writes the model with all its clips, as [`ExportPlan::all_clips`] has them. A plan's options are left out of the page's program
-    /// with [`Editor::export_plan`], which it doesn't call.
+    /// Writes the model with all its clips, as [`ExportPlan::all_clips`] has them. The page calls this instead of
+    /// [`Editor::export_plan`], which keeps the code for a plan's options out of its program.
     pub(super) fn export_all_clips(&self) -> Result<ExportedFile, String> {
         let model = self.complete_model()?;
         let plan = ExportPlan::all_clips(model);

@@ -26,7 +26,7 @@ const FORMS: [Form; 3] = [
 ];
 
 impl Form {
-    /// Returns the first form for a map: its path's origin isn't written, other options may be.
+    /// Returns the first form that fits a map. The origin of its path must be the form's; other options can be written.
     fn of(map: &JointMap) -> Self {
         let [.., last] = FORMS;
         let fits = |form: &&Self| form.origin == map.root.origin && (form.chains == map.chains || form.chains.is_off());

@@ -1,7 +1,8 @@
 //! Names in a view that the model doesn't have.
 
-use gaitway_character::sort::sort_by;
 use std::fmt;
+
+use gaitway_character::sort::sort_by;
 
 /// What a name refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -24,8 +24,8 @@ const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
 /// Writes `asset` with the joints of `skeleton`, which may have other names and another rest pose; the bind pose stays. The first
-/// `own` of the clips are its own, the others are added. Nodes are numbered as in the source file. Skinned meshes get nodes of their own after these,
-/// since the transform of such a node has no effect. Influences are written in sets of four.
+/// `own` of the clips are its own, the others are added. Nodes are numbered as in the source file. Skinned meshes get nodes of their
+/// own after these, since the transform of such a node has no effect. Influences are written in sets of four.
 pub fn asset(asset: &Asset, skeleton: &Skeleton, own: usize, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let mut root = nodes_and_scenes(asset, skeleton);
     let mut data = Data::default();

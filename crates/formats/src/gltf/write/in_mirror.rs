@@ -1,11 +1,11 @@
-//! A body without the mirror that a node above it, such as an armature with a negative scale, is: for formats whose bones can't be
+//! A body without the mirroring of a node above it, such as an armature with a negative scale, for formats whose bones can't be
 //! mirrored. See [`Reflection`](gaitway_character::anim::Reflection).
 
 use gaitway_character::anim::{Clip, ClipBuilder, Keys, Pose, Skeleton};
 use gaitway_character::asset::Asset;
 use glam::Vec3;
 
-/// What is written of an asset; in the mirror if it is mirrored.
+/// The parts of an asset that are written, in the mirror if the asset is mirrored.
 pub struct Body {
     pub skeleton: Skeleton,
     /// The reference pose.
@@ -26,7 +26,7 @@ impl Body {
         for joint in skeleton.joints().filter(|&joint| reflection.changes(joint)) {
             let local = reflection.transform(joint, &rest.local(joint));
             rest.set_local(joint, local);
-            // What mirrors the body is above it, and no part of its bind pose.
+            // The mirroring node is above the body and not part of its bind pose.
             reference.set_local(joint, local);
         }
         let mut builder = ClipBuilder::new(clip.name(), &skeleton);
@@ -40,7 +40,7 @@ impl Body {
             }
             let times = &clip.timelines()[channel.timeline as usize];
             let added = builder.channel(joint, channel.interpolation, times, keys);
-            // Those of a valid clip, except for signs.
+            // Except for signs, they are those of a valid clip.
             debug_assert!(added.is_ok(), "{added:?}");
         }
         let clip = builder.build().with_properties_of(clip, &Some);

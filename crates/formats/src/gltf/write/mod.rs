@@ -1,9 +1,9 @@
 //! Writes GLB: a glTF model with clips added, a model of another format, a skeleton with clips and nothing else, or a
 //! VRM animation.
 //!
-//! A glTF model is not re-exported: its JSON is kept as text, member by member, and only grows where clips need it, or
-//! where clips get other names or are left out. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the
-//! new one.
+//! A glTF model is not re-exported: its JSON is kept as text, member by member, and changes only where clips are added, renamed or
+//! left out. So unknown extensions and extras survive, and so does every digit. The original buffer is the beginning of the new one
+//! unless clips are left out.
 
 mod asset;
 mod clip;

@@ -1,6 +1,6 @@
 //! The clips that a file already has: some get other names, some are left out with their keys.
 //!
-//! Everything else keeps its number, since extensions that Gaitway has never heard of may refer to it. So accessors and views that
+//! Everything else keeps its index, since extensions that Gaitway doesn't know may refer to it. So accessors and views that
 //! are left out only disappear from the ends of their lists; elsewhere an empty one takes their place.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,7 +54,7 @@ pub fn edit(json: &mut Object, root: &Root, own: &OwnClips, binary: Option<&mut 
     }
 }
 
-/// An empty list is not allowed.
+/// Sets a list, or removes it if it is empty, since glTF doesn't allow empty lists.
 fn set_or_remove(json: &mut Object, key: &str, list: &Array) {
     if list.is_empty() { json.remove(key) } else { json.set(key, list) }
 }
@@ -62,7 +62,7 @@ fn set_or_remove(json: &mut Object, key: &str, list: &Array) {
 /// Removes the accessors and views that only the animations `left_out` use, and their bytes.
 fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut Vec<u8>) {
     let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
-    // An extension's view may refer to bytes of its own choice.
+    // An extension may refer to any bytes.
     if views.iter().any(|view| view.read::<Object>("extensions").is_some()) {
         return;
     }
@@ -77,7 +77,7 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
         let of_accessor = accessor.buffer_view.map(|view| view.value()).into_iter().chain(of_sparse);
         if unused.contains(&index) { unused_views.extend(of_accessor) } else { used_views.extend(of_accessor) }
     }
-    unused_views.retain(|view| !used_views.contains(view));
+    unused_views.retain(|view| *view < views.len() && !used_views.contains(view));
     for &index in &unused {
         accessors[index] = raw(&json!({ "componentType": 5126, "count": 1, "type": "SCALAR" }));
     }
@@ -117,7 +117,7 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
     }
 }
 
-/// The accessors that only the animations `left_out` use.
+/// Returns the accessors that only the animations `left_out` use.
 fn unused_accessors(root: &Root, left_out: &BTreeSet<usize>) -> BTreeSet<usize> {
     let of_animation = |animation: &Animation| -> Vec<usize> {
         animation.samplers.iter().flat_map(|sampler| [sampler.input.value(), sampler.output.value()]).collect()
@@ -140,13 +140,13 @@ fn unused_accessors(root: &Root, left_out: &BTreeSet<usize>) -> BTreeSet<usize> 
     unused
 }
 
-/// How many at the end of a list of `count` are in the set.
+/// Returns how many indices at the end of a list of `count` items are in the set.
 fn trailing(count: usize, set: &BTreeSet<usize>) -> usize {
     (0..count).rev().take_while(|index| set.contains(index)).count()
 }
 
-/// The parts of the `unused` ranges that can be cut out of a buffer without moving the `kept` ones off their alignment: ascending,
-/// and apart from each other.
+/// Returns the parts of the `unused` ranges that can be cut out of a buffer without moving the `kept` ones off their alignment, in
+/// ascending order and without overlaps.
 fn cuts(unused: impl Iterator<Item = Range<usize>>, kept: &[Range<usize>], length: usize) -> Vec<Range<usize>> {
     let aligned = |range: Range<usize>| range.start.next_multiple_of(ALIGNMENT)..range.end / ALIGNMENT * ALIGNMENT;
     let is_free = |range: &Range<usize>| {

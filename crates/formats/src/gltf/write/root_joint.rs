@@ -47,7 +47,7 @@ pub fn insert_root(
     glb::glb(serde_json::to_vec(&json).unwrap_or_default(), binary)
 }
 
-/// Replaces a number in a list.
+/// Replaces an index in a list.
 fn replace(object: &mut Object, key: &str, old: usize, new: usize) {
     let Some(mut list) = object.read::<Vec<usize>>(key).filter(|list| list.contains(&old)) else { return };
     list.iter_mut().filter(|index| **index == old).for_each(|index| *index = new);
@@ -70,7 +70,7 @@ fn add_to_skins(json: &mut Object, asset: &Asset, joint: JointIndex, root: usize
         }
         joints.push(root);
         written.set("joints", &joints);
-        // The root is where the joint's rest is seen from.
+        // The root has no transform of its own, so its space is the one that the joint's rest is relative to.
         let root_from_bind = asset.skeleton.rest().local(joint).to_affine() * skin.joint_from_bind()[place];
         let matrices = skin.joint_from_bind().iter().chain([&root_from_bind]);
         let numbers: Vec<f32> = matrices.flat_map(|matrix| Mat4::from(*matrix).to_cols_array()).collect();

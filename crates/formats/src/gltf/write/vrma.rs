@@ -140,7 +140,7 @@ fn bones(
             Slot::LeftFoot | Slot::RightFoot => DQuat::IDENTITY,
             _ => swing.unwrap_or(DQuat::IDENTITY) * turned,
         };
-        let (begin, joint) = (joint, turning(skeleton, slots, slot, joint));
+        let (begin, joint) = (joint, rotating_joint(skeleton, slots, slot, joint));
         let rotation = world[joint.get()].to_scale_rotation_translation().1.as_dquat();
         // A bone that is scaled to 0 has no rotation.
         let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
@@ -151,9 +151,9 @@ fn bones(
     Some(bones)
 }
 
-/// Returns the joint whose rotation a bone gets: of a neck of several joints, which is one bone here, the last, so that it turns as far
-/// as the whole neck. Where it bends is lost.
-fn turning(skeleton: &Skeleton, slots: &Humanoid, slot: Slot, joint: JointIndex) -> JointIndex {
+/// Returns the joint whose rotation a bone gets. A neck is a single bone here: if it has several joints, it gets the rotation of the
+/// last one, and so turns as far as the whole neck. Where it bends is lost.
+fn rotating_joint(skeleton: &Skeleton, slots: &Humanoid, slot: Slot, joint: JointIndex) -> JointIndex {
     let below_head = slots.joint(Slot::Head).and_then(|head| skeleton.parent(head)).filter(|_| slot == Slot::Neck);
     below_head.filter(|&last| chain(skeleton, last).any(|above| above == joint)).unwrap_or(joint)
 }

@@ -22,7 +22,7 @@ pub fn model(editor: &Editor) -> &Model {
     editor.library().active().expect("a model")
 }
 
-/// A clip with odd key times and every interpolation, for all joints whose parent is a joint.
+/// A clip with odd key times, linear and stepped, for all joints whose parent is a joint.
 pub fn clip(skeleton: &Skeleton, name: &str, seed: u64) -> Clip {
     let mut random = Random(seed);
     let mut builder = ClipBuilder::new(name, skeleton);
@@ -131,7 +131,7 @@ fn check_poses(editor: &mut Editor, plan: &ExportPlan, written: &Asset) {
     }
 }
 
-/// Own clips, a changed one, a copy, clips of the same rig, and one that is retargeted from another body.
+/// Own clips, one of them changed and one renamed, clips of the same rig, and one that is retargeted from another body.
 #[test]
 fn every_clip_plays_as_it_is_shown() {
     let (mut editor, _) = pilot_with_five();
@@ -150,7 +150,7 @@ fn every_clip_plays_as_it_is_shown() {
 fn only_the_chosen_clips_are_written_under_the_names_of_the_plan() {
     let (mut editor, clips) = pilot_with_five();
     let mut plan = all_clips(&editor);
-    plan.clips.retain(|planned| [ClipId::Own(1)].contains(&planned.clip) || planned.name == clips[3].name());
+    plan.clips.retain(|planned| planned.clip == ClipId::Own(1) || planned.name == clips[3].name());
     plan.clips.iter_mut().for_each(|planned| planned.name.insert_str(0, "My "));
     let written = together(&editor, &plan);
     assert_eq!(names(&written), plan.clips.iter().map(|planned| planned.name.as_str()).collect::<Vec<_>>());
@@ -187,7 +187,7 @@ pub fn check_refused(editor: &Editor, plan: &ExportPlan, says: &str) {
 
 #[test]
 fn bad_plans_are_refused_in_words() {
-    let (editor, clips) = pilot_with_five();
+    let (editor, _) = pilot_with_five();
     let plan = all_clips(&editor);
     let with = |change: &dyn Fn(&mut ExportPlan)| {
         let mut plan = plan.clone();
@@ -217,7 +217,6 @@ fn bad_plans_are_refused_in_words() {
     check_refused(&editor, &files, "would both be called “RUN-fast”");
     let one_file = ExportPlan { packaging: Packaging::OneFile, ..files };
     assert!(names(&together(&editor, &one_file)).contains(&"RUN-fast"));
-    assert_eq!(clips.len(), 5);
 }
 
 #[test]
