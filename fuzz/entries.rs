@@ -83,7 +83,7 @@ pub fn meshopt(bytes: &[u8]) {
     compressed(Part::Meshopt, bytes);
 }
 
-/// An image, or what precedes it in the decoder's input.
+/// The KTX2 decoder's input: a request, then the image.
 pub fn ktx2(bytes: &[u8]) {
     compressed(Part::Ktx2, bytes);
 }

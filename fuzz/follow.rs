@@ -14,14 +14,14 @@ use gaitway_scene::samples;
 use gaitway_scene::state::{ClipChoice, UpAxis, ViewerState, take_of};
 use glam::Vec3;
 
-/// Bytes of the choices before the file.
+/// Number of bytes before the file, which hold the choices.
 const CHOICES: usize = 4;
 
-/// Choices, each of a few bits.
+/// The choices as the digits of a number, each with its own base.
 struct Choices(u32);
 
 impl Choices {
-    /// Returns the next of so many.
+    /// Returns the next choice, an index below `count`.
     fn below(&mut self, count: u32) -> usize {
         let choice = self.0 % count;
         self.0 /= count;
@@ -33,7 +33,7 @@ impl Choices {
     }
 }
 
-/// Four bytes that choose how, and the file of a motion, which may be its own model.
+/// Takes four bytes of choices and the file of a motion, which may be its own model.
 pub fn follow(bytes: &[u8]) {
     let Some((choices, file)) = bytes.split_first_chunk::<CHOICES>() else { return };
     let mut choices = Choices(u32::from_le_bytes(*choices));

@@ -12,7 +12,7 @@
   const images = JSON.parse(still.dataset.images ?? "{}");
   /** The element around the frame has a poster of its own; see shell/viewer.js. */
   const isViewer = parent !== window && new URLSearchParams(location.search).has("viewer");
-  /** A link may name any number of models; the program holds as many at once (`Library::MAX_MODELS`). */
+  /** A link may name any number of models; the program holds this many at once (`Library::MAX_MODELS`). */
   const MAX_PRELOADED = 8;
   /** The link of the first screen. */
   const first = still.dataset.link ?? "";

@@ -55,7 +55,7 @@ async function filesInUse() {
   return [...(isUnknown ? Object.keys(PROGRAMS) : programs).flatMap((name) => PROGRAMS[name]), ...inUse(PARTS).flatMap((name) => PARTS[name])];
 }
 
-/** Whether an earlier version stored a file that isn't the one its name says. */
+/** Whether an earlier version stored a file whose content differs from the hash in its name. */
 async function isEarlierDamaged() {
   for (const name of await earlierCaches()) {
     const cache = await caches.open(name);
@@ -80,7 +80,7 @@ async function isSound(file, response) {
 }
 
 /**
- * Returns a file with a hash that any version has stored.
+ * Returns a file with a hash in its name as any version has stored it, unless that is damaged.
  * @param {string} file
  */
 async function held(file) {
@@ -103,7 +103,7 @@ async function fetched(file) {
   const isHashed = HASHED.test(file);
   const stored = isHashed ? await held(file) : undefined;
   if (stored !== undefined) return stored;
-  // The browser's own cache may be what is wrong.
+  // The browser's own cache may hold the damaged file.
   for (const cache of /** @type {RequestCache[]} */ (isHashed ? ["default", "reload"] : ["reload"])) {
     const response = await fetch(file, { cache });
     if (!response.ok) throw new Error(`${file}: the server answered ${response.status}`);

@@ -22,7 +22,7 @@ const STUDIO = "#a3a6ab";
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;").replaceAll("<", "&lt;");
 
 /**
- * Returns bytes compressed and in base64. The browser does both beside the page, which a large file would block.
+ * Returns bytes compressed and in base64. The browser does both off the main thread, which a large file would block.
  * @param {Uint8Array<ArrayBuffer>} bytes
  */
 async function packed(bytes) {
@@ -96,9 +96,9 @@ const DIALOG = `
   </form>`;
 
 /**
- * Returns a function that does a task once, and again if it has failed.
+ * Returns a function that does a task once, and retries it when called after a failure.
  * @template T
- * @param {string} failure What to say then.
+ * @param {string} failure What to say if it fails.
  * @param {() => Promise<T>} task
  */
 function once(failure, task) {

@@ -1,4 +1,4 @@
-//! Reads any bytes as an .fbx file, by ufbx, a library in C. `corpus/fbx` has seeds.
+//! Reads any bytes as an .fbx file with ufbx, a library in C. `corpus/fbx` has seeds.
 //!
 //! `cargo +nightly fuzz run fbx -- -max_len=100000 -timeout=10 -rss_limit_mb=2048`
 

@@ -86,7 +86,7 @@ pub fn read_map(map: &Bound<'_, PyAny>) -> PyResult<OpenedMap> {
 }
 
 /// Writes keyword arguments as the command line has them: a flag is `True`, several numbers are a tuple, and a list or a dictionary
-/// repeats the option. A name that Python reserves has `_` at its end.
+/// repeats the option. A `_` at the end, for names that Python reserves, is dropped.
 pub fn arguments(options: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
     let mut arguments = Vec::new();
     for (name, value) in options {

@@ -45,7 +45,7 @@ pub(super) struct ExportArguments {
 /// What the plan depends on besides the files.
 #[derive(Debug, Args)]
 pub(super) struct ExportChoices {
-    /// The clips to write: `all`, or names or indices as the page lists them, with commas between them; can be repeated [default: all].
+    /// The clips to write: `all`, or comma-separated names or indices as the page lists them; can be repeated [default: all].
     #[arg(long, value_name = "all|NAME,…", allow_negative_numbers = true)]
     clips: Vec<String>,
     /// Another name for a clip in the file; can be repeated.
@@ -60,13 +60,13 @@ pub(super) struct ExportChoices {
     /// their root. A rig that has one keeps it.
     #[arg(long)]
     root_bone: bool,
-    /// Has the root bone carry the height of the hips as well.
+    /// Lets the root bone carry the height of the hips as well.
     #[arg(long, requires = "root_bone")]
     root_height: bool,
-    /// The clips in which the body stays in its place: `all`, or names or indices, with commas between them; can be repeated.
+    /// The clips in which the body stays in place: `all`, or comma-separated names or indices; can be repeated.
     #[arg(long, value_name = "all|NAME,…", requires = "root_bone", allow_negative_numbers = true)]
     in_place: Vec<String>,
-    /// Whom it is for, which decides what suits them [default: as-is].
+    /// The program that the files are for, which decides what suits it, such as fewer keys for web [default: as-is].
     #[arg(long = "for", value_enum)]
     recipient: Option<RecipientArgument>,
     /// The format of the files in a folder or .zip [default: glb].
@@ -133,12 +133,12 @@ impl Place {
     }
 }
 
-/// What a plan became.
+/// A plan and the files made from it.
 pub(super) struct MadeFiles {
     plan: ExportPlan,
     durations_secs: Vec<f64>,
     files: Vec<ExportedFile>,
-    /// Those that fit the model's file.
+    /// File extensions that suit the model's file.
     extensions: &'static [&'static str],
     /// What the files can't hold, and remarks about them.
     warnings: Vec<String>,
@@ -177,12 +177,17 @@ fn plan(model: &Model, choices: &ExportChoices, packaging: Packaging) -> Outcome
     }
     if !choices.in_place.is_empty() {
         let clips = listed(model, &choices.in_place, "--in-place")?;
+        let is_written = |clip: &ModelClip| plan.clips.iter().any(|planned| planned.clip == *clip.id());
+        if let Some(other) = clips.iter().flatten().find(|clip| !is_written(clip)) {
+            let found = format!("“{}”", other.title());
+            return Err(Failure::expected("one of the clips that are written", found).at("--in-place"));
+        }
         for planned in &mut plan.clips {
             planned.in_place = clips.as_ref().is_none_or(|clips| clips.iter().any(|clip| *clip.id() == planned.clip));
         }
     }
     for text in &choices.rename {
-        // Either name may contain the sign.
+        // Either name may contain `=`.
         let mut splits = text.match_indices('=').map(|(at, _)| (&text[..at], &text[at + 1..]));
         let renamed = splits.find_map(|(clip, name)| Some((find(model, clip)?.id(), name)));
         let Some((clip, name)) = renamed else {
@@ -207,7 +212,7 @@ fn listed<'a>(model: &'a Model, lists: &[String], option: &str) -> Outcome<Optio
     let mut clips = Vec::new();
     for list in lists {
         match find(model, list) {
-            // A name may have commas in it.
+            // A name may contain commas.
             Some(clip) => clips.push(clip),
             None => clips.extend(list.split(',').map(found).collect::<Outcome<Vec<_>>>()?),
         }
@@ -264,7 +269,7 @@ impl MadeFiles {
         json!({ "clips": clips, "files": files, "warnings": self.warnings })
     }
 
-    /// The same for people.
+    /// The summary for people.
     fn lines(&self) -> Vec<String> {
         let clips = self.plan.clips.iter().zip(&self.durations_secs);
         let mut lines: Vec<String> = clips.map(|(clip, secs)| format!("{secs:8.2} s  {}", clip.name)).collect();

@@ -131,7 +131,7 @@ pub fn export(
         choices: ExportChoices,
     }
     let options = Options::try_parse_from(options).map_err(|error| Failure::from(usage_message(&error)))?;
-    // Here, `-` is a file like any other.
+    // Here, `-` is a name like any other, without an extension.
     let place = if out == STANDARD_STREAM { Place::Folder } else { Place::of(out)? };
     let opened = copy_of(model, [model.motions.clone(), motions].concat(), map);
     let editor = open_editor(opened, &MotionArguments::default(), &Disk::default())?;

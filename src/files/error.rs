@@ -69,7 +69,7 @@ pub enum OpenError {
         url: String,
         /// HTTP status code.
         status: u16,
-        /// The user may drop files, so the message advises that.
+        /// Whether the user may drop files, which the message then advises.
         may_drop: bool,
     },
     /// The fetch failed although the site answers: CORS, or an error page without CORS headers.
@@ -80,7 +80,7 @@ pub enum OpenError {
     Refused {
         /// The requested file.
         url: String,
-        /// The user may drop files, so the message advises that.
+        /// Whether the user may drop files, which the message then advises.
         may_drop: bool,
     },
     /// The fetch failed and the site does not answer.
@@ -99,7 +99,7 @@ pub enum OpenError {
         url: String,
         /// How long, in seconds.
         secs: u32,
-        /// The user may drop files, so the message advises that.
+        /// Whether the user may drop files, which the message then advises.
         may_drop: bool,
     },
     /// Browsers block http URLs on https pages, except those of the same machine.

@@ -80,7 +80,7 @@ pub(super) async fn open_view<S: Source>(
     opened.extend(held.motions.iter().filter(is_of_model).cloned());
     for (index, origin) in motions.iter().enumerate() {
         if index == Library::MAX_MOTIONS {
-            // A link may list thousands, and none of them would fit.
+            // A link may list thousands, for which there is no room.
             omit(source, "motion", &SortError::TooManyMotions { max: index }.into(), &mut contents);
             break;
         }

@@ -9,9 +9,9 @@ use crate::motion::folder;
 use crate::program::{check_fails, document, run};
 
 /// A folder for one test.
-struct Desk(PathBuf);
+struct TestFolder(PathBuf);
 
-impl Desk {
+impl TestFolder {
     fn new(name: &str) -> Self {
         Self(folder(&format!("export-{name}")).0)
     }
@@ -29,7 +29,7 @@ impl Desk {
     }
 }
 
-impl Drop for Desk {
+impl Drop for TestFolder {
     fn drop(&mut self) {
         // A leftover folder does no harm.
         let _ = fs::remove_dir_all(&self.0);
@@ -48,15 +48,15 @@ fn clips_of(file: &str) -> Vec<String> {
 /// The pilot's clips as files of their own, added to the pilot without clips again, play as before.
 #[test]
 fn clips_of_files_are_merged_into_one() {
-    let desk = Desk::new("merge");
-    let (parts, bare, out) = (desk.path("parts"), desk.path("bare.glb"), desk.path("hero.glb"));
+    let folder = TestFolder::new("merge");
+    let (parts, bare, out) = (folder.path("parts"), folder.path("bare.glb"), folder.path("hero.glb"));
     let made = document(&["export", "sample:pilot", "--out", &parts, "--json"]);
     let clips = names(&made, "clips");
     assert_eq!(clips, clips_of("sample:pilot"));
     let mut files: Vec<String> = clips.iter().map(|clip| format!("{clip}.glb")).collect();
     assert_eq!(names(&made, "files"), files);
     files.sort();
-    assert_eq!(desk.files("parts"), files);
+    assert_eq!(folder.files("parts"), files);
 
     let run_alone = ["export", "sample:pilot", "--clips", "idle", "--rename", "idle=Stand", "--out", &bare, "--json"];
     assert_eq!(names(&document(&run_alone), "clips"), ["Stand"]);
@@ -84,15 +84,15 @@ fn clips_of_files_are_merged_into_one() {
 
 #[test]
 fn motions_of_other_bodies_are_retargeted() {
-    let desk = Desk::new("retarget");
-    let out = desk.path("out.glb");
-    let walk = desk.path("walk.bvh");
+    let folder = TestFolder::new("retarget");
+    let out = folder.path("out.glb");
+    let walk = folder.path("walk.bvh");
     let call = ["export", "sample:pilot", "--motion", &walk, "--clips", "walk (2),idle", "--out", &out];
     let done = run(&call);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     assert!(String::from_utf8_lossy(&done.stdout).contains("2 clips in 1 file"));
     assert_eq!(clips_of(&out), ["idle", "walk (2)"]);
-    let alone = desk.path("alone.glb");
+    let alone = folder.path("alone.glb");
     let retargeted = run(&["retarget", "--model", "sample:pilot", "--motion", &walk, "--out", &alone]);
     assert!(retargeted.status.success());
     let pose =
@@ -102,8 +102,8 @@ fn motions_of_other_bodies_are_retargeted() {
 
 #[test]
 fn an_archive_has_a_file_for_each_clip() {
-    let desk = Desk::new("zip");
-    let out = desk.path("clips.zip");
+    let folder = TestFolder::new("zip");
+    let out = folder.path("clips.zip");
     let made = document(&["export", "sample:pilot", "--format", "bvh", "--out", &out, "--json"]);
     let file = fs::File::open(&out).expect("a file");
     let mut archive = zip::ZipArchive::new(file).expect("an archive");
@@ -125,8 +125,8 @@ fn an_archive_has_a_file_for_each_clip() {
 
 #[test]
 fn a_root_bone_carries_the_clips_that_travel() {
-    let desk = Desk::new("root");
-    let (plain, out) = (desk.path("plain.glb"), desk.path("out.glb"));
+    let folder = TestFolder::new("root");
+    let (plain, out) = (folder.path("plain.glb"), folder.path("out.glb"));
     assert!(run(&["export", "sample:pilot", "--out", &plain]).status.success());
     let rooted = ["export", "sample:pilot", "--root-bone", "--in-place", "run,jump", "--out", &out];
     assert!(run(&rooted).status.success());
@@ -143,9 +143,9 @@ fn a_root_bone_carries_the_clips_that_travel() {
 
 #[test]
 fn fewer_keys_make_a_smaller_file() {
-    let desk = Desk::new("keys");
+    let folder = TestFolder::new("keys");
     let bytes = |options: &[&str]| {
-        let out = desk.path("out.glb");
+        let out = folder.path("out.glb");
         let made = document(&[&["export", "sample:walker", "--out", &out, "--json"], options].concat());
         let is_said = made["warnings"].to_string().contains("keys, within");
         assert_eq!(is_said, !options.is_empty(), "{made}");
@@ -160,40 +160,42 @@ fn fewer_keys_make_a_smaller_file() {
 /// Nothing is written.
 #[test]
 fn bad_plans_are_refused() {
-    let desk = Desk::new("refused");
-    let (out, walk) = (desk.path("out.glb"), desk.path("walk.bvh"));
+    let folder = TestFolder::new("refused");
+    let (out, walk) = (folder.path("out.glb"), folder.path("walk.bvh"));
     let check = |arguments: &[&str], says: &str| {
         check_fails(&[&["export", "sample:pilot", "--motion", &walk], arguments].concat(), 1, says);
-        assert_eq!(desk.files(""), ["walk.bvh"], "{arguments:?}");
+        assert_eq!(folder.files(""), ["walk.bvh"], "{arguments:?}");
     };
     check(&["--clips", "idle,fly", "--out", &out], "“fly”");
     check(&["--rename", "idle=run", "--out", &out], "“idle” and “run” would both be called “run”");
     check(&["--rename", "fly=run", "--out", &out], "--rename");
     check(&["--clips", "idle", "--rename", "run=fast", "--out", &out], "one of the clips that are written");
+    let other_in_place = ["--clips", "idle", "--root-bone", "--in-place", "run", "--out", &out];
+    check(&other_in_place, "one of the clips that are written");
     check(&["--for", "unreal", "--out", &out], "FBX, which Gaitway can't write yet");
     check(&["--for", "vrm", "--out", &out], "VRM avatar yet");
-    check(&["--out", &desk.path("out.fbx")], "Gaitway can't write FBX yet");
-    check(&["--out", &desk.path("out.bvh")], "choose a folder and --format");
-    check(&["--out", &desk.path("out.vrm")], "expected .glb, found .vrm");
+    check(&["--out", &folder.path("out.fbx")], "Gaitway can't write FBX yet");
+    check(&["--out", &folder.path("out.bvh")], "choose a folder and --format");
+    check(&["--out", &folder.path("out.vrm")], "expected .glb, found .vrm");
     check(&["--format", "bvh", "--out", &out], "--format");
     check(&["--map", "no.json", "--out", &out], "no.json");
     check_fails(&["export", "assets/samples/mannequin.glb", "--out", &out], 1, "no clip is chosen");
     check_fails(&["export", "sample:pilot", "--for", "maya", "--out", &out], 2, "unreal");
     let twice = run(&["export", "sample:pilot", "--json", "--out", "-"]);
     assert_eq!(twice.status.code(), Some(2), "two documents on standard output");
-    assert_eq!(desk.files(""), ["walk.bvh"]);
+    assert_eq!(folder.files(""), ["walk.bvh"]);
 }
 
 #[test]
 fn an_input_is_never_overwritten() {
-    let desk = Desk::new("inputs");
-    let (parts, model) = (desk.path("parts"), desk.path("hero.glb"));
+    let folder = TestFolder::new("inputs");
+    let (parts, model) = (folder.path("parts"), folder.path("hero.glb"));
     assert!(run(&["export", "sample:pilot", "--clips", "run", "--out", &parts]).status.success());
     assert!(run(&["export", "sample:pilot", "--out", &model]).status.success());
-    let before = fs::read(desk.0.join("parts/run.glb")).expect("a file");
+    let before = fs::read(folder.0.join("parts/run.glb")).expect("a file");
     let again =
         ["export", &model, "--motion", &format!("{parts}/run.glb"), "--clips", "run (2)", "--rename", "run (2)=run"];
     check_fails(&[&again[..], &["--out", &parts]].concat(), 1, "one of the files that were read");
     check_fails(&["export", &model, "--out", &model], 1, "one of the files that were read");
-    assert_eq!(fs::read(desk.0.join("parts/run.glb")).expect("a file"), before);
+    assert_eq!(fs::read(folder.0.join("parts/run.glb")).expect("a file"), before);
 }

@@ -1,6 +1,6 @@
 // Clears what this browser has stored of the page, for one that doesn't start: a damaged file would stay there.
 
-/** Removes the service worker and its files, requests the page's own past the browser's cache, and reloads the page. */
+/** Removes the service worker and its files, downloads the page's files again past the browser's cache, and reloads the page. */
 export async function clearAndReload() {
   // Some frames may not even ask what is stored.
   await clearStored().catch(() => {});

@@ -97,7 +97,7 @@ export function send(event) {
  * Returns an event in the form that the program reads.
  * @param {SessionEvent} event
  */
-const textOf = ({ event, ...held }) => JSON.stringify(Object.keys(held).length > 0 ? { [event]: held } : event);
+const textOf = ({ event, ...fields }) => JSON.stringify(Object.keys(fields).length > 0 ? { [event]: fields } : event);
 
 /**
  * @param {Bindings} bindings

@@ -109,7 +109,7 @@ impl Formatter for Floats {
 /// The document.
 #[derive(Default)]
 pub struct Glb {
-    /// The format that it is converted from, and what else is said of it.
+    /// The format that it is converted from, and how it was read.
     source: String,
     bytes: Vec<u8>,
     views: Vec<View>,

@@ -16,7 +16,7 @@ pub const LONE: &str = "the array";
 /// An opened file.
 pub struct Archive<'a> {
     file: &'a [u8],
-    /// None of a `.npy`.
+    /// Empty for a `.npy`.
     members: Vec<Member<'a>>,
 }
 
@@ -75,8 +75,8 @@ impl<'a> Archive<'a> {
         Ok(None)
     }
 
-    /// Calls `read` with each array whose shape it may want, and returns its first result. Arrays that can't be read are skipped,
-    /// unless there is only one.
+    /// Calls `read` with each array whose shape `fits`, and returns its first result. Arrays that can't be read are skipped,
+    /// except that of a `.npy`.
     pub fn find_fitting<T>(
         &self,
         fits: &dyn Fn(&[usize]) -> bool,

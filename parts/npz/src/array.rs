@@ -30,7 +30,7 @@ impl Array {
         if kind.ends_with('O') {
             return Err(format!(
                 "{label} holds pickled Python objects, which are not read because they could run any code: expected numbers. \
-                 If you trust it, load it in Python and save its numbers with numpy.save or numpy.savez; of MDM's results.npy: \
+                 If you trust it, load it in Python and save its numbers with numpy.save or numpy.savez; for MDM's results.npy: \
                  numpy.save(\"motion.npy\", numpy.load(\"results.npy\", allow_pickle=True).item()[\"motion\"])."
             ));
         }

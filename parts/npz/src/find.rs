@@ -37,11 +37,11 @@ const ROTATION_NUMBERS: [usize; 4] = [3, 4, 6, 9];
 
 /// Positions whose bones change or differ by more than this share aren't those of a body.
 const MAX_DEVIATION: f64 = 0.25;
-/// How far from each other the positions of a file may put a joint relative to its parent, on average, in metres.
+/// Maximum deviation of a joint's position relative to its parent in the file, on average, in metres.
 const MAX_BONE_ERROR: f64 = 0.005;
-/// Mean bend of knees and elbows, in radians, that shows which way they turn.
+/// Minimum mean bend of knees and elbows, in radians, that shows which way they turn.
 const MIN_BEND: f64 = 0.05;
-/// Least sum of the lengths of all bones, in metres.
+/// Minimum sum of the lengths of all bones, in metres.
 const MIN_BODY_LENGTH: f64 = 0.1;
 /// Maximum number of frames in which bones are measured.
 const MAX_LOOKS: usize = 4096;
@@ -53,7 +53,7 @@ pub enum Found {
     Positions(Grid),
 }
 
-/// Finds the motion. What had to be assumed is added to the warnings.
+/// Finds the motion. Adds a warning for each assumption.
 pub fn find(archive: &Archive, warnings: &mut Warnings) -> Result<Found, String> {
     if let Some(groups) = named_rotations(archive)? {
         return rotations(archive, groups, warnings);
@@ -97,7 +97,7 @@ fn by_contents(archive: &Archive, warnings: &mut Warnings) -> Result<Found, Stri
         } else {
             array
         };
-        // In an archive, numbers that aren't rotations may be anything.
+        // An archive may hold any other numbers as well.
         match Rotations::of(array, wanted) {
             Err(_) if !archive.is_npy() => Ok(None),
             rotations => Ok(rotations?.map(Content::Rotations)),
@@ -217,12 +217,12 @@ fn locals(groups: &[Rotations], skeleton: &Skeleton, is_global: bool) -> Vec<Bod
     (0..samples).map(body).collect()
 }
 
-/// Finds the positions that a file has besides rotations, if they are of as many joints.
+/// Finds the positions that a file has besides rotations, if the numbers of joints agree.
 fn placed(archive: &Archive, joints: usize, samples: usize, frames: usize) -> Result<Option<Grid>, String> {
     // HY-Motion has positions of the fingers, too, which follow the other joints.
     let counts: &[usize] = if joints == SMPL[0] { &[22, 52] } else { &[joints] };
     for name in POSITIONS {
-        // What can't be read isn't needed.
+        // These positions are optional.
         let Ok(Some(array)) = archive.find(&[name]) else { continue };
         let grid = Grid::of(array, Wanted { joints: counts, numbers: &[3] }, &|_| 0.0)?;
         let fits = |grid: &Grid| grid.samples() == samples && grid.frames() == frames && grid.check().is_ok();
@@ -233,8 +233,8 @@ fn placed(archive: &Archive, joints: usize, samples: usize, frames: usize) -> Re
     Ok(None)
 }
 
-/// Returns the rotations relative to the parents, and the bones that the positions besides them have, if there are any. Whether the
-/// axes of 6D rotations are rows or columns shows in these bones, or else in how the body bends.
+/// Returns the rotations relative to the parents, and the bones that fit the positions, if there are any. These bones, or else the way
+/// the body bends, show whether the axes of 6D rotations are rows or columns.
 fn fitted(
     groups: &mut [Rotations],
     skeleton: &Skeleton,
@@ -248,13 +248,13 @@ fn fitted(
     if groups.iter().all(|group| group.form != Form::Columns) {
         return (bodies, bones);
     }
-    replace(groups, Form::Columns, Form::Rows);
+    reinterpret(groups, Form::Columns, Form::Rows);
     let others = locals(groups, skeleton, is_global);
     let other_bones = fit(&others);
     let is_rows = match (&bones, &other_bones) {
         (Some(bones), Some(others)) => others.error < bones.error,
         (None, None) => {
-            // Read the wrong way, all rotations are inverse, and knees and elbows bend backwards.
+            // Read the wrong way, all rotations are inverted, and knees and elbows bend backwards.
             let bend = bend(skeleton, &bodies, groups[0].grid.frames());
             if bend.abs() < MIN_BEND {
                 warnings.add(
@@ -270,11 +270,12 @@ fn fitted(
     if is_rows {
         return (others, other_bones);
     }
-    replace(groups, Form::Rows, Form::Columns);
+    reinterpret(groups, Form::Rows, Form::Columns);
     (bodies, bones)
 }
 
-fn replace(groups: &mut [Rotations], form: Form, other: Form) {
+/// Reads the rotations of one form as those of another.
+fn reinterpret(groups: &mut [Rotations], form: Form, other: Form) {
     for group in groups.iter_mut().filter(|group| group.form == form) {
         group.form = other;
     }
@@ -298,7 +299,7 @@ fn bend(skeleton: &Skeleton, bodies: &[Body], frames: usize) -> f64 {
 struct Bones {
     /// The position of each joint relative to its parent at rest.
     offsets: Vec<DVec3>,
-    /// How much that varies on average, in metres.
+    /// How much the offsets vary on average, in metres.
     error: f64,
 }
 
@@ -331,7 +332,7 @@ fn bones(grid: &Grid, skeleton: &Skeleton, bodies: &[Body]) -> Option<Bones> {
     (error <= MAX_BONE_ERROR && length > MIN_BODY_LENGTH).then_some(Bones { offsets, error })
 }
 
-/// Adds where the pelvis is: of a file with positions, there; else where the path puts the body.
+/// Adds the path of the pelvis: the file's own, that of its positions, or where the path of the body puts it.
 fn add_paths(archive: &Archive, placed: Option<&Grid>, bodies: &mut [Body], frames: usize) -> Result<(), String> {
     let at_pelvis = path(archive, &["root_positions"], bodies.len(), frames)?;
     let is_pelvis = at_pelvis.is_some();
@@ -348,7 +349,7 @@ fn add_paths(archive: &Archive, placed: Option<&Grid>, bodies: &mut [Body], fram
     };
     for (sample, body) in bodies.iter_mut().enumerate() {
         let pelvis = |frame: usize| placed.map(|grid| solve::position(grid, sample, frame, 0));
-        // Some positions follow the path, others stay where the pelvis rests.
+        // In some files the positions follow the path, in others they stay where the pelvis rests.
         let moves = (1..frames).any(|frame| pelvis(frame) != pelvis(0));
         let at = |frame: usize| -> Option<DVec3> {
             let Some(trans) = &trans else { return pelvis(frame) };

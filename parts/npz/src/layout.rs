@@ -1,6 +1,6 @@
 //! Which axis of an array counts what: tools write frames × joints × numbers, but also joints × numbers × frames, several people or
-//! samples in one array, and axes of length 1. The number of joints and of numbers per joint are known ones, which leaves few
-//! readings; which of two axes is time is seen in the values, which change least along it.
+//! samples in one array, and axes of length 1. Only some counts of joints, and of numbers per joint, occur, which leaves few
+//! readings; of two axes, time is the one along which values change least.
 
 use crate::array::Array;
 
@@ -12,7 +12,7 @@ const MAX_LOOKS: usize = 4096;
 /// Maximum number of axes, those of length 1 included.
 const MAX_AXES: usize = 8;
 
-/// How many values there are along an axis, and how far apart they are.
+/// The number of values along an axis, and their distance in the array.
 #[derive(Clone, Copy, PartialEq)]
 struct Axis {
     size: usize,
@@ -32,7 +32,7 @@ pub struct Layout {
     numbers: Axis,
 }
 
-/// What a layout has to have.
+/// The counts that a layout may have.
 #[derive(Clone, Copy)]
 pub struct Wanted<'a> {
     /// Numbers of joints. For `[1]`, there is no axis of joints.
@@ -61,7 +61,7 @@ impl Wanted<'_> {
             let without = |count: usize| [&axes[..at + 1 - count], &axes[at + 1..]].concat();
             if size == 3 && at > 0 && axes[at - 1].size == 3 && self.numbers.contains(&9) {
                 self.add_joints(Axis { size: 9, stride }, &without(2), has_single, &mut found);
-                // Matrices that aren't rotations are no rotations of another kind.
+                // Rows of matrices aren't to be taken for axes times angles.
                 if !found.is_empty() {
                     return found;
                 }
@@ -137,8 +137,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Reads an array by the layout for which `deviation` is least; of equal ones, by one without an axis of samples, then by the one
-    /// in which values change least from frame to frame, or else by the most usual one. `None` if its shape fits none.
+    /// Reads an array in the layout with the least `deviation`; among equal ones, one without an axis of samples, then the one in
+    /// which values change least from frame to frame, or else the most usual one. `None` if its shape fits none.
     pub fn of(array: Array, wanted: Wanted, deviation: &dyn Fn(&Grid) -> f64) -> Result<Option<Grid>, String> {
         let Array { label, shape, values } = array;
         let layouts = wanted.layouts(&shape);
@@ -182,12 +182,12 @@ impl Grid {
         self.layout.joints.size
     }
 
-    /// How many numbers a joint has in a frame.
+    /// Returns how many numbers a joint has in a frame.
     pub fn numbers(&self) -> usize {
         self.layout.numbers.size
     }
 
-    /// Returns the numbers of a joint, of which there have to be `N`.
+    /// Returns the first `N` numbers of a joint.
     pub fn at<const N: usize>(&self, sample: usize, frame: usize, joint: usize) -> [f64; N] {
         std::array::from_fn(|number| self.value(sample, frame, joint, number))
     }
@@ -237,7 +237,7 @@ impl Grid {
         }
     }
 
-    /// Says how many people or samples there are, and which axes an array has in an unusual order.
+    /// Describes the number of people or samples and an unusual order of axes, for the report.
     pub fn describe(&self) -> String {
         let Layout { samples, frames, joints, numbers } = self.layout;
         let mut axes: Vec<(usize, &str)> =
@@ -257,6 +257,7 @@ impl Grid {
     }
 }
 
+/// Returns a message about an array that isn't what was expected.
 pub fn unexpected(label: &str, expected: &str, found: &str) -> String {
     format!("{label}: expected {expected}, found {found}. Save the motion again with the arrays of AMASS.")
 }

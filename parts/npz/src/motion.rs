@@ -16,7 +16,7 @@ const HUMAN_ML_FRAMES_PER_SEC: f64 = 20.0;
 /// That of AIST++, whose files state none.
 const AIST_FRAMES_PER_SEC: f64 = 60.0;
 
-/// Mean distance of joints from their positions in the file, in metres, from which on a warning says so.
+/// Mean distance of joints from their positions in the file, in metres, above which a warning says so.
 const MAX_SILENT_ERROR: f64 = 0.005;
 
 /// The motion of one person, or one sample.
@@ -68,12 +68,12 @@ impl Motion {
         }
     }
 
-    /// Creates a motion of rotations, whose frame rate isn't known yet.
+    /// Creates a motion from rotations. Its frame rate isn't known yet.
     pub fn new(skeleton: Skeleton, bodies: Vec<Body>, frames: usize, report: String) -> Motion {
         Motion { skeleton, bodies, frames, frames_per_sec: DEFAULT_FRAMES_PER_SEC, report }
     }
 
-    /// Solves the rotations of joint positions.
+    /// Solves the rotations from joint positions.
     fn solved(grid: &Grid, frames_per_sec: f64, warnings: &mut Warnings) -> Motion {
         let mut skeleton = Skeleton::of(grid.joints());
         solve::measure(grid, &mut skeleton);

@@ -8,7 +8,7 @@ use crate::layout::{Grid, Wanted, unexpected};
 /// Maximum difference between a rotation matrix times its transpose and the identity, or the squares of quaternions and axes and 1.
 /// 16-bit floats and the models that predict such numbers aren't exact.
 const TOLERANCE: f64 = 0.1;
-/// Maximum number of rotations that are looked at to find out how they are stored.
+/// Maximum number of rotations that are sampled to find out how they are stored.
 const MAX_LOOKS: usize = 8192;
 
 /// How a rotation is stored.
@@ -95,7 +95,7 @@ impl Rotations {
                 DQuat::from_mat3(&DMat3::from_cols_array(&rows).transpose()).normalize()
             }
             Form::Interleaved | Form::Columns | Form::Rows => {
-                // Gram-Schmidt, as all who write them do.
+                // Gram-Schmidt, as in the tools that write them.
                 let [a, b] = axes(self.grid.at(sample, frame, joint), self.form);
                 let a = a.normalize();
                 let b = b.reject_from_normalized(a).normalize();
@@ -116,7 +116,7 @@ fn axes(values: [f64; 6], form: Form) -> [DVec3; 2] {
     }
 }
 
-/// Returns how far a stored rotation is from one.
+/// Returns how far stored numbers are from a rotation.
 fn error(grid: &Grid, form: Form, (sample, frame, joint): (usize, usize, usize)) -> f64 {
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     match form {
@@ -140,7 +140,7 @@ fn error(grid: &Grid, form: Form, (sample, frame, joint): (usize, usize, usize))
 fn mean_error(grid: &Grid, form: Form) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for place in grid.places(MAX_LOOKS) {
-        // Of what is far from a rotation, it doesn't matter how far.
+        // Beyond 1, it doesn't matter how far numbers are from a rotation.
         sum += error(grid, form, place).min(1.0);
         count += 1;
     }
@@ -155,7 +155,7 @@ fn deviation(grid: &Grid) -> f64 {
 fn form(grid: &Grid) -> Form {
     match grid.numbers() {
         3 => Form::AxisAngle,
-        // Joints turn by less than a quarter on average, so that w is the largest number.
+        // Joints turn by less than a quarter turn on average, so w is the largest number.
         4 => {
             let (mut first, mut last) = (0.0, 0.0);
             for (sample, frame, joint) in grid.places(MAX_LOOKS) {

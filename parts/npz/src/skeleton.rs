@@ -123,7 +123,7 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// Returns the skeleton with that many joints, one of [`SMPL`] or [`SOMA`]. The bones of SOMA have the right directions alone.
+    /// Returns the skeleton with that many joints, one of [`SMPL`] or [`SOMA`]. Of SOMA's bones, only the directions are right.
     pub fn of(count: usize) -> Skeleton {
         let mut skeleton = Skeleton { joints: Vec::new(), hinges: Vec::new() };
         if SOMA.contains(&count) {
@@ -190,8 +190,8 @@ impl Skeleton {
         }
     }
 
-    /// Adds the fingers of the hand that was added last. The smaller skeleton has the ends of two of them. `mirror` is the factor of
-    /// directions on the left side.
+    /// Adds the fingers of the hand that was added last. The smaller skeleton has the ends of two of them. `mirror` scales
+    /// the directions, which are given for the left side.
     fn add_soma_fingers(&mut self, is_whole: bool, side: &str, mirror: DVec3) {
         let hand = self.joints.len() - 1;
         for (finger, count, first, next) in SOMA_FINGERS {

@@ -1,12 +1,12 @@
-//! Rotations from joint positions: of MDM, MoMask, T2M-GPT and HumanML3D, which write nothing else.
+//! Solves rotations from joint positions: MDM, MoMask, T2M-GPT and HumanML3D write nothing else.
 //!
 //! Bones keep their lengths, the medians of the file's; they point where the file has them. What the positions leave open is how
 //! bones are twisted:
 //!
 //! - A joint with several children, such as the pelvis, turns as they do (Müller et al. 2016, “A Robust Method to Extract the
 //!   Rotational Part of Deformations”).
-//! - A thigh or an upper arm is twisted so that the knee or elbow bends as a hinge does, the more so the more that is bent. Where it
-//!   is straight, the twist goes over smoothly from the moments before and after, or to none.
+//! - A thigh or an upper arm is twisted so that the knee or elbow bends like a hinge, the more so the more it is bent. While it is
+//!   straight, the twist is interpolated between the moments before and after, or fades to none.
 //! - Other bones are swung from where their parents leave them, by the shortest arc. Right above a joint whose rotation is known, such
 //!   as in the forearm of a hand with fingers, they take half of its twist.
 
@@ -19,11 +19,11 @@ use crate::skeleton::Skeleton;
 const MAX_LOOKS: usize = 4096;
 /// How often the bones at joints with several children are aligned to find their directions at rest.
 const PASSES: usize = 4;
-/// Steps in which a rotation converges.
+/// Maximum number of steps in which a rotation converges.
 const STEPS: usize = 30;
-/// Square of the sine of a bend that weighs as much as no twist does.
+/// Weight of no twist. A bend weighs the square of its sine.
 const UNTWISTED: f64 = 0.02;
-/// How long twists are smoothed.
+/// The time over which twists are smoothed.
 const SMOOTH_SECS: f64 = 0.05;
 
 /// The motion of a body.
@@ -148,9 +148,9 @@ fn pairs(grid: &Grid, skeleton: &Skeleton, children: &[usize], sample: usize, fr
         .collect()
 }
 
-/// Returns the rotation that turns vectors to others best. `None` if they don't determine one.
+/// Returns the rotation that best turns the first vector of each pair into the second. `None` if they don't determine one.
 fn aligned(pairs: &[(DVec3, DVec3)]) -> Option<DQuat> {
-    // The first and the last child span a plane, which is where it begins.
+    // The plane that the first and the last child span gives a first estimate.
     let frame = |first: DVec3, last: DVec3| {
         let x = first.try_normalize()?;
         let z = x.cross(last.try_normalize()?);
@@ -223,7 +223,7 @@ pub fn solve(grid: &Grid, skeleton: &Skeleton, sample: usize, frames_per_sec: f6
         }
     }
     let error = error(grid, skeleton, sample, &worlds);
-    // Children first, since they need what their parents still are.
+    // Children first: each needs its parent's rotation in the world, which is then replaced.
     for joint in (1..count).rev() {
         let parent = skeleton.joints[joint].parent;
         for frame in 0..frames {
@@ -247,7 +247,7 @@ fn twist(worlds: &mut [DQuat], axis: DVec3, frames_per_sec: f64, limb: impl Fn(u
         let [upper, lower] = limb(frame);
         let hinge = (*world * axis).reject_from(upper).normalize_or_zero();
         let bend = upper.cross(lower);
-        // Thighs twist by less than a quarter, so a bend that shows more is one of a knee that is overstretched.
+        // Thighs twist by less than a quarter turn, so a bend that shows more is that of an overstretched knee.
         let bend = if axis == DVec3::X && hinge.dot(bend) < 0.0 { -bend } else { bend };
         let value = bend.length() * DVec2::new(hinge.dot(bend), upper.dot(hinge.cross(bend)));
         let is_known = upper != DVec3::ZERO && value.is_finite();

@@ -11,7 +11,7 @@ use crate::files::source::Reading;
 /// A site that sends nothing for this long has given up.
 const MAX_SILENT_SECS: u32 = 20;
 
-/// What a download may take of the program's own memory, which never shrinks, before it is complete.
+/// How much of the program's own memory, which never shrinks, a download may take before it is complete, in bytes.
 const BLOCK_BYTES: u32 = 64 << 20;
 
 #[wasm_bindgen]

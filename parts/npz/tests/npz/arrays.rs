@@ -89,7 +89,7 @@ fn people_and_samples_are_clips() {
     }
 }
 
-/// A model's bones aren't constant: they are made so, and the report says by how much joints are off.
+/// The bones of motion models vary in length. They get constant lengths, and the report says by how much joints are off.
 #[test]
 fn bones_keep_their_lengths() {
     let person = Person::new(22, FRAMES, 0.0);
@@ -262,7 +262,7 @@ fn positions_may_lack_the_path() {
     assert!(error(&glb, 0, &person, 30.0) < 1e-5, "{}", error(&glb, 0, &person, 30.0));
 }
 
-/// Where positions aren't known, some tools write zeros: they are no bones.
+/// Some tools write zeros for unknown positions, which aren't to be taken for bones.
 #[test]
 fn zeros_are_no_positions() {
     let person = Person::new(22, FRAMES, 0.0);
@@ -274,7 +274,7 @@ fn zeros_are_no_positions() {
     assert_eq!(gaitway_npz::convert(&npz(&with_zeros)), gaitway_npz::convert(&npz(&arrays)));
 }
 
-/// A still body shows neither which way its knees bend nor which number is w.
+/// A still body doesn't show which way its knees bend.
 #[test]
 fn what_rotations_leave_open_is_said() {
     let identity = [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]; 2 * 22].concat();
