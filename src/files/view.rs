@@ -159,6 +159,10 @@ async fn read_map_of<S: Source>(
     read.ok().map(|map| MotionMap::of_file(&map))
 }
 
+/// How many files of models a view may name: a link may list thousands, and a model may be several, such as an .obj with its .skel and
+/// .attach.
+const MAX_MODEL_FILES: usize = 64;
+
 /// Opens the models that a view lists; one of several that cannot be read becomes a problem of the contents. If the one it names is
 /// not in its archive, the archive's first one is named instead.
 async fn open_models<S: Source>(
@@ -166,6 +170,9 @@ async fn open_models<S: Source>(
     models: &mut [String],
     progress: Progress<'_>,
 ) -> Result<Contents, OpenError> {
+    if models.len() > MAX_MODEL_FILES {
+        return Err(SortError::TooManyModels { max: Library::MAX_MODELS }.into());
+    }
     let items = models.iter().map(|model| Item::Address(model.into())).collect();
     let (read, failed) = read_available(source, items, progress).await?;
     let mut contents = match open_read(source, read, Role::Model).await {

@@ -302,6 +302,14 @@ fn a_view_opens_no_more_motions_than_it_holds() {
 }
 
 #[test]
+fn a_view_with_thousands_of_models_is_refused_before_any_is_read() {
+    let models: String = (0..1000).map(|index| format!("&model=nowhere-{index}.glb")).collect();
+    let (state, _) = from_link(&format!("v=1{models}"));
+    let refused = Disk::beside(Vec::new()).open_view(state, true, Held::default());
+    assert!(matches!(refused, Err(OpenError::Files(SortError::TooManyModels { max: 8 }))), "{:?}", refused.err());
+}
+
+#[test]
 fn one_of_several_models_that_cannot_be_read_is_left_out() {
     let folder = temporary_folder("models");
     let model = write(&folder, "m.gltf", MESH.as_bytes()).to_str().expect("Unicode").to_owned();

@@ -6,7 +6,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{JointIndex, Keys, Skeleton, Transform};
+use super::{JointIndex, Keys, Pose, Transform};
 
 /// How the local transforms of a mirrored skeleton change in a mirror. Those of any other skeleton don't change.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -24,31 +24,6 @@ enum Place {
     Elsewhere,
 }
 
-impl Skeleton {
-    /// Finds the reflection that puts the skeleton right, the identity unless most joints are mirrored at rest.
-    pub(super) fn find_reflection(&self) -> Reflection {
-        let rest = self.rest();
-        let scale = |joint: JointIndex| rest.local(joint).scale;
-        if !self.joints().any(|joint| is_mirroring(scale(joint))) {
-            return Reflection::default();
-        }
-        let mut is_mirrored: Vec<bool> = Vec::with_capacity(self.len());
-        let mut places = Vec::with_capacity(self.len());
-        for joint in self.joints() {
-            let above = self.parent(joint).is_some_and(|parent| is_mirrored[parent.get()]);
-            let mirrors = is_mirroring(scale(joint));
-            is_mirrored.push(above != mirrors);
-            places.push(match (above, mirrors) {
-                (true, _) => Place::Below,
-                (false, true) => Place::Mirrors(turn_of(scale(joint))),
-                (false, false) => Place::Elsewhere,
-            });
-        }
-        let mirrored = is_mirrored.iter().filter(|mirrored| **mirrored).count();
-        if 2 * mirrored > self.len() { Reflection { places } } else { Reflection::default() }
-    }
-}
-
 fn is_mirroring(scale: Vec3) -> bool {
     scale.x * scale.y * scale.z < 0.0
 }
@@ -64,6 +39,29 @@ fn turn_of(scale: Vec3) -> DQuat {
 }
 
 impl Reflection {
+    /// Finds the reflection that puts a skeleton right, the identity unless most joints are mirrored at rest. `parents` are those of
+    /// all joints, before their children.
+    pub(super) fn of(parents: &[Option<JointIndex>], rest: &Pose) -> Self {
+        let scales = || (0..parents.len() as u32).map(|joint| rest.local(JointIndex(joint)).scale);
+        if !scales().any(is_mirroring) {
+            return Self::default();
+        }
+        let mut is_mirrored: Vec<bool> = Vec::with_capacity(parents.len());
+        let mut places = Vec::with_capacity(parents.len());
+        for (parent, scale) in parents.iter().zip(scales()) {
+            let above = parent.is_some_and(|parent| is_mirrored[parent.get()]);
+            let mirrors = is_mirroring(scale);
+            is_mirrored.push(above != mirrors);
+            places.push(match (above, mirrors) {
+                (true, _) => Place::Below,
+                (false, true) => Place::Mirrors(turn_of(scale)),
+                (false, false) => Place::Elsewhere,
+            });
+        }
+        let mirrored = is_mirrored.iter().filter(|mirrored| **mirrored).count();
+        if 2 * mirrored > parents.len() { Self { places } } else { Self::default() }
+    }
+
     /// Whether the skeleton isn't mirrored, so that nothing changes.
     pub fn is_identity(&self) -> bool {
         self.places.is_empty()

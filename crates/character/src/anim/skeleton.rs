@@ -102,7 +102,7 @@ impl Skeleton {
         }
         skeleton.by_depth = sorted_by_depth(&skeleton.parents);
         skeleton.rest = Pose::new(&locals, morph_weights, skeleton.by_depth.iter().map(|&(joint, _)| joint));
-        skeleton.reflection = skeleton.find_reflection();
+        skeleton.reflection = Reflection::of(&skeleton.parents, &skeleton.rest);
         Ok(skeleton)
     }
 

@@ -17,7 +17,7 @@ const EXAMPLE: &str = r##"{ "gaitway_map": 1,
   "root": { "horizontal": "keep", "vertical": "keep", "yaw": "keep", "extract": false, "origin": "rest" },
   "translations": "auto", "scales": "auto",
   "muted_channels": [ { "source": "free3dmodel_skeleton", "property": "translation" } ],
-  "feet": "off", "contacts": "off", "crossfade_secs": 0 }"##;
+  "feet": "off", "contacts": "off", "chains": "off", "crossfade_secs": 0 }"##;
 
 fn check_refused(text: &str, expected: &str) {
     let message = JointMapFile::from_json(text).expect_err(text).to_string();
