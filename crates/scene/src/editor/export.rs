@@ -27,7 +27,7 @@ pub enum Export {
         /// One of the library's.
         motion: MotionId,
     },
-    /// The model with one of its clips that isn't in its file as it plays: [`derived_clip`].
+    /// The model with one of its clips that isn't in its file as it plays: [`super::derived_clip`].
     Model {
         /// One of the active model's; an unedited one of its own is an error.
         clip: ClipId,
