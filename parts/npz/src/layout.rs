@@ -69,7 +69,9 @@ impl Wanted<'_> {
             if self.numbers.contains(&size) {
                 self.add_joints(axes[at], &without(1), has_single, &mut found);
             }
-            for &numbers in self.numbers {
+            // Joints and numbers in one axis are the last: the number of frames, too, may be a multiple of both.
+            let flattened = if at + 1 == axes.len() { self.numbers } else { &[] };
+            for &numbers in flattened {
                 let joints = size / numbers;
                 if joints > 1 && size % numbers == 0 && self.joints.contains(&joints) {
                     let joints = Axis { size: joints, stride: numbers * stride };

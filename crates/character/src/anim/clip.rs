@@ -299,7 +299,7 @@ impl Clip {
     /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times don't reveal
     /// it.
     pub fn frames_per_sec(&self) -> f64 {
-        const COMMON: [f64; 8] = [Clip::DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
+        const COMMON: [f64; 9] = [Clip::DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 20.0, 60.0, 50.0, 48.0, 120.0, 100.0];
         const MAX_KEYS: usize = 4096;
         let on_frames = |rate: f64| {
             self.key_times_secs().take(MAX_KEYS).all(|time| {

@@ -453,6 +453,7 @@ fn the_frame_rate_is_that_of_the_densest_channel() {
         builder.build().frames_per_sec()
     };
     assert_eq!(rate(150, 1.0 / 120.0), 120.0);
+    assert_eq!(rate(90, 0.05), 20.0);
     assert!((rate(150, 0.008_33) - 120.05).abs() < 0.01, "{}", rate(150, 0.008_33));
     assert_eq!(rate(5, 0.313), Clip::DEFAULT_FRAMES_PER_SEC);
     assert_eq!(rate(20, 0.313), Clip::DEFAULT_FRAMES_PER_SEC);

@@ -61,6 +61,11 @@ fn arrays_that_hold_something_else() {
     check(&floats("(10, 5)", &[0.0; 50]), &["the array", "22, 24, 52, 55, 30 or 77 joints", "found [10, 5]"]);
     check(&floats("(2, 22, 4)", &[0.3; 176]), &["quaternions of length 1", "another in frame 0"]);
     check(&floats("(2, 22, 6)", &[0.3; 264]), &["pairs of axes", "another in frame 0"]);
+    // However many frames they have: 17 joints are those of another body.
+    for frames in [66, 72, 88, 90, 100, 120] {
+        let numbers: Vec<f64> = (0..frames * 17 * 3).map(|at| (at as f64).sin()).collect();
+        check(&floats(&format!("({frames}, 17, 3)"), &numbers), &["22, 24", &format!("found [{frames}, 17, 3]")]);
+    }
     check(&array("|O", "()", b"\x80\x04N."), &["the array", "pickled", "results.npy", "numpy.save("]);
     check(&floats("(2, 22, 3)", &[f64::NAN; 132]), &["finite numbers", "NaN in frame 0"]);
     check(&floats("(0, 22, 3)", &[]), &["at least one frame"]);
