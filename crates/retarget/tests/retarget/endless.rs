@@ -3,18 +3,18 @@
 
 use std::time::Instant;
 
-use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Property};
-use gaitway_character::asset::{Asset, AssetParts, Humanoid};
+use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Property, Transform};
+use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
 use gaitway_retarget::{
-    Body, ClipChanges, ClipLayer, ClipOverLayers, Contacts, Feet, Keep, Layer, LayerClip, Pair, ResolvedMap,
-    RetargetError, Retargeting, StackedLayer, bake_layers, bake_stack, baking, change_clip, layer_clips,
+    Anatomy, Body, ClipChanges, ClipLayer, ClipOverLayers, Contacts, Feet, Keep, Layer, LayerClip, Pair, ResolvedMap,
+    RetargetError, Retargeting, StackedLayer, bake_layers, bake_stack, baking, change_clip, layer_clips, recognize,
 };
 use glam::{Quat, Vec3};
 
 use crate::contacts::with_boxes;
 use crate::figure::{Figure, Rig};
 use crate::laws::{body, map};
-use crate::skeletons::{asset, chain};
+use crate::skeletons::{asset, chain, joint};
 
 /// The clip with its times and its translations multiplied, and an offset added to these.
 fn stretched(figure: &Figure, time_factor: f32, factor: f32, offset: f32) -> Clip {
@@ -148,4 +148,33 @@ fn short_layers_below_and_over_long_clips_are_baked() {
         let baked = bake_stack(&figure.asset.skeleton, &clip, &[StackedLayer { layer: &layer, source, included }]);
         assert_eq!(baked.duration_secs(), clip_secs);
     }
+}
+
+/// Each helper is looked at a bounded number of times: if each were compared with each, this would take minutes.
+#[test]
+fn the_chains_of_a_body_with_a_hundred_thousand_helpers_are_found_in_seconds() {
+    let figure = with_boxes(&Rig::default(), 0.1);
+    let skeleton = &figure.asset.skeleton;
+    let mut joints: Vec<Joint> = skeleton
+        .joints()
+        .map(|at| joint(skeleton.name(at), skeleton.parent(at).map(JointIndex::get), skeleton.rest().local(at)))
+        .collect();
+    let at = |slot: Slot| figure.slots.joint(slot).expect("a slot of the figure").get();
+    let halfway = Transform::from_translation(0.5 * joints[at(Slot::LeftHand)].rest.translation);
+    for number in 0..50_000 {
+        // Beside the forearm, where twist joints are, and in a chain of others beside the body.
+        joints.push(joint("twist", Some(at(Slot::LeftLowerArm)), halfway));
+        let above = if number % 100 == 0 { None } else { Some(joints.len() - 2) };
+        joints.push(joint("ik_hand_l", above, Transform::default()));
+    }
+    let star = asset(joints);
+    let of_star = |&joint: &JointIndex| star.skeleton.joint_of_source(skeleton.source_index(joint));
+    let slots = Humanoid(figure.slots.0.iter().filter_map(|(&slot, joint)| Some((slot, of_star(joint)?))).collect());
+    let begun = Instant::now();
+    let anatomy = Anatomy::new(&star, &slots);
+    let found = recognize(&star);
+    assert!(!anatomy.chains.is_empty() && found.joint(Slot::Hips).is_some());
+    assert!(anatomy.twists.len() + anatomy.followers.len() < 1000);
+    let secs = begun.elapsed().as_secs();
+    assert!(secs < 20, "{secs} s");
 }
