@@ -1,9 +1,9 @@
-//! Finds the chains of a body: the joints between its slots.
+//! Finds the chains of a body: the joints between its slots, and tails and ears.
 
 use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::{Side, Slot};
 
-use super::{Chain, ChainJoint, ChainPart, Form, TwistJoint, on};
+use super::{Chain, ChainJoint, ChainPart, Form, TwistJoint, appendages, on};
 use crate::pose::ancestry;
 
 pub fn find(form: &Form, twists: &[TwistJoint]) -> Vec<Chain> {
@@ -32,8 +32,12 @@ pub fn find(form: &Form, twists: &[TwistJoint]) -> Vec<Chain> {
         for (finger, slots) in (0_u8..).zip(FINGERS) {
             let first = slots.iter().find_map(|&left| slot(on(side, left)));
             let carrier = first.and_then(|first| form.skeleton.parent(first));
-            add(ChainPart::Digit(side, finger), carrier, slots.iter().rev().find_map(|&left| slot(on(side, left))));
+            add(ChainPart::Finger(side, finger), carrier, slots.iter().rev().find_map(|&left| slot(on(side, left))));
         }
+    }
+    for (part, joints) in appendages::find(form) {
+        let carrier = joints.first().and_then(|&root| form.skeleton.parent(root));
+        chains.extend(carrier.map(|carrier| Chain { part, carrier, joints: with_shares(form, carrier, &joints) }));
     }
     chains
 }

@@ -1,7 +1,8 @@
 //! A body as a value: the chains that its joints form, the twist joints beside or inside its limbs, and the helpers that follow a
-//! joint. It is derived from the humanoid slots, the hierarchy and the rest; names only help to tell helpers apart. Recognizing
+//! joint. It is derived from the humanoid slots, the hierarchy and the rest; names only help to tell helpers apart, and tails and ears. Recognizing
 //! slots is left to `recognize`, using the chains to `transfer`.
 
+mod appendages;
 mod chains;
 mod followers;
 mod twist;
@@ -52,7 +53,7 @@ pub struct ChainJoint {
     pub along: f64,
 }
 
-/// A chain of the human body.
+/// A chain of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ChainPart {
     /// Above the hips, up to the joint that carries neck and arms.
@@ -63,14 +64,23 @@ pub enum ChainPart {
     Arm(Side),
     /// From the thigh to the toes, without twist joints.
     Leg(Side),
-    /// The phalanges of a finger, 0 (the thumb) to 4, without the bone in the palm.
-    Digit(Side, u8),
+    /// A finger, 0 (the thumb) to 4: its phalanges, and the thumb's metacarpal.
+    Finger(Side, u8),
+    /// A tail, which hangs on the hips or the lowest joint of the spine and is named so.
+    Tail,
+    /// An ear, which hangs on the head and is named so.
+    Ear(Side),
 }
 
 impl ChainPart {
     /// Whether its joints share one curve. Those of arms and legs are hinges of their own.
     pub fn bends_as_one(self) -> bool {
         !matches!(self, Self::Arm(_) | Self::Leg(_))
+    }
+
+    /// Whether its joints have no slots.
+    pub fn is_appendage(self) -> bool {
+        matches!(self, Self::Tail | Self::Ear(_))
     }
 }
 

@@ -106,13 +106,20 @@ impl Turns {
             .collect();
         // A joint that follows another part of the body means that the map does something else on purpose.
         let Some(mapped) = mapped.filter(|mapped| mapped.windows(2).all(|pair| pair[0].1 < pair[1].1)) else { return };
-        let Some(&(mut target_end, mut source_end)) = mapped.last() else { return };
+        let last = mapped.last().copied();
+        // Tails and ears have no slots: a map pairs them by names, if at all.
+        let Some((mut target_end, mut source_end)) = last.or(target.part.is_appendage().then_some((0, 0))) else {
+            return;
+        };
+        if source.joints.is_empty() {
+            return;
+        }
         // Only a neck's first joint has a slot, and a trunk of one joint is mapped to the lowest of several; but all of them bend. A
         // finger without its tip is as short as the motion's.
-        if target.part == ChainPart::Neck {
+        if target.part == ChainPart::Neck || target.part.is_appendage() {
             source_end = source.joints.len() - 1;
         }
-        if source_end + 1 == source.joints.len() && !matches!(target.part, ChainPart::Digit(..)) {
+        if source_end + 1 == source.joints.len() && !matches!(target.part, ChainPart::Finger(..)) {
             target_end += target.joints[target_end + 1..].iter().take_while(|joint| is_free(map, joint.joint)).count();
         }
         let (targets, sources) = (&target.joints[..=target_end], &source.joints[..=source_end]);

@@ -8,12 +8,13 @@ use gaitway_character::anim::{
     model_from_joint,
 };
 use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
-use gaitway_retarget::{Body, Chains, ResolvedMap, Retargeted, Retargeting, propose, recognize};
+use gaitway_retarget::{Anatomy, Body, ChainPart, Chains, ResolvedMap, Retargeted, Retargeting, propose, recognize};
 use glam::{Affine3A, DQuat, Quat, Vec3};
 
 use crate::data_folder::data_folder;
 use crate::laws::degrees;
 use crate::people::{Loaded, load_people, model_rotations};
+use crate::random::Random;
 use crate::skeletons::{joint, with_skin};
 
 /// A body with a number of spine joints and twist joints, in a T-pose that faces +Z.
@@ -22,10 +23,12 @@ struct Build {
     spine: usize,
     neck: usize,
     twist: Twist,
+    tail: usize,
+    ears: usize,
 }
 
 /// Three joints of the spine, one of the neck.
-const PLAIN: Build = Build { spine: 3, neck: 1, twist: Twist::None };
+const PLAIN: Build = Build { spine: 3, neck: 1, twist: Twist::None, tail: 0, ears: 0 };
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Twist {
@@ -45,6 +48,16 @@ impl Builder {
     fn add(&mut self, name: &str, parent: &str, offset: [f32; 3]) {
         let at = self.joints.iter().position(|joint| joint.name == parent);
         self.joints.push(joint(name, at, Transform::from_translation(Vec3::from(offset))));
+    }
+
+    /// So many joints below each other, `offset` together.
+    fn line(&mut self, from: &str, name: &str, count: usize, offset: [f32; 3]) {
+        let mut below = from.to_owned();
+        for number in 1..=count {
+            let name = format!("{name} {number}");
+            self.add(&name, &below, offset.map(|value| value / count as f32));
+            below = name;
+        }
     }
 
     /// A segment from joint `from`, which exists, to the new joint `to`.
@@ -85,8 +98,10 @@ fn body(build: Build) -> Asset {
         below = name;
     }
     builder.add("head", &below, [0.0, 0.1 / build.neck as f32, 0.0]);
+    builder.line("hips", "tail", build.tail, [0.0, 0.0, -0.4]);
     for (side, x) in [("left", 1.0), ("right", -1.0)] {
         let name = |part: &str| format!("{side} {part}");
+        builder.line("head", &name("ear"), build.ears, [0.05 * x, 0.2, 0.0]);
         builder.add(&name("clavicle"), &chest, [0.03 * x, 0.05, 0.0]);
         builder.add(&name("upper arm"), &name("clavicle"), [0.15 * x, 0.0, 0.0]);
         builder.segment(&name("upper arm"), &name("lower arm"), [0.28 * x, 0.0, 0.0], build.twist);
@@ -198,6 +213,75 @@ fn equal_numbers_of_joints_keep_the_keys_of_the_source() {
     let motion = moving(motion, &names.map(|name| (name, Quat::from_rotation_x(0.2))));
     let done = retarget(&model, &motion, &map(&model, &motion));
     assert_eq!(done.resampled, []);
+}
+
+#[test]
+fn tails_and_ears_share_their_bend_whatever_their_joints_are_called() {
+    let motion = body(Build { tail: 3, ears: 1, ..PLAIN });
+    let bend = Quat::from_rotation_x(20.0_f32.to_radians());
+    let turns = ["tail 1", "tail 2", "tail 3", "left ear 1"].map(|name| (name, bend));
+    let motion = moving(motion, &turns);
+    let model = body(Build { tail: 5, ears: 2, ..PLAIN });
+    let renamed = |prefix: &str| {
+        let appendages = model.skeleton.joints().filter_map(|joint| {
+            let name = model.skeleton.name(joint);
+            let new = if name.starts_with("tail") { format!("{prefix}{name}") } else { return None };
+            Some((model.skeleton.source_index(joint), new))
+        });
+        let names: Vec<(usize, String)> = appendages.collect();
+        Asset::from(model.skeleton.with_names(names.iter().map(|(joint, name)| (*joint, name.as_str()))))
+    };
+    for prefix in ["", "bushy "] {
+        let model = renamed(prefix);
+        let found = bends(&model, &retarget(&model, &motion, &map(&model, &motion)).clip);
+        for number in 1..=5 {
+            let bend = found[&format!("{prefix}tail {number}")];
+            assert!((bend - 12.0).abs() < 0.1, "tail {number}: {found:?}");
+        }
+        for (name, degrees) in [("left ear 1", 10.0), ("left ear 2", 10.0), ("right ear 1", 0.0)] {
+            assert!((found[name] - degrees).abs() < 0.1, "{name}: {found:?}");
+        }
+    }
+    // The other way round, the last joints correspond, too.
+    let turns = [1, 2, 3, 4, 5].map(|number| format!("bushy tail {number}"));
+    let model = moving(renamed("bushy "), &turns.each_ref().map(|name| (name.as_str(), bend)));
+    let short = body(Build { tail: 3, ears: 1, ..PLAIN });
+    let found = bends(&short, &retarget(&short, &model, &map(&short, &model)).clip);
+    for number in 1..=3 {
+        let bend = found[&format!("tail {number}")];
+        assert!((bend - 100.0 / 3.0).abs() < 0.2, "tail {number}: {found:?}");
+    }
+}
+
+#[test]
+fn what_is_called_a_tail_elsewhere_is_none() {
+    let parts = |asset: &Asset| -> Vec<ChainPart> {
+        let anatomy = Anatomy::new(asset, &recognize(asset).humanoid());
+        anatomy.chains.iter().map(|chain| chain.part).filter(|part| part.is_appendage()).collect()
+    };
+    let with = |add: &dyn Fn(&mut Builder)| {
+        let mut builder = Builder { joints: Vec::new() };
+        let plain = body(PLAIN);
+        for at in plain.skeleton.joints() {
+            let parent = plain.skeleton.parent(at).map(JointIndex::get);
+            builder.joints.push(joint(plain.skeleton.name(at), parent, plain.skeleton.rest().local(at)));
+        }
+        add(&mut builder);
+        Asset::from(Skeleton::new(builder.joints).unwrap())
+    };
+    assert_eq!(parts(&with(&|_| ())), []);
+    assert_eq!(parts(&with(&|body| body.line("hips", "tail", 3, [0.0, 0.0, -0.3]))), [ChainPart::Tail]);
+    assert_eq!(parts(&with(&|body| body.line("head", "pony tail", 3, [0.0, -0.3, 0.0]))), []);
+    let coat = with(&|body| {
+        body.line("hips", "left coat tail", 2, [0.1, -0.3, -0.1]);
+        body.line("hips", "right coat tail", 2, [-0.1, -0.3, -0.1]);
+    });
+    assert_eq!(parts(&coat), []);
+    let fox = with(&|body| {
+        body.line("hips", "tail a", 2, [0.1, 0.0, -0.3]);
+        body.line("hips", "tail b", 2, [-0.1, 0.0, -0.3]);
+    });
+    assert_eq!(parts(&fox), []);
 }
 
 #[test]
@@ -365,6 +449,64 @@ fn real_rigs_with_more_joints_move_alike() {
         }
     }
     assert!(checked > 60, "{checked}");
+}
+
+/// The file with random names, and with every joint's axes turned at random. Returns these turns by number in the file.
+fn renamed_and_rolled(asset: &Asset, slots: &Humanoid, seed: u64) -> (Asset, Vec<DQuat>) {
+    let skeleton = &asset.skeleton;
+    let mut random = Random(seed);
+    let rolls: Vec<DQuat> = (0..skeleton.len()).map(|_| random.rotation(180.0)).collect();
+    let number = |joint: JointIndex| skeleton.source_index(joint);
+    let mut joints: Vec<Joint> = vec![Joint::default(); skeleton.len()];
+    for at in skeleton.joints() {
+        let mut rest = skeleton.rest().local(at);
+        let above = skeleton.parent(at).map_or(DQuat::IDENTITY, |parent| rolls[number(parent)]).conjugate();
+        rest.translation = (above * rest.translation.as_dvec3()).as_vec3();
+        rest.rotation = (above * rest.rotation.as_dquat() * rolls[number(at)]).normalize().as_quat();
+        joints[number(at)] = joint(&format!("node {}", random.bits()), skeleton.parent(at).map(number), rest);
+    }
+    let rolled = Skeleton::new(joints).unwrap();
+    (declaring(rolled, skeleton, slots), rolls)
+}
+
+/// All at once: joints added to the spine and as twist joints, random names, other axes.
+#[test]
+fn real_rigs_that_differ_in_everything_but_the_body_move_alike() {
+    let Some(folder) = data_folder() else { return };
+    let people = load_people(&folder);
+    let motions: Vec<&Loaded> = ["Samba_Dancing.glb", "assimp_Boxing_Toes.bvh"]
+        .map(|name| people.iter().find(|person| person.name == name).unwrap())
+        .into();
+    let mut checked = 0;
+    for (seed, model) in (1..).zip(people.iter().filter(|model| model.person.has_mesh)) {
+        // Turned axes can't undo a scale that differs by axis, nor a mirror.
+        let is_even = |local: Transform| (local.scale - local.scale.x).length() < 1e-3 * local.scale.x;
+        let skeleton = &model.asset.skeleton;
+        if !skeleton.rest().locals().all(is_even) {
+            continue;
+        }
+        let plain = declaring(skeleton.clone(), skeleton, &model.slots);
+        let more = with_more_joints(&plain, &model.slots);
+        let slots = recognize(&more).humanoid();
+        let (other, rolls) = renamed_and_rolled(&more, &slots, seed);
+        let roll = |slot: Slot| {
+            let slots = recognize(&other).humanoid();
+            rolls[other.skeleton.source_index(slots.joint(slot).unwrap())]
+        };
+        for motion in &motions {
+            let [wanted, found] = [&plain, &other].map(|asset| ends(asset, motion));
+            for (slot, wanted) in wanted {
+                let Some(found) = found.get(&slot) else { continue };
+                checked += 1;
+                let back = roll(slot).conjugate();
+                for (wanted, found) in wanted.iter().zip(found) {
+                    let apart = degrees(*wanted, *found * back);
+                    assert!(apart < 0.5, "{} ← {}: {slot:?} is turned by {apart}°", model.name, motion.name);
+                }
+            }
+        }
+    }
+    assert!(checked > 100, "{checked}");
 }
 
 /// Joints that a motion has and doesn't move change nothing.
