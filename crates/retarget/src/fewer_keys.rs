@@ -2,13 +2,16 @@
 //! together do: where every joint is and how it is turned in model space, between keys as well. If that is too far off, since
 //! errors add up along a limb, all channels are thinned less.
 
+use std::collections::HashSet;
+
 use gaitway_character::anim::{
     Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, SampleCursor, Skeleton, Transform, model_from_joint,
 };
-use glam::{Affine3A, DQuat, Quat, Vec3};
+use glam::{Affine3A, Mat3A, Vec3};
 
 use crate::keys::limits::height_or_metre;
 use crate::keys::resample::{fewest, union};
+use crate::math::{angle_between, slerp, unit};
 
 /// How far joints may be from where they were.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,18 +86,16 @@ fn thin(skeleton: &Skeleton, clip: &Clip, rest: &[Affine3A], allowed: Allowed) -
     let last_secs = |channel: &Channel| clip.timelines()[channel.timeline as usize].last().copied();
     // One channel has to say how long the clip is.
     let longest = clip.channels().iter().position(|channel| last_secs(channel) == Some(clip.duration_secs()));
-    let is_only = |channel: &Channel| {
-        let is_same =
-            |other: &&Channel| other.joint == channel.joint && other.keys.property() == channel.keys.property();
-        clip.channels().iter().filter(is_same).count() == 1
-    };
+    let target = |channel: &Channel| (channel.joint, channel.keys.property());
+    let mut seen = HashSet::new();
+    let repeated: HashSet<_> = clip.channels().iter().map(target).filter(|&target| !seen.insert(target)).collect();
     let mut builder = ClipBuilder::new(clip.name(), skeleton);
     for (index, channel) in clip.channels().iter().enumerate() {
         let times_secs = &clip.timelines()[channel.timeline as usize];
         let (mut kept, last) = (kept(skeleton, channel, times_secs, rest, allowed), times_secs.len() - 1);
         if Some(index) == longest {
             kept.extend((kept.last() != Some(&last)).then_some(last));
-        } else if kept.len() == 1 && is_at_rest(skeleton, channel) && is_only(channel) {
+        } else if kept.len() == 1 && is_at_rest(skeleton, channel) && !repeated.contains(&target(channel)) {
             continue;
         }
         let times: Vec<f32> = kept.iter().map(|&key| times_secs[key]).collect();
@@ -159,7 +160,9 @@ fn kept(skeleton: &Skeleton, channel: &Channel, times_secs: &[f32], rest: &[Affi
             channel,
             times_secs.len(),
             |from, to, key| {
-                turn_between(slerp(values[from], values[to], factor(from, to, key)), values[key]) <= allowed.turn
+                let [from_turn, to_turn, turn] = [from, to, key].map(|key| unit(values[key].as_dquat()));
+                let found = slerp(from_turn, to_turn, f64::from(factor(from, to, key)));
+                angle_between(found, turn) <= allowed.turn
             },
             |key, other| values[key] == values[other],
         ),
@@ -195,17 +198,6 @@ fn restoring(
     }
 }
 
-/// Along the shorter arc, as clips are sampled.
-fn slerp(from: Quat, to: Quat, factor: f32) -> Quat {
-    let (from, to) = (from.normalize(), to.normalize());
-    from.slerp(if from.dot(to) < 0.0 { -to } else { to }, factor)
-}
-
-fn turn_between(one: Quat, other: Quat) -> f64 {
-    let between: DQuat = one.as_dquat().normalize() * other.as_dquat().normalize().conjugate();
-    2.0 * between.xyz().length().min(1.0).asin()
-}
-
 fn world(skeleton: &Skeleton, locals: impl Iterator<Item = Transform>) -> Vec<Affine3A> {
     let mut pose = skeleton.rest().clone();
     locals.enumerate().for_each(|(joint, local)| pose.set_local(JointIndex(joint as u32), local));
@@ -236,14 +228,13 @@ fn measure(skeleton: &Skeleton, clip: &Clip, thinned: &Clip, height: f64) -> Key
     error
 }
 
-/// The angle between two orientations, whose scales may differ.
+/// The angle in radians between two orientations, whose scales may differ: from how far apart their axes are, which also compares
+/// two mirrored ones.
 fn turn_of(one: &Affine3A, other: &Affine3A) -> f64 {
-    let turn = |joint: &Affine3A| {
-        Quat::from_mat3a(&glam::Mat3A::from_cols(
-            joint.matrix3.x_axis.normalize_or_zero(),
-            joint.matrix3.y_axis.normalize_or_zero(),
-            joint.matrix3.z_axis.normalize_or_zero(),
-        ))
+    let axes = |joint: &Affine3A| {
+        let Mat3A { x_axis, y_axis, z_axis } = joint.matrix3;
+        [x_axis, y_axis, z_axis].map(|axis| axis.as_dvec3().normalize_or_zero())
     };
-    turn_between(turn(one), turn(other))
+    let apart: f64 = axes(one).iter().zip(axes(other)).map(|(one, other)| one.distance_squared(other)).sum();
+    2.0 * (apart / 8.0).sqrt().min(1.0).asin()
 }

@@ -2,8 +2,8 @@
 //! except for rounding.
 
 use gaitway_character::anim::{Clip, ClipBuilder, JointIndex, Pose, SampleCursor, Skeleton, Transform};
-use gaitway_character::sort::sort_floats;
 
+use crate::keys::resample::union;
 use crate::map::shared_names;
 
 /// How far transforms of one rig may differ: a quaternion's components, factors of scale, and translations as a share of the
@@ -66,9 +66,7 @@ impl Tolerance {
 
     /// Whether two clips have the same poses at their keys and halfway to the next ones.
     fn are_alike(&self, skeleton: &Skeleton, one: &Clip, other: &Clip) -> bool {
-        let mut times: Vec<f32> = one.key_times_secs().chain(other.key_times_secs()).collect();
-        sort_floats(&mut times);
-        times.dedup();
+        let times = union(one.timelines().iter().chain(other.timelines()).map(Vec::as_slice));
         let halfway: Vec<f32> = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         let mut sampled = [one, other].map(|clip| (clip, SampleCursor::default(), skeleton.rest().clone()));
         times.iter().chain(&halfway).all(|&time_secs| {

@@ -1,18 +1,19 @@
 //! Moves the travel of a body from its hips to a root joint above them, so that both together stand, turn and move exactly as the
 //! hips did.
 //!
-//! The root stands on the ground below the hips and faces where they face: it has their horizontal way and their turn about the
+//! The root stands on the ground below the hips and faces where they face: it has their horizontal travel and their turn about the
 //! vertical axis, both from the rest. Between keys, two joints that move don't add up to one that does, so keys are added until
 //! the sum is within [`MAX_TURN`] and [`MAX_SHARE`].
 
 use gaitway_character::anim::{
-    Clip, ClipBuilder, Interpolation, JointIndex, Keys, Property, SampleCursor, Skeleton, Transform,
+    Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, Property, SampleCursor, Skeleton, Transform,
 };
 use glam::{DAffine3, DQuat, DVec3};
 
 use crate::keys::channel::continuous;
 use crate::keys::limits::{ROUNDING, height_or_metre};
 use crate::keys::resample::{Curve, Resampled, resample, union};
+use crate::math::{angle_between, slerp, yaw_of};
 
 /// How far, in radians, root and hips together may turn away from the hips: 0.01°.
 const MAX_TURN: f64 = 1.745e-4;
@@ -22,7 +23,7 @@ const MAX_SHARE: f64 = 1e-5;
 /// What a root joint takes over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RootTravel {
-    /// Height as well, not only the way over the ground.
+    /// Height as well, not only the path over the ground.
     pub vertical: bool,
     /// Drops the travel: the body stays where it is at rest.
     pub in_place: bool,
@@ -70,7 +71,8 @@ pub fn with_root_motion(
         let _ = into.channel(channel.joint, channel.interpolation, times_secs, channel.keys.clone());
     }
     let own = own.build();
-    let split = Split { own: &own, skeleton, hips, travel, space };
+    let sampled = (SampleCursor::default(), skeleton.rest().clone());
+    let mut split = Split { own: &own, skeleton, hips, travel, space, sampled };
     let is_stepped = own.channels().iter().all(|channel| channel.interpolation == Interpolation::Step);
     let Resampled { times, values } = split.keys(is_stepped);
     if !times.is_empty() {
@@ -112,8 +114,7 @@ impl Local {
     }
 
     fn between(self, other: Self, share: f64) -> Self {
-        let other_turn = if self.turn.dot(other.turn) < 0.0 { -other.turn } else { other.turn };
-        Self { turn: self.turn.slerp(other_turn, share), place: self.place.lerp(other.place, share) }
+        Self { turn: slerp(self.turn, other.turn, share), place: self.place.lerp(other.place, share) }
     }
 }
 
@@ -164,17 +165,19 @@ struct Split<'a> {
     hips: JointIndex,
     travel: RootTravel,
     space: Space,
+    /// Where the clip is sampled, reused from time to time.
+    sampled: (SampleCursor, Pose),
 }
 
 impl Split<'_> {
     /// The hips as the clip has them.
-    fn at(&self, time_secs: f32) -> Local {
-        let mut pose = self.skeleton.rest().clone();
-        self.own.sample(self.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+    fn at(&mut self, time_secs: f32) -> Local {
+        let (cursor, pose) = &mut self.sampled;
+        self.own.sample(self.skeleton, time_secs, cursor, pose);
         Local::of(pose.local(self.hips))
     }
 
-    fn parts(&self, time_secs: f32) -> Parts {
+    fn parts(&mut self, time_secs: f32) -> Parts {
         let whole = self.at(time_secs);
         let root = self.root(whole);
         Parts { whole, root, hips: whole.seen_from(root) }
@@ -187,32 +190,32 @@ impl Split<'_> {
         let of_model = |local: Local| (model_from_space.transform_point3(local.place), turn * local.turn);
         let ((at, facing), (rest_at, rest_facing)) = (of_model(hips), of_model(rest));
         let turned = facing * rest_facing.conjugate();
-        let twist = DQuat::from_xyzw(0.0, turned.y, 0.0, turned.w);
-        let yaw = if twist.length() > 1e-9 { twist.normalize() } else { DQuat::IDENTITY };
-        let mut way = at - yaw * rest_at;
+        let yaw = DQuat::from_rotation_y(yaw_of(turned));
+        let mut travel = at - yaw * rest_at;
         if !self.travel.vertical {
-            way.y = 0.0;
+            travel.y = 0.0;
         }
-        let moved = DAffine3::from_rotation_translation(yaw, way);
+        let moved = DAffine3::from_rotation_translation(yaw, travel);
         let local = model_from_space.inverse() * moved * model_from_space;
         Local { turn: (turn.conjugate() * yaw * turn).normalize(), place: local.translation }
     }
 
     /// Keys at the clip's own and, unless it is stepped, between them where that is needed.
-    fn keys(&self, is_stepped: bool) -> Resampled<Parts> {
-        let timelines = self.own.timelines();
+    fn keys(&mut self, is_stepped: bool) -> Resampled<Parts> {
+        let own = self.own;
+        let timelines = own.timelines();
         let times = union(timelines.iter().map(Vec::as_slice));
         if is_stepped {
             let values = times.iter().map(|&time_secs| self.parts(time_secs)).collect();
             return Resampled { times, values };
         }
-        let stepped = self.own.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
+        let stepped = own.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
         let jumps = union(stepped.map(|channel| timelines[channel.timeline as usize].as_slice()));
         let reach = self.skeleton.rest().local(self.hips).translation.as_dvec3().length();
         // The larger error, as a share of what is allowed.
         let error = |from: &Parts, to: &Parts, factor: f64, at: &Parts| {
             let found = from.hips.between(to.hips, factor).after(from.root.between(to.root, factor));
-            let turn = 2.0 * (found.turn * at.whole.turn.conjugate()).xyz().length().min(1.0).asin();
+            let turn = angle_between(found.turn, at.whole.turn);
             let allowed = (MAX_SHARE * height_or_metre(reach)).max(ROUNDING * at.whole.place.length());
             (turn / MAX_TURN).max(found.place.distance(at.whole.place) / allowed)
         };

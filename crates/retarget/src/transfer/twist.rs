@@ -64,7 +64,7 @@ pub fn twist_channels(transfer: &Transfer, clip: &Clip) -> Vec<NewChannel> {
             |twist: &TwistJoint| is_free(transfer.map, twist.joint) && !tracks.rotations[twist.joint.get()].is_moving();
         let turns = transfer.turns.of(root).is_some() && transfer.turns.of(tip).is_some();
         if turns && !twists.is_empty() && twists.iter().all(is_open) {
-            let segment = TwistedSegment::new(transfer, (&tracks, &times), segment, [root, tip], twists);
+            let segment = TwistedSegment::new(transfer, &tracks, &times, segment, [root, tip], twists);
             channels.extend(segment.channels());
         }
     }
@@ -74,7 +74,8 @@ pub fn twist_channels(transfer: &Transfer, clip: &Clip) -> Vec<NewChannel> {
 impl<'a> TwistedSegment<'a> {
     fn new(
         transfer: &'a Transfer,
-        (tracks, times): (&'a SourceTracks<'a>, &'a [f32]),
+        tracks: &'a SourceTracks<'a>,
+        times: &'a [f32],
         segment: Segment,
         [root, tip]: [JointIndex; 2],
         twists: Vec<TwistJoint>,
