@@ -11,10 +11,10 @@ use gaitway_part::Answer;
 
 use super::encoding;
 use super::file_set::Conversion;
+use super::file_set::is_npy;
 use super::gltf::decode_names;
 use super::gltf::decoded::{self, Decoding};
 use super::part::Part;
-use super::file_set::is_npy;
 use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
 
 /// One conversion: run `part` on `input`, then call [`finish`](Preparation::finish).

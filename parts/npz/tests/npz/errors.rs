@@ -79,7 +79,10 @@ fn arrays_that_hold_something_else() {
         &npz(&[("joints", floats("(40, 22, 3)", &noise))]),
         &["\"joints\"", "order of SMPL or SOMA", "bones that change"],
     );
-    check(&npz(&[("joints", floats("(2, 17, 3)", &[0.0; 102]))]), &["\"joints\"", "expected positions (frames", "[2, 17, 3]"]);
+    check(
+        &npz(&[("joints", floats("(2, 17, 3)", &[0.0; 102]))]),
+        &["\"joints\"", "expected positions (frames", "[2, 17, 3]"],
+    );
 }
 
 #[test]
