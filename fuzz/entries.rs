@@ -5,8 +5,8 @@
 // Each target uses one of them.
 #![allow(dead_code)]
 
-#[path = "follow.rs"]
-mod follow;
+#[path = "pipeline.rs"]
+mod pipeline;
 
 use gaitway_character::asset::Asset;
 use gaitway_formats::{
@@ -16,7 +16,7 @@ use gaitway_retarget::JointMapFile;
 use gaitway_scene::library::Library;
 use gaitway_scene::state::{from_link, to_link};
 
-pub use follow::follow;
+pub use pipeline::pipeline;
 
 /// A reader's name and its entry point.
 pub type Entry = (&'static str, fn(&[u8]));
@@ -36,7 +36,7 @@ pub const ENTRIES: [Entry; 14] = [
     ("map", map),
     ("link", link),
     ("hdr", hdr),
-    ("follow", follow),
+    ("pipeline", pipeline),
 ];
 
 /// A .glb, or a .gltf whose data is inside; also as if its images had not arrived.

@@ -123,20 +123,57 @@ fn an_archive_has_a_file_for_each_clip() {
     assert_eq!(map["gaitway_map"], 1);
 }
 
+/// Where joints are in the world, with their names.
+type Worlds = Vec<(String, Vec<f64>)>;
+
+fn worlds(file: &str, clip: &str, secs: &str) -> Worlds {
+    let pose = document(&["pose", file, "--clip", clip, "--time", secs, "--json"]);
+    let numbers = |node: &Value| node["world"].as_array().expect("a matrix").iter().filter_map(Value::as_f64).collect();
+    let nodes = pose["nodes"].as_array().expect("nodes").iter();
+    nodes.map(|node| (node["name"].as_str().unwrap_or_default().to_owned(), numbers(node))).collect()
+}
+
+/// Returns where a joint is above the ground: X and Z.
+fn place(worlds: &Worlds, joint: &str) -> [f64; 2] {
+    let (_, world) = worlds.iter().find(|(name, _)| name == joint).expect(joint);
+    [world[12], world[14]]
+}
+
+#[track_caller]
+fn check_near(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+    assert!(off < tolerance, "{off}: {found:?}, expected {expected:?}");
+}
+
 #[test]
 fn a_root_bone_carries_the_clips_that_travel() {
+    const CLIP: &str = "walk (2)";
+    const HIPS: &str = "mixamorig:Hips";
     let folder = TestFolder::new("root");
-    let (plain, out) = (folder.path("plain.glb"), folder.path("out.glb"));
-    assert!(run(&["export", "sample:pilot", "--out", &plain]).status.success());
-    let rooted = ["export", "sample:pilot", "--root-bone", "--in-place", "run,jump", "--out", &out];
-    assert!(run(&rooted).status.success());
-    let nodes = |clip: &str, file: &str| {
-        let pose = document(&["pose", file, "--clip", clip, "--time", "0.4", "--json"]);
-        pose["nodes"].as_array().expect("nodes").clone()
+    let (walk, out) = (folder.path("walk.bvh"), folder.path("out.glb"));
+    let exported = |options: &[&str]| {
+        let call = ["export", "sample:pilot", "--motion", &walk, "--clips", CLIP, "--out", &out];
+        let done = run(&[&call[..], options].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        ["0", "0.8"].map(|secs| worlds(&out, CLIP, secs))
     };
-    let (before, after) = (nodes("wave", &plain), nodes("wave", &out));
-    assert_eq!(after.len(), before.len() + 1);
-    assert_eq!(after[before.len()]["name"], "root");
+    let (plain, rooted) = (exported(&[]), exported(&["--root-bone"]));
+    let in_place = exported(&["--root-bone", "--in-place", CLIP]);
+    for ((before, after), stays) in plain.iter().zip(&rooted).zip(&in_place) {
+        assert_eq!(after.len(), before.len() + 1);
+        assert_eq!(after[before.len()].0, "root");
+        for ((name, expected), (same, found)) in before.iter().zip(after) {
+            assert_eq!(name, same);
+            check_near(found, expected, 2e-3);
+        }
+        check_near(&place(after, "root"), &place(after, HIPS), 2e-3);
+        check_near(&place(stays, "root"), &[0.0; 2], 1e-9);
+        check_near(&place(stays, HIPS), &[0.0; 2], 2e-3);
+    }
+    let [start, end] = plain.each_ref().map(|worlds| place(worlds, HIPS));
+    let travel = (end[0] - start[0]).hypot(end[1] - start[1]);
+    assert!(travel > 0.5, "the walk goes {travel} m");
     check_fails(&["export", "sample:pilot", "--in-place", "run", "--out", &out], 2, "--root-bone");
     check_fails(&["export", "sample:pilot", "--root-bone", "--in-place", "fly", "--out", &out], 1, "--in-place");
 }

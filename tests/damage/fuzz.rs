@@ -22,7 +22,7 @@ mod entries;
 
 /// Damaged files for each reader by default, and for what follows reading, which takes longer.
 const CASES: usize = 1000;
-const FOLLOWED_CASES: usize = 150;
+const PIPELINE_CASES: usize = 150;
 
 /// No input takes this long, even without optimization, or as much memory.
 const MAX_SECS: f64 = 10.0;
@@ -124,7 +124,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
         "meshopt" => meshopt(),
         "ktx2" => ktx2_inputs(),
         // All of them are motions, or stand still.
-        "follow" => models.into_iter().map(|(_, bytes)| [&[0; 4], &bytes[..]].concat()).collect(),
+        "pipeline" => models.into_iter().map(|(_, bytes)| [&[0; 4], &bytes[..]].concat()).collect(),
         "x" => x_files(),
         "npz" => vec![npz(&person(22)), stored(&person(52))],
         "exercise" => vec![EXERCISE.to_vec()],
@@ -155,7 +155,7 @@ fn run(entry: entries::Entry, is_over: impl Fn(usize) -> bool) -> usize {
         for _ in 0..=random.below(3) {
             input = if input.is_empty() { input } else { damage(&input, &mut random) };
         }
-        if name == "follow" {
+        if name == "pipeline" {
             choose(&mut input, &mut random);
         }
         let begun = Instant::now();
@@ -180,7 +180,7 @@ fn everything_survives_damaged_files() {
         // By default the same files on every machine.
         let cases = run(entry, |cases| match secs {
             Some(secs) => start.elapsed().as_secs_f64() >= secs,
-            None => cases == if entry.0 == "follow" { FOLLOWED_CASES } else { CASES },
+            None => cases == if entry.0 == "pipeline" { PIPELINE_CASES } else { CASES },
         });
         println!("{}: {cases} damaged files", entry.0);
         assert!(cases > 0);

@@ -216,6 +216,11 @@ pub(super) fn is_npz(bytes: &[u8]) -> bool {
     bytes.starts_with(ZIP) && name.is_some_and(|name| name.ends_with(b".npy"))
 }
 
+/// Returns whether a file is one NumPy array.
+pub(super) fn is_npy(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x93NUMPY")
+}
+
 pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }

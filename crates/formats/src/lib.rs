@@ -336,7 +336,7 @@ fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
     if bytes.starts_with(b"xof ") {
         return Some(Part::X);
     }
-    if file_set::is_npz(bytes) || bytes.starts_with(b"\x93NUMPY") {
+    if file_set::is_npz(bytes) || file_set::is_npy(bytes) {
         return Some(Part::Npz);
     }
     match extension(name).as_str() {

@@ -21,7 +21,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// Name of the package and of the page's module; of the format as well, if the part converts whole files.
+    /// Name of the package and of the page's module; also of a format, if the part converts whole files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Draco => "draco",

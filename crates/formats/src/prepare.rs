@@ -11,6 +11,7 @@ use gaitway_part::Answer;
 
 use super::encoding;
 use super::file_set::Conversion;
+use super::file_set::is_npy;
 use super::gltf::decode_names;
 use super::gltf::decoded::{self, Decoding};
 use super::part::Part;
@@ -70,7 +71,8 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if let Some(part) = whole_file_part(name, bytes) {
-            return preparation(part, input_of(part, bytes), Step::File(part.name()));
+            let format = if is_npy(bytes) { "npy" } else { part.name() };
+            return preparation(part, input_of(part, bytes), Step::File(format));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;

@@ -70,7 +70,7 @@ pub struct Retargeted {
     pub nowhere_to_extract: bool,
     /// The clip before its feet were planted and its contacts kept, if either was.
     pub unplanted: Option<Clip>,
-    /// What planting did; `None` if feet aren't planted, or the map has no whole leg.
+    /// What planting did; `None` if feet aren't planted, the map has no whole leg, or the clip is too long.
     pub planting: Option<Planting>,
 }
 
@@ -111,12 +111,12 @@ fn bake_body<'a>(
 }
 
 /// Brings knees to the ground, leans the trunk, then moves hands to where they rest and limbs out of the body; `None` if there is
-/// nothing to do.
+/// nothing to do, or the clip is too long.
 fn bake_kept(transfer: &Transfer, bodies: &Bodies, planted: &Retargeted) -> Result<Option<Retargeted>, RetargetError> {
     let rebuilt = |channels: Option<Vec<NewChannel>>| {
         channels.map(|channels| build(transfer, reattached(transfer, channels)?)).transpose()
     };
-    let mut scene = Scene::new(transfer, bodies, &planted.clip);
+    let Some(mut scene) = Scene::new(transfer, bodies, &planted.clip) else { return Ok(None) };
     let mut kept: Option<Retargeted> = None;
     for corrected in [grounded_knees, leaning_trunk] {
         let Retargeted { clip, resampled, .. } = kept.as_ref().unwrap_or(planted);

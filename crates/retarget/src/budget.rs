@@ -8,6 +8,9 @@ use crate::map::Pair;
 
 /// Steps of a measurement times joints of the skeleton: 2 hours at 60 a second for 75 joints.
 const MAX_MEASURED: usize = 1 << 25;
+/// Poses of the target that are held all at once while feet are planted or contacts kept, times joints: 32 minutes of 75 joints at 30
+/// a second, which take about 600 MB.
+const MAX_CORRECTED: usize = 1 << 22;
 /// Steps at which bodies are compared, which are held all at once: 8 minutes.
 pub const MAX_TOUCH_STEPS: usize = 1 << 14;
 /// Chains of joints of one body times those of the other that are compared by their places: a thousand of each.
@@ -55,6 +58,11 @@ fn depths(skeleton: &Skeleton) -> Vec<usize> {
 pub fn measured_steps(steps: f32, joints: usize) -> usize {
     // The conversion saturates.
     (steps as usize).min(MAX_MEASURED / joints.max(1))
+}
+
+/// Returns at how many times a clip of a skeleton of this many joints may be corrected.
+pub fn corrected_poses(joints: usize) -> usize {
+    MAX_CORRECTED / joints.max(1)
 }
 
 /// Returns whether so many chains of joints of two bodies may be compared, each with each.
@@ -105,6 +113,7 @@ mod tests {
         assert_eq!([parts_between(40, 600), parts_between(1 << 14, 600), parts_between(1 << 22, 600)], [600, 2, 1]);
         assert_eq!([added_poses(64, 2), added_poses(64, 5000), added_poses(0, usize::MAX)], [1 << 12, 20_000, 2 << 20]);
         assert_eq!([added_times(2), added_times(10_000), added_times(usize::MAX)], [1 << 14, 40_000, 1 << 20]);
+        assert_eq!([corrected_poses(75), corrected_poses(0), corrected_poses(usize::MAX)], [55_924, 1 << 22, 0]);
         assert_eq!([held_poses(65), held_poses(0), held_poses(usize::MAX)], [193_583, 12 << 20, 0]);
         assert_eq!(
             [affordable_rounds(10, 2.5), affordable_rounds(1 << 20, 1e30), affordable_rounds(0, 0.0)],

@@ -344,9 +344,10 @@ impl Session {
 
     fn share(&mut self, link: &Link) {
         let link = self.with_missing(link);
-        // Others lack the files that are missing here, too.
-        let files = self.held.local_files(&link).chain(link.files_to_bring());
-        let files = files.map(|file| self.held.described(file)).collect();
+        let local = self.held.local_files(&link).map(|file| self.held.described(file));
+        // Others need them, too, although what they are sent looks complete here.
+        let missing = link.files_to_bring().map(|file| format!("{}, missing here", self.held.described(file)));
+        let files = local.chain(missing).collect();
         let embedded = self.held.shareable(&link.embedded());
         self.effects.push(Effect::Share { link: self.held.shareable(&link), embedded, files });
     }

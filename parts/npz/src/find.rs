@@ -31,9 +31,11 @@ const ROTATIONS: [&str; 10] = [
 const POSITIONS: [&str; 7] =
     ["posed_joints", "keypoints3d", "joints", "joints3d", "positions", "joint_positions", "motion"];
 /// Numbers of joints, in the order that messages list them.
-const JOINTS: [usize; 6] = [SMPL[0], SMPL[1], SMPL[2], SMPL[3], SOMA[0], SOMA[1]];
+const JOINTS: [usize; 6] = [SMPL[0], SMPL[1], SOMA[0], SMPL[2], SMPL[3], SOMA[1]];
 /// Numbers that a rotation may have.
 const ROTATION_NUMBERS: [usize; 4] = [3, 4, 6, 9];
+const WANTED_ROTATIONS: Wanted = Wanted { joints: &JOINTS, numbers: &ROTATION_NUMBERS };
+const WANTED_POSITIONS: Wanted = Wanted { joints: &JOINTS, numbers: &[3] };
 
 /// Positions whose bones change or differ by more than this share aren't those of a body.
 const MAX_DEVIATION: f64 = 0.25;
@@ -43,8 +45,6 @@ const MAX_BONE_ERROR: f64 = 0.005;
 const MIN_BEND: f64 = 0.05;
 /// Minimum sum of the lengths of all bones, in metres.
 const MIN_BODY_LENGTH: f64 = 0.1;
-/// Maximum number of frames in which bones are measured.
-const MAX_LOOKS: usize = 4096;
 
 /// What a file holds.
 pub enum Found {
@@ -61,8 +61,9 @@ pub fn find(archive: &Archive, warnings: &mut Warnings) -> Result<Found, String>
     for name in POSITIONS {
         if let Some(array) = archive.find(&[name])? {
             let (label, shape) = (array.label.clone(), format!("{:?}", array.shape));
-            let wanted = Wanted { joints: &JOINTS, numbers: &[3] };
-            let Some(grid) = positions(array)? else { return Err(unexpected(&label, &wanted.expected(), &shape)) };
+            let Some(grid) = positions(array)? else {
+                return Err(unexpected(&label, &WANTED_POSITIONS.expected(), &shape));
+            };
             grid.check()?;
             let deviation = body_deviation(&grid);
             if deviation > MAX_DEVIATION {
@@ -82,11 +83,10 @@ fn by_contents(archive: &Archive, warnings: &mut Warnings) -> Result<Found, Stri
         Rotations(Rotations),
         Positions(Grid),
     }
-    let wanted = Wanted { joints: &JOINTS, numbers: &ROTATION_NUMBERS };
-    let fits = |shape: &[usize]| !wanted.layouts(shape).is_empty();
+    let fits = |shape: &[usize]| !WANTED_ROTATIONS.layouts(shape).is_empty();
     let found = archive.find_fitting(&fits, &|array| {
         let is_body = |grid: &Grid| grid.check().is_ok() && body_deviation(grid) <= MAX_DEVIATION;
-        let could_be_positions = !Wanted { joints: &JOINTS, numbers: &[3] }.layouts(&array.shape).is_empty();
+        let could_be_positions = !WANTED_POSITIONS.layouts(&array.shape).is_empty();
         let shape = array.shape.clone();
         let array = if could_be_positions {
             match positions(array)? {
@@ -98,7 +98,7 @@ fn by_contents(archive: &Archive, warnings: &mut Warnings) -> Result<Found, Stri
             array
         };
         // An archive may hold any other numbers as well.
-        match Rotations::of(array, wanted) {
+        match Rotations::of(array, WANTED_ROTATIONS) {
             Err(_) if !archive.is_npy() => Ok(None),
             rotations => Ok(rotations?.map(Content::Rotations)),
         }
@@ -107,7 +107,8 @@ fn by_contents(archive: &Archive, warnings: &mut Warnings) -> Result<Found, Stri
         Some(Content::Positions(grid)) => Ok(Found::Positions(grid)),
         Some(Content::Rotations(all)) => rotations(archive, vec![all], warnings),
         None if archive.is_npy() => {
-            let expected = format!("{} or positions (3)", wanted.expected());
+            let expected =
+                format!("{} or rotations (× {})", WANTED_POSITIONS.expected(), WANTED_ROTATIONS.expected_numbers());
             Err(unexpected(LONE, &expected, &format!("{:?}", archive.lone_shape())))
         }
         None => Err(format!(
@@ -124,7 +125,7 @@ fn body_deviation(grid: &Grid) -> f64 {
 }
 
 fn positions(array: Array) -> Result<Option<Grid>, String> {
-    Grid::of(array, Wanted { joints: &JOINTS, numbers: &[3] }, &body_deviation)
+    Grid::of(array, WANTED_POSITIONS, &body_deviation)
 }
 
 /// Finds the rotations by name, which some tools divide into several arrays.
@@ -286,7 +287,7 @@ fn bend(skeleton: &Skeleton, bodies: &[Body], frames: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for body in bodies {
         for &(joint, axis) in &skeleton.hinges {
-            for frame in (0..frames).step_by(frames.div_ceil(MAX_LOOKS)) {
+            for frame in (0..frames).step_by(frames.div_ceil(solve::MAX_FRAMES)) {
                 sum += body.rotations[joint * frames + frame].to_scaled_axis().dot(axis);
                 count += 1;
             }
@@ -309,10 +310,7 @@ fn bones(grid: &Grid, skeleton: &Skeleton, bodies: &[Body]) -> Option<Bones> {
     let count = skeleton.joints.len();
     let mut sums = vec![(DVec3::ZERO, 0.0); count];
     let mut looks = 0.0;
-    for (sample, frame, first) in grid.places(MAX_LOOKS * grid.joints()) {
-        if first != 0 {
-            continue;
-        }
+    for (sample, frame) in grid.moments(solve::MAX_FRAMES) {
         looks += 1.0;
         let mut worlds: Vec<DQuat> = Vec::with_capacity(count);
         for (index, joint) in skeleton.joints.iter().enumerate() {

@@ -6,9 +6,8 @@ use crate::array::Array;
 
 /// Maximum number of people or samples in a file: each is a clip.
 const MAX_SAMPLES: usize = 256;
-/// Maximum number of neighbours that are compared to find time.
-const MAX_LOOKS: usize = 4096;
-
+/// Maximum number of places that are looked at to find out how an array is to be read.
+pub const MAX_LOOKS: usize = 8192;
 /// Maximum number of axes, those of length 1 included.
 const MAX_AXES: usize = 8;
 
@@ -93,27 +92,23 @@ impl Wanted<'_> {
 
     /// Describes what is expected, for messages.
     pub fn expected(self) -> String {
-        let or = |counts: &[usize]| match counts.split_last() {
-            Some((last, [])) => last.to_string(),
-            Some((last, others)) => {
-                let others: Vec<String> = others.iter().map(usize::to_string).collect();
-                format!("{} or {last}", others.join(", "))
-            }
-            None => String::new(),
-        };
-        let numbers: Vec<&str> = self
-            .numbers
-            .iter()
-            .map(|numbers| match numbers {
-                3 if self.numbers.len() == 1 => "3 (coordinates)",
-                3 => "3 (axis times angle)",
-                4 => "4 (quaternions)",
-                6 => "6 (two axes)",
-                _ => "3 × 3 (matrices)",
-            })
-            .collect();
-        let joints = if self.joints == [1] { "1 joint".to_owned() } else { format!("{} joints", or(self.joints)) };
-        format!("frames × {joints} × {} numbers", numbers.join(" or "))
+        let what = if self.numbers == [3] { "positions" } else { "rotations" };
+        let plural = if self.joints == [1] { "" } else { "s" };
+        format!("{what} (frames × {} joint{plural} × {})", any_of(self.joints), self.expected_numbers())
+    }
+
+    /// Describes how many numbers a joint should have.
+    pub fn expected_numbers(self) -> String {
+        any_of(self.numbers).replace('9', "3 × 3")
+    }
+}
+
+/// `22, 24 or 52`
+fn any_of(counts: &[usize]) -> String {
+    let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+    match counts.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => counts.concat(),
     }
 }
 
@@ -202,10 +197,19 @@ impl Grid {
 
     /// Returns about `count` places (sample, frame, joint): all joints in frames that are spread over all of them.
     pub fn places(&self, count: usize) -> impl Iterator<Item = (usize, usize, usize)> + use<> {
-        let (frames, joints) = (self.frames(), self.joints());
-        let all = self.samples() * frames;
-        let step = (all * joints).div_ceil(count).max(1);
-        (0..all).step_by(step).flat_map(move |at| (0..joints).map(move |joint| (at / frames, at % frames, joint)))
+        let joints = self.joints();
+        let moments = self.every((self.samples() * self.frames() * joints).div_ceil(count));
+        moments.flat_map(move |(sample, frame)| (0..joints).map(move |joint| (sample, frame, joint)))
+    }
+
+    /// Returns about `count` moments (sample, frame) that are spread over all of them.
+    pub fn moments(&self, count: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        self.every((self.samples() * self.frames()).div_ceil(count))
+    }
+
+    fn every(&self, step: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let frames = self.frames();
+        (0..self.samples() * frames).step_by(step.max(1)).map(move |at| (at / frames, at % frames))
     }
 
     /// Returns how much values differ from one frame to the next, on average.
@@ -261,5 +265,6 @@ impl Grid {
 
 /// Returns a message about an array that isn't what was expected.
 pub fn unexpected(label: &str, expected: &str, found: &str) -> String {
-    format!("{label}: expected {expected}, found {found}. Save the motion again with the arrays of AMASS.")
+    let hint = "Save the motion as the joints' positions, or as the arrays of AMASS.";
+    format!("{label}: expected {expected}, found {found}. {hint}")
 }

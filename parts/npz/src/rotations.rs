@@ -3,13 +3,11 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::array::Array;
-use crate::layout::{Grid, Wanted, unexpected};
+use crate::layout::{Grid, MAX_LOOKS, Wanted, unexpected};
 
 /// Maximum difference between a rotation matrix times its transpose and the identity, or the squares of quaternions and axes and 1.
 /// 16-bit floats and the models that predict such numbers aren't exact.
 const TOLERANCE: f64 = 0.1;
-/// Maximum number of rotations that are sampled to find out how they are stored.
-const MAX_LOOKS: usize = 8192;
 
 /// How a rotation is stored.
 #[derive(Clone, Copy, PartialEq, Debug)]

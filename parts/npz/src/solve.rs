@@ -12,11 +12,11 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::layout::Grid;
+use crate::layout::{Grid, MAX_LOOKS};
 use crate::skeleton::Skeleton;
 
 /// Maximum number of frames in which bones are measured.
-const MAX_LOOKS: usize = 4096;
+pub const MAX_FRAMES: usize = 4096;
 /// How often the bones at joints with several children are aligned to find their directions at rest.
 const PASSES: usize = 4;
 /// Maximum number of steps in which a rotation converges.
@@ -79,10 +79,9 @@ fn bone(grid: &Grid, skeleton: &Skeleton, (sample, frame, joint): (usize, usize,
 /// Returns how much positions differ from those of a body: the relative changes of the lengths of bones, and the relative
 /// differences of left and right ones.
 pub fn deviation(grid: &Grid, skeleton: &Skeleton) -> f64 {
-    const SAMPLES: usize = 8192;
     let count = skeleton.joints.len();
     let mut sums = vec![[0.0; 3]; count];
-    for place in grid.places(SAMPLES) {
+    for place in grid.places(MAX_LOOKS) {
         let length = bone(grid, skeleton, place).length();
         let sum = &mut sums[place.2];
         *sum = [sum[0] + 1.0, sum[1] + length, sum[2] + length * length];
@@ -103,14 +102,10 @@ pub fn deviation(grid: &Grid, skeleton: &Skeleton) -> f64 {
 
 /// Finds the lengths of bones, and their directions relative to each other at joints with several children.
 pub fn measure(grid: &Grid, skeleton: &mut Skeleton) {
-    let places: Vec<(usize, usize)> = grid
-        .places(MAX_LOOKS * grid.joints())
-        .filter(|place| place.2 == 0)
-        .map(|(sample, frame, _)| (sample, frame))
-        .collect();
+    let moments: Vec<(usize, usize)> = grid.moments(MAX_FRAMES).collect();
     for joint in 1..skeleton.joints.len() {
         let mut lengths: Vec<f64> =
-            places.iter().map(|&(sample, frame)| bone(grid, skeleton, (sample, frame, joint)).length()).collect();
+            moments.iter().map(|&(sample, frame)| bone(grid, skeleton, (sample, frame, joint)).length()).collect();
         let middle = lengths.len() / 2;
         let length = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
         skeleton.joints[joint].offset = length * skeleton.joints[joint].offset.normalize_or_zero();
@@ -122,7 +117,7 @@ pub fn measure(grid: &Grid, skeleton: &mut Skeleton) {
         }
         for _ in 0..PASSES {
             let mut sums = vec![DVec3::ZERO; children.len()];
-            for &(sample, frame) in &places {
+            for &(sample, frame) in &moments {
                 let pairs = pairs(grid, skeleton, &children, sample, frame);
                 let Some(rotation) = aligned(&pairs) else { continue };
                 for (sum, (_, now)) in sums.iter_mut().zip(&pairs) {

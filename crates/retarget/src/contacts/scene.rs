@@ -8,7 +8,7 @@ use super::body::BodyMotion;
 use super::ground::Ground;
 use super::touch::Touches;
 use crate::pose::{Scratch, WorldPose};
-use crate::times::dense_times;
+use crate::times::corrected_times;
 use crate::transfer::{RemovedTravel, Transfer, removed_travel};
 
 /// The source over time, and what it touches.
@@ -53,10 +53,11 @@ pub struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub fn new(transfer: &'a Transfer<'a>, bodies: &'a Bodies, clip: &Clip) -> Self {
-        let source = SourceScene::new(transfer, bodies, dense_times(transfer.tracks.clip));
+    /// Returns `None` if the clip is too long.
+    pub fn new(transfer: &'a Transfer<'a>, bodies: &'a Bodies, clip: &Clip) -> Option<Self> {
+        let source = SourceScene::new(transfer, bodies, corrected_times(transfer)?);
         let (poses, target) = (Vec::new(), BodyMotion::default());
-        Self { transfer, bodies, source, poses, target, ground: None }.playing(clip)
+        Some(Self { transfer, bodies, source, poses, target, ground: None }.playing(clip))
     }
 
     /// The same with another clip of the target.

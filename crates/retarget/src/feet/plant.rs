@@ -21,7 +21,7 @@ use super::width::spreads;
 use crate::keys::channel::NewChannel;
 use crate::limit::limit_turns;
 use crate::pose::{Scratch, WorldPose, moved};
-use crate::times::{dense_times, near};
+use crate::times::{corrected_times, near};
 use crate::transfer::{Transfer, removed_travel};
 use crate::two_bones::limb_rotations;
 
@@ -67,14 +67,14 @@ impl fmt::Display for Planting {
     }
 }
 
-/// Returns all channels of the clip with planted feet, or None if no leg is mapped. `resampled` lists the joints whose keys in
+/// Returns all channels of the clip with planted feet, or None if no leg is mapped, or the clip is too long. `resampled` lists the joints whose keys in
 /// `clip` are not the source's own.
 pub fn planted_channels(
     transfer: &Transfer,
     clip: &Clip,
     resampled: &[JointIndex],
 ) -> Option<(Vec<NewChannel>, Planting)> {
-    let times = dense_times(transfer.tracks.clip);
+    let times = corrected_times(transfer)?;
     let mut scratch = Scratch::default();
     let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
     let soles = Soles::new(transfer);

@@ -15,9 +15,10 @@ use crate::budget::{MAX_TOUCH_STEPS, measured_steps};
 use crate::contacts::{Bodies, BodyMotion, SourceScene, TouchFigures};
 use crate::feet::Soles;
 use crate::keys::resample::union;
-use crate::map::Pair;
+use crate::map::{Contacts, Feet, Pair, ResolvedMap};
 use crate::math::{angle_between, degrees_between};
 use crate::pose::{PartialPose, WorldPose};
+use crate::times::corrected_times;
 use crate::transfer::{Transfer, lowest_leg_joint, removed_travel};
 
 /// Quality figures; `None` for what cannot be measured.
@@ -80,6 +81,9 @@ pub struct Figures {
     pub idle_chains: Vec<String>,
     /// Share of a chain's length that follows the motion, on average over the chains of joints that both bodies have.
     pub coverage: Option<f64>,
+    /// The map asks for planted feet or contacts, but the clip has too many keys for the poses at all of them to be held.
+    #[serde(skip)]
+    pub is_too_long: bool,
 }
 
 /// Lines whose directions show how hips, chest, feet and hands are turned.
@@ -196,6 +200,7 @@ pub fn measure(
         skin_tear_max_joint: moments.worst_tear.map(|(_, joint)| transfer.target_skeleton.label(joint)),
         idle_chains: moments.idle_chains,
         coverage: moments.coverage,
+        is_too_long: wants_corrections(transfer.map) && corrected_times(transfer).is_none(),
     };
     (figures, tracks)
 }
@@ -276,6 +281,10 @@ fn add_direction_errors(
             errors.add(degrees_between(source, target));
         }
     }
+}
+
+fn wants_corrections(map: &ResolvedMap) -> bool {
+    map.feet == Feet::Plant || map.contacts == Contacts::Keep
 }
 
 /// Measures contacts of the body on the clip, at even steps; nothing if the target has no mesh.

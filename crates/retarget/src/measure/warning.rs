@@ -28,6 +28,8 @@ pub enum FitWarning {
         /// See [`Figures::facing_path_error_degrees_mean`].
         degrees: f64,
     },
+    /// Feet aren't planted and contacts aren't kept.
+    TooLong,
 }
 
 impl FitWarning {
@@ -38,7 +40,8 @@ impl FitWarning {
         let idle = figures.idle_chains.iter().map(|chain| Self::IdleChain { chain: chain.clone() });
         let torn = figures.skin_tear_max.filter(|&stretch| stretch > MAX_TEAR).zip(figures.skin_tear_max_joint.clone());
         let torn = torn.map(|(stretch, joint)| Self::TornSkin { joint, stretch });
-        idle.chain(torn).chain(away.map(|degrees| Self::FacesAway { degrees })).collect()
+        let too_long = figures.is_too_long.then_some(Self::TooLong);
+        idle.chain(torn).chain(away.map(|degrees| Self::FacesAway { degrees })).chain(too_long).collect()
     }
 
     /// The kind of fault, for scripts.
@@ -47,6 +50,7 @@ impl FitWarning {
             Self::IdleChain { .. } => "idle-chain",
             Self::TornSkin { .. } => "torn-skin",
             Self::FacesAway { .. } => "faces-away",
+            Self::TooLong => "too-long",
         }
     }
 }
@@ -66,6 +70,9 @@ impl fmt::Display for FitWarning {
                 f,
                 "the body faces {degrees:.0}° away from where its source faces along its path; check left and right in the map, \
                  and the rest poses"
+            ),
+            Self::TooLong => f.write_str(
+                "the clip is too long for its feet to be planted or its contacts to be kept; cut it into shorter ones",
             ),
         }
     }

@@ -72,7 +72,7 @@ pub enum Reason {
     File,
     /// Both skeletons give it the same name.
     SameName,
-    /// A known vocabulary; holds its name.
+    /// It is called as in a known vocabulary, whose name this is. Others have names in common with it.
     Vocabulary(&'static str),
     /// Words in its name.
     Words,
@@ -82,13 +82,13 @@ pub enum Reason {
     Geometry,
 }
 
-/// A text for the UI: “Mixamo name”, “position in space”.
+/// A text for the UI: “named as in Mixamo”, “position in space”.
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File => f.write_str("the file says so"),
             Self::SameName => f.write_str("same name"),
-            Self::Vocabulary(vocabulary) => write!(f, "{vocabulary} name"),
+            Self::Vocabulary(vocabulary) => write!(f, "named as in {vocabulary}"),
             Self::Words => f.write_str("words in its name"),
             Self::Hierarchy => f.write_str("position in the hierarchy"),
             Self::Geometry => f.write_str("position in space"),

@@ -6,8 +6,9 @@ use std::time::Instant;
 use gaitway_character::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Property, Transform};
 use gaitway_character::asset::{Asset, AssetParts, Humanoid, Slot};
 use gaitway_retarget::{
-    Anatomy, Body, ClipChanges, ClipLayer, ClipOverLayers, Contacts, Feet, Keep, Layer, LayerClip, Pair, ResolvedMap,
-    RetargetError, Retargeting, StackedLayer, bake_layers, bake_stack, baking, change_clip, layer_clips, recognize,
+    Anatomy, Body, ClipChanges, ClipLayer, ClipOverLayers, Contacts, Feet, FitWarning, Keep, Layer, LayerClip, Pair,
+    ResolvedMap, RetargetError, Retargeting, StackedLayer, bake_layers, bake_stack, baking, change_clip, layer_clips,
+    recognize,
 };
 use glam::{Quat, Vec3};
 
@@ -58,6 +59,33 @@ fn ages_and_light_years_are_retargeted_and_measured() {
         let figures = pair.figures(&done);
         assert!(figures.coverage.is_some(), "{time_factor} {factor} {offset}");
         assert!(done.keys_out < 1 << 20, "{time_factor} {factor} {offset}: {} keys", done.keys_out);
+    }
+}
+
+/// Planting and contacts hold poses of the model all along the motion, however few joints move.
+#[test]
+fn clips_of_too_many_poses_are_retargeted_without_corrections() {
+    let Figure { asset: bald, slots, t_pose } = with_boxes(&Rig::default(), 0.1);
+    let skeleton = &bald.skeleton;
+    let joint = |joint: JointIndex| Joint {
+        name: skeleton.name(joint).to_owned(),
+        parent: skeleton.parent(joint).map(JointIndex::get),
+        rest: skeleton.rest().local(joint),
+        morph_weights: Vec::new(),
+    };
+    let hair = chain(["hair"], Vec3::Y).into_iter().map(|hair| Joint { parent: Some(0), ..hair }).next().expect("one");
+    let joints = skeleton.joints().map(joint).chain(std::iter::repeat_n(hair, 4000)).collect();
+    let model = Figure { asset: asset(joints), slots, t_pose };
+    // A pose is looked at every thirtieth of a second.
+    for (time_factor, is_too_long) in [(10.0, false), (60.0, true)] {
+        let mut motion = with_boxes(&Rig::default(), 0.1);
+        motion.dance(3, 60.0, Interpolation::Linear);
+        motion.set_clip(stretched(&motion, time_factor, 1.0, 0.0));
+        let map = ResolvedMap { contacts: Contacts::Keep, feet: Feet::Plant, ..map(&model, &motion) };
+        let pair = Retargeting::new(body(&model), body(&motion), 0, &map).expect("a map with pairs");
+        let done = pair.bake().expect("a clip");
+        assert_eq!((done.planting.is_none(), done.unplanted.is_none()), (is_too_long, is_too_long), "{time_factor}");
+        assert_eq!(FitWarning::of(&pair.figures(&done)).contains(&FitWarning::TooLong), is_too_long, "{time_factor}");
     }
 }
 

@@ -107,7 +107,12 @@ fn sharing_names_what_is_missing_here() {
     let Some(Effect::Share { link, embedded, files }) = world.told.last() else { panic!("{:?}", world.told) };
     assert_eq!(link.text(), LACKS_MOTION);
     assert_eq!(embedded.text(), format!("{LACKS_MOTION}&embed=1"));
-    assert_eq!(files, &["walk.bvh (motion)"]);
+    assert_eq!(files, &["walk.bvh (motion), missing here"]);
+    // It is not asked for again, but the link still has it.
+    world.tell(Event::Later);
+    world.tell(Event::Share { link: world.view().link() });
+    let Some(Effect::Share { link, files, .. }) = world.told.last() else { panic!("{:?}", world.told) };
+    assert_eq!((link.text(), &files[..]), (LACKS_MOTION, &["walk.bvh (motion), missing here".to_owned()][..]));
 }
 
 /// It may have been the wrong file.

@@ -34,7 +34,7 @@ impl Choices {
 }
 
 /// Takes four bytes of choices and the file of a motion, which may be its own model.
-pub fn follow(bytes: &[u8]) {
+pub fn pipeline(bytes: &[u8]) {
     let Some((choices, file)) = bytes.split_first_chunk::<CHOICES>() else { return };
     let mut choices = Choices(u32::from_le_bytes(*choices));
     let mut files = FileSet::default();
