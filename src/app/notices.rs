@@ -31,7 +31,7 @@ impl App {
         const SECS_PER_BYTE: f64 = 0.03;
         let secs = SECS + SECS_PER_BYTE * text.len() as f64 + if undoable { Toast::UNDOABLE_SECS } else { 0.0 };
         let until_secs = self.context.input(|input| input.time) + secs;
-        self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
+        self.panels.messages.toast = Some(Toast { text, until_secs, undoable, other: None });
         self.notice_steps = self.editor.undo_steps();
         self.announcement = None;
         self.has_new_message = true;
@@ -75,6 +75,12 @@ impl App {
                 Event::MotionsRefused { lacks_skeleton } => {
                     let messages = &mut self.panels.messages;
                     (messages.motion_refused, messages.model_lacks_skeleton) = (true, lacks_skeleton);
+                }
+                Event::OtherReading(other) => {
+                    if let Some(toast) = &mut self.panels.messages.toast {
+                        toast.other = Some(other);
+                        toast.until_secs += Toast::CHOICE_SECS;
+                    }
                 }
                 Event::MapStarted => {
                     let has_focus = self.context.memory(|memory| memory.focused().is_some());

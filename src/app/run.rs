@@ -284,6 +284,10 @@ impl App {
                 self.editor.map_refused_manually();
                 Ok(())
             }
+            UiAction::ReadOtherwise => {
+                self.editor.read_otherwise();
+                Ok(())
+            }
             UiAction::RemoveMotion(motion) => {
                 self.editor.remove_motion(&motion);
                 Ok(())

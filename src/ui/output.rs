@@ -40,6 +40,8 @@ pub enum UiAction {
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
+    /// Take the files that were just opened as the notice about them offers.
+    ReadOtherwise,
     /// Save a self-contained page that shows the scene.
     SavePage,
     /// Record one loop of the clip.

@@ -342,7 +342,7 @@ fn every_control_of_a_phone_is_large_enough_for_fingers() {
         harness.state_mut().panels.joint_card.is_posing = true;
         harness.state_mut().panels.messages.error = Some("broken.glb: it is not a GLB file".to_owned());
         let text = "Opened.".to_owned();
-        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
+        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true, other: None });
         check(&mut harness, "messages");
     }
 }

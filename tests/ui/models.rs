@@ -69,7 +69,7 @@ fn an_error_takes_the_place_of_a_toast_that_goes() {
     let place = |harness: &Harness<'_, Bench>| harness.get_by_label(text::DISMISS_ERROR).rect();
     let before = place(&harness);
     harness.state_mut().panels.messages.toast =
-        Some(Toast { text: "Opened Fox.".to_owned(), until_secs: 1e9, undoable: false });
+        Some(Toast { text: "Opened Fox.".to_owned(), until_secs: 1e9, undoable: false, other: None });
     // A toast waits for its end.
     harness.step();
     harness.step();
@@ -85,7 +85,7 @@ fn what_was_opened_has_a_button_to_undo_it() {
     for size in [WIDE, NARROW, [320.0, 480.0]] {
         let mut harness = sample_bench(size);
         let text = "Opened a-rather-long-name-of-a-character.glb. 3 others are in the list of models.".to_owned();
-        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
+        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true, other: None });
         harness.step();
         harness.step();
         harness.step();

@@ -1,5 +1,7 @@
 //! The viewport, the layout around it, help and messages.
 
+use gaitway_scene::editor::Reading;
+
 use super::megabytes;
 
 // Viewport and layout
@@ -61,6 +63,14 @@ pub const MAP_REFUSED_MANUALLY: &str = "Map joints manually";
 pub const UNDO: &str = "Undo";
 /// Button that closes a list, or ends a load or a recording.
 pub const CANCEL: &str = "Cancel";
+
+/// Returns the text of the button on a toast about files that may have been meant otherwise.
+pub fn other_reading(other: Reading) -> &'static str {
+    match other {
+        Reading::Models => "Open as models",
+        Reading::Both => "Keep both",
+    }
+}
 
 /// Returns the label of the progress bar while a file loads.
 pub fn opening(name: &str) -> String {

@@ -1,9 +1,10 @@
 //! Progress, errors and toasts, in the lower left corner of the viewport: the character is in its middle.
 
 use egui::{Align, Align2, Area, Color32, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2};
+use gaitway_scene::editor::Reading;
 
 use super::panes::label_height;
-use crate::ui::icons::{Icon, icon_button};
+use crate::ui::icons::{ICON_SIZE, Icon, icon_button, icon_size};
 use crate::ui::{Output, Shown, UiAction, controls, style, text};
 
 /// What the app tells or asks the user.
@@ -45,11 +46,15 @@ pub struct Toast {
     pub until_secs: f64,
     /// It has a button that undoes what it reports.
     pub undoable: bool,
+    /// What the user may have meant instead, which has a button.
+    pub other: Option<Reading>,
 }
 
 impl Toast {
     /// Extra time to reach the Undo button.
     pub(crate) const UNDOABLE_SECS: f64 = 3.5;
+    /// Extra time to choose what was meant.
+    pub(crate) const CHOICE_SECS: f64 = 6.0;
 }
 
 impl Messages {
@@ -189,26 +194,33 @@ impl Messages {
     }
 
     fn show_toast(&mut self, ui: &mut Ui, width: f32, out: &mut Output) {
-        const BUTTON_WIDTH: f32 = 70.0;
         let Some(toast) = &self.toast else { return };
         let line = style::palette(ui).line;
         let text = toast.text.lines().map(text::sentence).collect::<Vec<_>>().join("\n");
-        if !toast.undoable {
-            notice(ui, line, |ui| ui.label(text));
-            return;
-        }
+        let undo = toast.undoable.then_some((text::UNDO, UiAction::Undo));
+        let other = toast.other.map(|other| (text::other_reading(other), UiAction::ReadOtherwise));
+        let offers = [undo, other].into_iter().flatten();
+        let buttons_width: f32 = offers.clone().map(|(label, _)| controls::button_width(ui, label) + 8.0).sum();
+        let mut chosen = None;
         let row = |ui: &mut Ui| {
             ui.scope(|ui| {
-                ui.set_max_width(width - 32.0 - BUTTON_WIDTH);
+                ui.set_max_width(width - 32.0 - buttons_width - icon_size(ui, ICON_SIZE).x - 8.0);
                 ui.add(egui::Label::new(text).wrap());
             });
-            let undo = ui.button(text::UNDO);
-            if style::is_for_fingers(ui) { undo } else { undo.on_hover_text("Ctrl+Z") }.clicked()
+            for (label, action) in offers {
+                let button = ui.button(label);
+                let has_key = action == UiAction::Undo && !style::is_for_fingers(ui);
+                if if has_key { button.on_hover_text("Ctrl+Z") } else { button }.clicked() {
+                    chosen = Some(action);
+                }
+            }
+            icon_button(ui, Icon::Close, text::DISMISS_NOTICE).clicked()
         };
-        if notice(ui, line, |ui| ui.horizontal(row).inner) {
-            out.actions.push(UiAction::Undo);
+        let is_dismissed = notice(ui, line, |ui| ui.horizontal(row).inner);
+        if is_dismissed || chosen.is_some() {
             self.toast = None;
         }
+        out.actions.extend(chosen);
     }
 }
 

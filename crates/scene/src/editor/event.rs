@@ -1,5 +1,6 @@
 //! Events that a shell presents to the user.
 
+use super::Reading;
 use crate::state::Edited;
 
 /// Drained with [`super::Editor::take_events`].
@@ -28,6 +29,8 @@ pub enum Event {
         /// The model has no joints to map.
         lacks_skeleton: bool,
     },
+    /// The files of the notice before may have been meant otherwise, which [`super::Editor::read_otherwise`] does.
+    OtherReading(Reading),
     /// The user is about to edit a joint map.
     MapStarted,
     /// A step of the history was undone or redone: notices about other steps no longer apply.

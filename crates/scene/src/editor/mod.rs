@@ -13,7 +13,10 @@ mod in_file;
 mod maps;
 mod motions;
 mod names;
+mod new_version;
+mod one_character;
 mod open;
+mod other_reading;
 mod plan;
 mod reduced_motion;
 mod rooted;
@@ -32,6 +35,7 @@ pub use export::{AWAITS_IMAGES, Export, ExportedFile};
 pub use in_file::derived_clip;
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
+pub use other_reading::Reading;
 pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient, RootBone};
 pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
@@ -46,6 +50,7 @@ use crate::state::{
     looks_past, view_problems,
 };
 use open::Shelved;
+use other_reading::OtherReading;
 use transact::Change;
 
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
@@ -61,6 +66,7 @@ pub struct Editor {
     shelf: BTreeMap<ModelId, Shelved>,
     /// Motions that don't fit the model, until the user decides what to do with them.
     refused: Vec<Motion>,
+    other_reading: Option<OtherReading>,
     /// Name of the joint map's file while it is being opened.
     opened_map: Option<String>,
     /// What is known of a link while its view is being opened.
@@ -96,6 +102,7 @@ impl Editor {
             history: History::default(),
             shelf: BTreeMap::new(),
             refused: Vec::new(),
+            other_reading: None,
             opened_map: None,
             about_link: AboutLink::default(),
             has_private_map: false,

@@ -87,9 +87,7 @@ impl Editor {
     /// The message for the user if none of them fits the active model.
     pub fn borrow_from(&mut self, id: ModelId, admit: Admit<'_>) -> Result<(), String> {
         let Some(model) = self.library.get(id) else { return Ok(()) };
-        let mut motion = Motion::new(model.source.clone(), model.asset.clone());
-        (motion.origin, motion.is_own) = (model.origin.clone(), model.is_own);
-        motion.files = self.files_of(model).cloned();
+        let motion = Motion::of_model(model, self.files_of(model).cloned());
         let contents = Contents { motions: Some(vec![motion]), is_by_hand: true, ..Contents::default() };
         self.open(contents, None, admit)
     }
@@ -283,7 +281,7 @@ impl Editor {
     }
 
     /// Removes all motions but these.
-    fn keep_motions(&mut self, motions: Vec<Motion>) {
+    pub(super) fn keep_motions(&mut self, motions: Vec<Motion>) {
         if motions.is_empty() {
             self.state.character.retarget = RetargetEdits::default();
         }

@@ -10,8 +10,11 @@ use gaitway_character::asset::{Asset, Warning};
 
 use super::motions::{Playing, without_still};
 use super::names::is_obj;
+use super::other_reading::OtherReading;
 use super::transact::Change;
-use super::{AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
+use super::{
+    AboutLink, Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, one_character, short_name,
+};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion, MotionId};
 use crate::state::{
     CharacterView, ClipChoice, Command, Edits, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources,
@@ -53,6 +56,7 @@ struct Opened {
     evicted: Vec<String>,
     lacks_joints: bool,
     about_images: String,
+    about_view: Option<&'static str>,
     about_motions: Option<String>,
     about_feet: Option<&'static str>,
 }
@@ -64,8 +68,24 @@ impl Editor {
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
         let Contents {
-            models, motions, map, environment, is_map_private, is_by_hand, mut problems, about_link, ..
+            mut models,
+            mut motions,
+            map,
+            environment,
+            is_map_private,
+            is_by_hand,
+            mut problems,
+            about_link,
+            ..
         } = contents;
+        self.other_reading = None;
+        let mut taken = Vec::new();
+        if is_by_hand && view.is_none() {
+            (models, taken) = one_character::split(models, self.library.active());
+        }
+        if !taken.is_empty() {
+            motions.get_or_insert_default().extend(one_character::motions(&taken));
+        }
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
@@ -105,6 +125,14 @@ impl Editor {
         };
         self.opened_map = None;
         self.about_link = AboutLink::default();
+        if opened.is_ok() && !taken.is_empty() {
+            // Files that fill an empty stage aren't announced.
+            if !self.events.iter().any(|event| matches!(event, Event::Notice { .. })) {
+                let added = self.added_from(&one_character::motions(&taken));
+                added.into_iter().for_each(|text| self.notify(text));
+            }
+            self.offer(OtherReading::Models(taken));
+        }
         if opened.is_ok()
             && let Some(environment) = environment
         {
@@ -178,16 +206,20 @@ impl Editor {
         }
         self.library.show(id);
         let completed = self.close_incomplete(id);
-        let keeps_view = before.as_ref().is_some_and(|before| completed.contains(&before.loaded.model));
+        let older = if is_by_hand && !is_view { self.close_older_version(before.as_ref(), id) } else { None };
+        let completes = before.as_ref().is_some_and(|before| completed.contains(&before.loaded.model));
+        let keeps_view = completes || older.is_some();
         if !keeps_view {
             self.suits_follow = is_by_hand;
         }
         let (was_loaded, before) = (before.is_some(), self.close_placeholders(before));
+        let before = if is_by_hand { self.shelve_untouched_sample(before) } else { before };
         let has_step = before.is_some();
         self.remember(before);
         let evicted = self.evict();
         self.events.extend(is_view.then_some(Event::ViewOpened));
         self.events.push(Event::ModelOpened);
+        let about_view = older.and_then(|older| self.fit_view_to_version(older));
         let about_motions = if keeps_motions {
             self.state = self.view_of_opened_model(origin, keeps_motions, keeps_view);
             self.carry_motions_over(playing, motions, map, is_by_hand && !keeps_view)
@@ -197,8 +229,10 @@ impl Editor {
         };
         self.events.extend((borrows && self.retargeted_clip().is_some()).then_some(Event::MotionsAdded));
         let about_feet = if borrows && !has_map { self.suit_feet(count) } else { None };
-        let opened = Opened { name, is_new, others, evicted, lacks_joints, about_images, about_motions, about_feet };
+        let opened =
+            Opened { name, is_new, others, evicted, lacks_joints, about_images, about_view, about_motions, about_feet };
         self.announce(&opened, was_loaded && !is_view, has_step);
+        older.into_iter().for_each(|older| self.offer(OtherReading::Both(older)));
         Ok(())
     }
 
@@ -343,16 +377,33 @@ impl Editor {
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
     pub(super) fn remember(&mut self, before: Option<Snapshot>) {
         let Some(before) = before else { return };
+        self.shelve(&before);
+        self.history.opened(before.state, before.saved_motion, before.loaded);
+    }
+
+    fn shelve(&mut self, before: &Snapshot) {
         if before.loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&before.loaded.model)
         {
             shelved.last_view = Some(before.clone());
         }
-        self.history.opened(before.state, before.saved_motion, before.loaded);
+    }
+
+    /// Shelves the view of the sample that was there before the user did anything. To undo the user's first file would only bring that
+    /// back, so opening it is no step. Returns any other snapshot.
+    fn shelve_untouched_sample(&mut self, before: Option<Snapshot>) -> Option<Snapshot> {
+        let is_sample = |before: &Snapshot| {
+            self.library.get(before.loaded.model).is_some_and(|model| model.source.starts_with("sample:"))
+        };
+        if self.history.can_undo() || !before.as_ref().is_some_and(is_sample) {
+            return before;
+        }
+        before.iter().for_each(|before| self.shelve(before));
+        None
     }
 
     /// Adds a model to the library and activates it, or the same file's if it is already loaded. Returns whether it is new.
-    fn add(&mut self, opened: OpenedModel) -> (ModelId, bool) {
+    pub(super) fn add(&mut self, opened: OpenedModel) -> (ModelId, bool) {
         let OpenedModel { model, files } = opened;
         let is_same = |known: &&Model| {
             // Models not read from a file are identified by their asset; a sample is always the same.
@@ -372,7 +423,7 @@ impl Editor {
     }
 
     /// Evicts models to make room, with everything kept about them, those that the user has edited last; returns their names.
-    fn evict(&mut self) -> Vec<String> {
+    pub(super) fn evict(&mut self) -> Vec<String> {
         let is_edited = |id| {
             let view = self.shelf.get(&id).and_then(|shelved: &Shelved| shelved.last_view.as_ref());
             view.is_some_and(|view| {
@@ -591,7 +642,7 @@ impl Opened {
             text += " Open its .skel and .attach as well to add its joints.";
         }
         text += &self.about_images;
-        for sentence in self.about_motions.as_deref().into_iter().chain(self.about_feet) {
+        for sentence in self.about_view.into_iter().chain(self.about_motions.as_deref()).chain(self.about_feet) {
             text += &format!(" {sentence}");
         }
         text

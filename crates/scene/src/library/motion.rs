@@ -48,6 +48,12 @@ impl Motion {
         }
     }
 
+    /// A model's file, to borrow its clips.
+    pub fn of_model(model: &Model, files: Option<ModelFiles>) -> Self {
+        let motion = Self::new(model.source.clone(), model.asset.clone());
+        Self { origin: model.origin.clone(), is_own: model.is_own, files, ..motion }
+    }
+
     /// The file as a model without images, to show beside the target; built on first use.
     pub fn stage(&self) -> &Model {
         self.stage.get_or_init(|| {

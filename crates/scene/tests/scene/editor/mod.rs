@@ -8,6 +8,8 @@ mod identity;
 mod in_view;
 mod maps;
 mod motions;
+mod new_version;
+mod one_character;
 mod open;
 mod plan;
 mod privacy;

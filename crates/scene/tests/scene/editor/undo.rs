@@ -1,11 +1,12 @@
 //! Undo and the notices that offer it.
 
 use gaitway_retarget::Feet;
-use gaitway_scene::editor::{Editor, Event};
+use gaitway_scene::editor::{Contents, Editor, Event};
 use gaitway_scene::state::{Command, Edited, Hidden, Inspect, KeyLight, MapEdit, Show, UpAxis};
 
-use super::{any, editor, id_of, notices, open, open_motion};
+use super::{active, any, editor, id_of, notices, open, open_motion};
 use crate::by_place::motion_at;
+use crate::opened::contents;
 
 #[test]
 fn notices_say_how_to_go_back() {
@@ -106,4 +107,24 @@ fn a_panel_knows_whose_edit_undo_takes_back() {
     editor.redo();
     editor.apply(Command::SetShow(Show { grid: false, ..Show::default() }));
     assert_eq!(can(&editor), (false, false), "the last step is the grid's");
+}
+
+/// The sample that is there before the user opens anything.
+#[test]
+fn the_users_first_file_is_no_step() {
+    let own = || Contents { is_by_hand: true, ..contents(&["assets/samples/creature.glb"]) };
+    let mut editor = editor("sample:pilot");
+    editor.open(own(), None, &mut any).expect("fits");
+    assert!(!editor.can_undo());
+    // It stays in the list, with its view.
+    let sample = id_of(&editor, "sample:pilot");
+    editor.activate(sample, &mut any).expect("fits");
+    assert_eq!(active(&editor), "sample:pilot");
+
+    // Once something was done to it, undo leads back there.
+    let mut editor = super::editor("sample:pilot");
+    editor.apply(Command::SetPose { joint: 9, degrees: Some([90.0, 0.0, 0.0]) });
+    editor.open(own(), None, &mut any).expect("fits");
+    assert!(editor.undo());
+    assert_eq!(active(&editor), "sample:pilot");
 }
