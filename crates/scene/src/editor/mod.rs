@@ -4,35 +4,29 @@
 //! Shells call it (`open`, `apply`, `undo`, …) and present the resulting [`Event`]s to the user.
 
 mod camera;
-mod clip_file;
 mod contents;
 mod event;
 mod export;
-mod export_plan;
-mod in_file;
 mod maps;
 mod motions;
 mod names;
 mod open;
-mod plan;
 mod reduced_motion;
-mod rooted;
 mod scene;
 mod steps;
 mod suit;
-mod together;
 mod transact;
 mod validation;
 
 pub use crate::library::ModelFiles;
-pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
 pub use event::Event;
-pub use export::{AWAITS_IMAGES, Export, ExportedFile};
-pub use in_file::derived_clip;
+pub use export::{
+    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient, RootBone,
+    derived_clip, write_clip,
+};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
-pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient, RootBone};
 pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
 

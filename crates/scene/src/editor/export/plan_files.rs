@@ -3,11 +3,11 @@
 use gaitway_character::anim::Clip;
 use gaitway_retarget::{KeyTolerance, RootTravel, Thinned, fewer_keys};
 
-use super::export::NO_SUCH_CLIP;
-use super::names::plain_name;
 use super::rooted::{hips, own_root, rooted};
 use super::together::Together;
-use super::{ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, RootBone, write_clip};
+use super::{ClipFormat, ExportPlan, ExportedFile, NO_SUCH_CLIP, Packaging, PlannedClip, RootBone, write_clip};
+use crate::editor::Editor;
+use crate::editor::names::plain_name;
 use crate::library::Model;
 use crate::state::written_skeleton;
 

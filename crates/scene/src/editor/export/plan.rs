@@ -8,8 +8,8 @@ use gaitway_retarget::KeyTolerance;
 
 use super::ClipFormat;
 use super::in_file::is_in_file;
-use super::names::plain_name;
 use super::rooted::{hips, own_root};
+use crate::editor::names::plain_name;
 use crate::library::{ClipId, Model, ModelClip};
 use crate::state::ViewerState;
 
