@@ -156,10 +156,20 @@ export const parts = {
    * @param {Uint8Array<ArrayBuffer>} input
    */
   async convert(name, input) {
-    const answer = await parts.run(name, await fetched(name), input);
+    const answer = await parts.answer(name, input);
     if (answer[0] !== CONVERTED) throw new Error(new TextDecoder().decode(answer.subarray(1)));
     const warnings = new DataView(answer.buffer, answer.byteOffset).getUint32(1, true);
     return answer.subarray(HEADER_BYTES + warnings);
+  },
+
+  /**
+   * Downloads a part, runs it and returns its encoded answer, with warnings.
+   * @param {string} name
+   * @param {Uint8Array<ArrayBuffer>} input
+   */
+  async answer(name, input) {
+    if (files[name] === undefined) throw new Error("this page was built without it");
+    return await parts.run(name, await fetched(name), input);
   },
 
   /**

@@ -266,6 +266,7 @@ export interface Gaitway {
   /** For the program: see parts.js. */
   parts: {
     url(name: string): string | undefined;
+    answer(name: string, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
     convert(name: string, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
     run(name: string, module: Uint8Array<ArrayBuffer>, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
   };

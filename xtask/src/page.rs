@@ -19,7 +19,7 @@ use crate::process::{Step, repository, run, run_with, target_folder, text};
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
 /// The packages in parts/ that are built as separate modules, besides that of [`build_fbx_part`].
-const PARTS: [&str; 6] = ["draco", "ktx2", "meshopt", "npz", "qr", "x"];
+const PARTS: [&str; 7] = ["draco", "fbx-writer", "ktx2", "meshopt", "npz", "qr", "x"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";

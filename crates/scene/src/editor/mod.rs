@@ -22,8 +22,8 @@ pub use crate::library::ModelFiles;
 pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
 pub use event::Event;
 pub use export::{
-    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient, RootBone,
-    derived_clip, write_clip,
+    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, PlannedFile,
+    Recipient, RootBone, derived_clip, write_clip,
 };
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};

@@ -10,7 +10,8 @@ mod together;
 
 pub use clip_file::{ClipFormat, write_clip};
 pub use in_file::derived_clip;
-pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient, RootBone};
+pub use plan::{ExportPlan, OneFileFormat, Packaging, PlannedClip, Recipient, RootBone};
+pub use plan_files::PlannedFile;
 
 use std::borrow::Cow;
 
