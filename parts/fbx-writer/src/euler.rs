@@ -60,23 +60,24 @@ mod tests {
     #[test]
     fn angles_give_back_the_rotation_near_any_others() {
         let values = [-3.1, -1.6, -HALF_TURN / 2.0, -0.4, 0.0, 0.7, HALF_TURN / 2.0, 1.5, 2.9];
-        for x in values {
-            for y in values {
-                for z in values {
-                    let angles = DVec3::new(x, y, z);
-                    let q = quaternion(angles);
-                    let expected = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
-                    assert!(difference(q, expected) < 1e-12);
-                    for to in [DVec3::ZERO, angles, DVec3::new(9.0, -4.0, 1.0)] {
-                        let found = nearest(q, to);
-                        assert!(difference(quaternion(found), q) < 1e-5, "{angles} near {to}: {found}");
-                    }
-                    // Away from the poles there is a single one that near.
-                    if y.abs() != HALF_TURN / 2.0 {
-                        assert!((nearest(q, angles + 0.01) - angles).length() < 1e-6, "{angles}");
-                    }
-                }
-            }
+        let all = values.iter().flat_map(|&x| values.iter().map(move |&y| (x, y)));
+        for (x, y) in all {
+            values.iter().for_each(|&z| check_angles(DVec3::new(x, y, z)));
+        }
+    }
+
+    fn check_angles(angles: DVec3) {
+        let DVec3 { x, y, z } = angles;
+        let q = quaternion(angles);
+        let expected = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
+        assert!(difference(q, expected) < 1e-12);
+        for to in [DVec3::ZERO, angles, DVec3::new(9.0, -4.0, 1.0)] {
+            let found = nearest(q, to);
+            assert!(difference(quaternion(found), q) < 1e-5, "{angles} near {to}: {found}");
+        }
+        // Away from the poles there is a single one that near.
+        if y.abs() != HALF_TURN / 2.0 {
+            assert!((nearest(q, angles + 0.01) - angles).length() < 1e-6, "{angles}");
         }
     }
 

@@ -298,13 +298,12 @@ impl<'a> Shape<'a> {
             for (joint, weight) in influences.of_vertex(vertex).filter(|&(_, weight)| weight > 0.0) {
                 let (points, weights): &mut (Vec<i32>, Vec<f64>) = &mut clusters[usize::from(joint)];
                 // A file may name a joint of a vertex twice.
-                if points.last() == Some(&(point as i32)) {
-                    if let Some(last) = weights.last_mut() {
-                        *last += f64::from(weight);
+                match weights.last_mut().filter(|_| points.last() == Some(&(point as i32))) {
+                    Some(last) => *last += f64::from(weight),
+                    None => {
+                        points.push(point as i32);
+                        weights.push(weight.into());
                     }
-                } else {
-                    points.push(point as i32);
-                    weights.push(weight.into());
                 }
             }
         }

@@ -272,7 +272,7 @@ fn check_views(original: &Asset, read: &Asset) {
     };
     for (a, b) in original.cameras.iter().zip(&read.cameras) {
         for (a, b) in view(&before, a.joint).iter().zip(view(&after, b.joint)) {
-            assert!(a.distance(b.into()) < 1e-4, "{}: {a} {b}", original.cameras[0].name);
+            assert!(a.distance(b) < 1e-4, "{}: {a} {b}", original.cameras[0].name);
         }
         match (a.projection, b.projection) {
             (
@@ -295,7 +295,7 @@ fn check_views(original: &Asset, read: &Asset) {
         } else {
             2
         }) {
-            assert!(a.distance(b.into()) < 1e-4, "{a} {b}");
+            assert!(a.distance(b) < 1e-4, "{a} {b}");
         }
     }
 }
