@@ -144,8 +144,8 @@ impl Model {
         }))
     }
 
-    /// Writes the model with its clips and those of motions, as `gaitway export` does: as one .glb, or each clip as a file in a folder
-    /// or .zip. Clips of the model's own rig keep their keys, others are retargeted.
+    /// Writes the model with its clips and those of motions, as `gaitway export` does: as one .glb or .fbx, or each clip as a file in a
+    /// folder or .zip. Clips of the model's own rig keep their keys, others are retargeted.
     ///
     /// `map` is a joint map for all motions; without one it is proposed for each. Options are those of `gaitway export`:
     /// `clips=["walk", "run"]`, `rename={"walk": "Walk"}`, `for_="godot"`, `format="bvh"`. Returns the document of its `--json`: clips,

@@ -20,6 +20,15 @@ def test_one_file(motion: gaitway.Motion, tmp_path: Path) -> None:
     assert [clip.name for clip in gaitway.load_model(ours).clips] == ["idle", "March"]
 
 
+def test_fbx(motion: gaitway.Motion, tmp_path: Path) -> None:
+    ours, theirs = tmp_path / "ours.fbx", tmp_path / "theirs.fbx"
+    document = gaitway.load_model(PILOT).export(ours, [motion], for_="unity")
+    assert [file["bytes"] for file in document["files"]] == [ours.stat().st_size]
+    text_of_cli("export", PILOT, "--motion", MOTION, "--for", "unity", "--out", theirs)
+    assert ours.read_bytes() == theirs.read_bytes()
+    assert len(gaitway.load_model(ours).clips) == len(document["clips"])
+
+
 def test_fewer_keys(tmp_path: Path) -> None:
     model, sizes = gaitway.load_model("sample:walker"), {}
     for name, fewer_keys in [("all", False), ("default", True), ("loose", (1.0, 1.0))]:

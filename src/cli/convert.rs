@@ -1,7 +1,10 @@
-//! `gaitway convert`: converts any supported model to a single GLB, or one of its clips to BVH or a VRM animation. Pages are
+//! `gaitway convert`: converts any supported model to a single GLB or FBX, or one of its clips to BVH or a VRM animation. Pages are
 //! written by [`web_page`].
 
+use std::path::Path;
+
 use gaitway_character::asset::Asset;
+use gaitway_fbx_writer::FbxOptions;
 use gaitway_formats::{FileSet, LoadOptions, convert_named, load_named, write_edited_model, write_model};
 use gaitway_retarget::ChangedClip;
 use gaitway_scene::editor::{ClipFormat, Export, write_clip};
@@ -9,7 +12,7 @@ use gaitway_scene::library::{ClipEdits, ClipId, Library, Model, ModelClip};
 
 use super::failure::{Failure, Outcome};
 use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
-use super::output::{print_error, warn, write_output};
+use super::output::{extension_of, print_error, warn, write_output};
 use super::retarget::{choose_clip, clip_format_of, model_extensions};
 use super::{ConvertArguments, Unit, open, print_warnings, web_page};
 use crate::files::{Disk, Opened, Role, SortError, member_of, sort};
@@ -26,7 +29,23 @@ pub(super) fn run(arguments: &ConvertArguments, disk: &Disk) -> Outcome {
         Some(link) => (posed(arguments, link, disk)?, vec!["glb"]),
         None => unposed(arguments, disk)?,
     };
+    if is_fbx(&arguments.out) {
+        return write_output(&arguments.out, &fbx(&bytes)?, &["fbx"], disk);
+    }
     write_output(&arguments.out, &bytes, &extensions, disk)
+}
+
+/// Whether the output is FBX.
+pub(super) fn is_fbx(out: &Path) -> bool {
+    extension_of(out).as_deref() == Some("fbx")
+}
+
+/// Converts a GLB to FBX and prints what that can't hold.
+pub(super) fn fbx(glb: &[u8]) -> Outcome<Vec<u8>> {
+    let written =
+        gaitway_fbx_writer::fbx(glb, &FbxOptions::default()).map_err(|error| Failure::new(error.to_string()))?;
+    written.warnings.iter().for_each(|warning| warn(warning));
+    Ok(written.bytes)
 }
 
 /// Writes the only model of the files, or their only motion, and returns the extensions that fit.

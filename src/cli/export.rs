@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gaitway_retarget::KeyTolerance;
 use gaitway_scene::editor::{
-    ClipFormat, Editor, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient, RootBone,
+    ClipFormat, Editor, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, Recipient, RootBone,
 };
 use gaitway_scene::library::{Model, ModelClip};
 use gaitway_scene::state::{NameKind, UnknownName};
@@ -33,9 +33,9 @@ pub(super) struct ExportArguments {
     map: Option<PathBuf>,
     #[command(flatten)]
     choices: ExportChoices,
-    /// The file to write, a .glb with the model and the clips (`-` for standard output); or a .zip or a folder with a file for each
-    /// clip, without meshes.
-    #[arg(long, value_name = "OUT.glb|.zip|DIR")]
+    /// The file to write, a .glb or .fbx with the model and the clips (`-` for a .glb to standard output); or a .zip or a folder with a
+    /// file for each clip, without meshes.
+    #[arg(long, value_name = "OUT.glb|.fbx|.zip|DIR")]
     pub out: PathBuf,
     /// Prints the clips, the files and the warnings as a JSON document.
     #[arg(long)]
@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &ExportArguments, disk: &Disk) -> Outcome {
 /// What is at the path of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
-    File,
+    File(OneFileFormat),
     Archive,
     Folder,
 }
@@ -116,17 +116,18 @@ impl Place {
     pub(super) fn of(out: &Path) -> Outcome<Self> {
         let extension = extension_of(out).filter(|_| !out.is_dir());
         match extension.as_deref() {
-            _ if is_standard_output(out) || is_stream(out) => Ok(Self::File),
+            _ if is_standard_output(out) || is_stream(out) => Ok(Self::File(OneFileFormat::Glb)),
             None => Ok(Self::Folder),
-            Some("glb" | "vrm") => Ok(Self::File),
+            Some("glb" | "vrm") => Ok(Self::File(OneFileFormat::Glb)),
+            Some("fbx") => Ok(Self::File(OneFileFormat::Fbx)),
             Some("zip") => Ok(Self::Archive),
             Some(other) => {
                 let hint = match other {
-                    "fbx" => "Gaitway can't write FBX yet",
                     "bvh" | "vrma" => "those hold a single clip, so choose a folder and --format",
                     _ => "a name without an extension is a folder",
                 };
-                let failure = Failure::expected("a .glb, a .zip or a folder", format!(".{other}")).with_hint(hint);
+                let failure =
+                    Failure::expected("a .glb, an .fbx, a .zip or a folder", format!(".{other}")).with_hint(hint);
                 Err(failure.at("file extension").in_file(out.display()))
             }
         }
@@ -148,8 +149,8 @@ pub(super) struct MadeFiles {
 pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Outcome<MadeFiles> {
     let Some(model) = editor.library().active() else { return Err(Failure::new("there is no model")) };
     let packaging = match (place, choices.format) {
-        (Place::File, None) => Packaging::OneFile,
-        (Place::File, Some(_)) => {
+        (Place::File(format), None) => Packaging::OneFile(format),
+        (Place::File(_), Some(_)) => {
             return Err(Failure::expected("a .zip or a folder for files of another format", "one file").at("--format"));
         }
         (Place::Archive | Place::Folder, format) => Packaging::FilePerClip(format.map_or(ClipFormat::Glb, Into::into)),
@@ -163,7 +164,11 @@ pub(super) fn make(editor: &Editor, choices: &ExportChoices, place: Place) -> Ou
     let files = editor.export_plan(&plan)?;
     let remarks = files.iter().filter_map(|file| file.remark.as_ref().map(|remark| format!("{}: {remark}", file.name)));
     warnings.extend(remarks);
-    let extensions: &[&str] = if model.asset.format == "vrm" { &["glb", "vrm"] } else { &["glb"] };
+    let extensions: &[&str] = match place {
+        Place::File(OneFileFormat::Fbx) => &["fbx"],
+        _ if model.asset.format == "vrm" => &["glb", "vrm"],
+        _ => &["glb"],
+    };
     Ok(MadeFiles { plan, durations_secs, files, extensions, warnings })
 }
 
@@ -238,9 +243,9 @@ pub(super) fn write(out: &Path, place: Place, made: &MadeFiles, inputs: &[PathBu
     let files = made.files.as_slice();
     let named = files.iter().map(|file| (file.name.as_str(), file.bytes.as_slice()));
     match (place, files) {
-        (Place::File, [file]) if is_standard_output(out) => print_bytes(&file.bytes),
-        (Place::File, [file]) => save_output(out, &file.bytes, made.extensions, inputs),
-        (Place::File, _) => Err(Failure::new("the plan has several files").in_file(out.display())),
+        (Place::File(_), [file]) if is_standard_output(out) => print_bytes(&file.bytes),
+        (Place::File(_), [file]) => save_output(out, &file.bytes, made.extensions, inputs),
+        (Place::File(_), _) => Err(Failure::new("the plan has several files").in_file(out.display())),
         (Place::Archive, _) => {
             let Some(bytes) = zip(named) else {
                 return Err(Failure::new("the archive would be too large; write a folder").in_file(out.display()));

@@ -130,7 +130,12 @@ struct RetargetArguments {
     #[command(flatten)]
     choices: RetargetChoices,
     /// The file to write; `-` for standard output. A .bvh or .vrma holds the clip alone.
-    #[arg(long, value_name = "OUT.glb|.bvh|.vrma", required_unless_present = "out_dir", conflicts_with = "out_dir")]
+    #[arg(
+        long,
+        value_name = "OUT.glb|.fbx|.bvh|.vrma",
+        required_unless_present = "out_dir",
+        conflicts_with = "out_dir"
+    )]
     out: Option<PathBuf>,
     /// The folder for the results of many motions. Prints a line of JSON for each, and skips those that are up to date.
     #[arg(long, value_name = "DIR")]
@@ -244,9 +249,9 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write; `-` for standard output. A .glb has the whole model, a .bvh or .vrma one clip. An .html is a
+    /// The file to write; `-` for standard output. A .glb or .fbx has the whole model, a .bvh or .vrma one clip. An .html is a
     /// self-contained page that shows the scene, without a network.
-    #[arg(long, value_name = "OUT.glb|.bvh|.vrma|.html")]
+    #[arg(long, value_name = "OUT.glb|.fbx|.bvh|.vrma|.html")]
     out: PathBuf,
     /// The clip to change, to write as .bvh or .vrma, or to show in an .html, by name or index [default: the first].
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]

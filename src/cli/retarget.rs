@@ -14,6 +14,7 @@ use gaitway_scene::library::{Model, Motion, Take, clip_file_name, map_for, warni
 use gaitway_scene::state::{NameKind, UnknownName};
 use serde_json::{Value, json};
 
+use super::convert::{fbx, is_fbx};
 use super::edit::baked;
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, DOUBTFUL_UP, doubtful_rest, doubtful_up, open_map, open_motion, rest_document};
@@ -147,7 +148,11 @@ fn write(arguments: &RetargetArguments, out: &Path, opened: &Opened, made: &Made
     } else {
         model_extensions(&opened.model.asset)
     };
-    write_output(out, &clip_file(opened, made, arguments.clip_only, format)?, &extensions, disk)
+    let bytes = clip_file(opened, made, arguments.clip_only, format)?;
+    if is_fbx(out) {
+        return write_output(out, &fbx(&bytes)?, &["fbx"], disk);
+    }
+    write_output(out, &bytes, &extensions, disk)
 }
 
 /// The content of the file. `clip_only` matters for a .glb; other formats hold nothing else.

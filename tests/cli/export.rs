@@ -209,9 +209,9 @@ fn bad_plans_are_refused() {
     check(&["--clips", "idle", "--rename", "run=fast", "--out", &out], "one of the clips that are written");
     let other_in_place = ["--clips", "idle", "--root-bone", "--in-place", "run", "--out", &out];
     check(&other_in_place, "one of the clips that are written");
-    check(&["--for", "unreal", "--out", &out], "FBX, which Gaitway can't write yet");
+    check(&["--for", "unreal", "--out", &out], "Unreal imports FBX; choose an .fbx");
     check(&["--for", "vrm", "--out", &out], "VRM avatar yet");
-    check(&["--out", &folder.path("out.fbx")], "Gaitway can't write FBX yet");
+    check(&["--format", "bvh", "--out", &folder.path("out.fbx")], "--format");
     check(&["--out", &folder.path("out.bvh")], "choose a folder and --format");
     check(&["--out", &folder.path("out.vrm")], "expected .glb, found .vrm");
     check(&["--format", "bvh", "--out", &out], "--format");
@@ -221,6 +221,31 @@ fn bad_plans_are_refused() {
     let twice = run(&["export", "sample:pilot", "--json", "--out", "-"]);
     assert_eq!(twice.status.code(), Some(2), "two documents on standard output");
     assert_eq!(folder.files(""), ["walk.bvh"]);
+}
+
+/// Every surface that writes a model writes FBX, and what it writes opens and moves as the model does.
+#[test]
+fn models_are_written_as_fbx() {
+    let folder = TestFolder::new("fbx");
+    let [all, one, moved] = ["all.fbx", "one.fbx", "moved.fbx"].map(|name| folder.path(name));
+    let made = document(&["export", "sample:pilot", "--for", "unity", "--out", &all, "--json"]);
+    assert_eq!(names(&made, "clips"), clips_of("sample:pilot"));
+    assert_eq!(names(&made, "files"), ["pilot.fbx"]);
+    assert_eq!(clips_of(&all), clips_of("sample:pilot"));
+    assert!(run(&["convert", "assets/samples/pilot.glb", "--out", &one]).status.success());
+    assert_eq!(clips_of(&one), clips_of("sample:pilot"));
+    let retargeted = ["retarget", "--model", "sample:pilot", "--motion", &all, "--clip", "walk", "--out", &moved];
+    assert!(run(&retargeted).status.success());
+    for (file, clip) in [(&all, "run"), (&one, "run"), (&moved, "wave")] {
+        let heads = ["sample:pilot", file].map(|file| {
+            let pose = document(&["pose", file, "--clip", clip, "--time", "0.37", "--json"]);
+            let nodes = pose["nodes"].as_array().expect("nodes").clone();
+            let head = nodes.into_iter().find(|node| node["name"] == "mixamorig:Head").expect("a head");
+            [12, 13, 14].map(|at| head["world"][at].as_f64().expect("a number"))
+        });
+        let off = (0..3).map(|axis| (heads[0][axis] - heads[1][axis]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-4, "{file}: {off} m off");
+    }
 }
 
 #[test]

@@ -4,12 +4,9 @@
 //! Shells call it (`open`, `apply`, `undo`, …) and present the resulting [`Event`]s to the user.
 
 mod camera;
-mod clip_file;
 mod contents;
 mod event;
 mod export;
-mod export_plan;
-mod in_file;
 mod maps;
 mod motions;
 mod names;
@@ -17,26 +14,23 @@ mod new_version;
 mod one_character;
 mod open;
 mod other_reading;
-mod plan;
 mod reduced_motion;
-mod rooted;
 mod scene;
 mod steps;
 mod suit;
-mod together;
 mod transact;
 mod validation;
 
 pub use crate::library::ModelFiles;
-pub use clip_file::{ClipFormat, write_clip};
 pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
 pub use event::Event;
-pub use export::{AWAITS_IMAGES, Export, ExportedFile};
-pub use in_file::derived_clip;
+pub use export::{
+    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, PlannedFile,
+    Recipient, RootBone, derived_clip, write_clip,
+};
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
 pub use other_reading::Reading;
-pub use plan::{ExportPlan, Packaging, PlannedClip, Recipient, RootBone};
 pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
 

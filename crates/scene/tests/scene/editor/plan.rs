@@ -7,7 +7,7 @@ use gaitway_character::asset::{Asset, AssetParts};
 use gaitway_formats::load;
 use gaitway_retarget::{ClipChanges, merged_clip};
 use gaitway_scene::editor::{
-    ClipFormat, Contents, Editor, Export, ExportPlan, ExportedFile, Packaging, PlannedClip, Recipient,
+    ClipFormat, Contents, Editor, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, Recipient,
 };
 use gaitway_scene::library::{ClipId, Model, ModelClip, Motion};
 use gaitway_scene::state::{ClipChoice, ClipEdit, Command};
@@ -202,11 +202,19 @@ fn bad_plans_are_refused_in_words() {
     check_refused(&editor, &with(&|plan| plan.clips.push(plan.clips[0].clone())), "is chosen twice");
     check_refused(&editor, &with(&|plan| plan.clips[0].clip = ClipId::Own(99)), "no such clip");
     for recipient in [Recipient::Unity, Recipient::Unreal] {
-        check_refused(&editor, &with(&|plan| plan.recipient = recipient), "FBX, which Gaitway can't write yet");
+        check_refused(&editor, &with(&|plan| plan.recipient = recipient), "imports FBX; choose an .fbx");
     }
     check_refused(&editor, &with(&|plan| plan.recipient = Recipient::Vrm), "VRM avatar yet");
     for recipient in [Recipient::Godot, Recipient::Blender, Recipient::Web, Recipient::AsIs] {
         assert!(editor.export_plan(&with(&|plan| plan.recipient = recipient)).is_ok());
+    }
+    for recipient in [Recipient::Unity, Recipient::Unreal, Recipient::Blender, Recipient::AsIs] {
+        let fbx = with(&|plan| {
+            plan.recipient = recipient;
+            plan.packaging = Packaging::OneFile(OneFileFormat::Fbx);
+        });
+        let files = editor.export_plan(&fbx).expect("a file");
+        assert!(files[0].name.ends_with(".fbx") && files[0].bytes.starts_with(b"Kaydara FBX Binary"), "{recipient:?}");
     }
     // As names of files, these are one.
     let files = with(&|plan| {
@@ -215,7 +223,7 @@ fn bad_plans_are_refused_in_words() {
         plan.clips[1].name = "RUN-fast".to_owned();
     });
     check_refused(&editor, &files, "would both be called “RUN-fast”");
-    let one_file = ExportPlan { packaging: Packaging::OneFile, ..files };
+    let one_file = ExportPlan { packaging: Packaging::OneFile(OneFileFormat::Glb), ..files };
     assert!(names(&together(&editor, &one_file)).contains(&"RUN-fast"));
 }
 
@@ -248,7 +256,7 @@ fn what_a_format_cannot_hold_is_said_by_name() {
     borrow(&mut editor, vec![motion("grow.glb", &skeleton, vec![grown("Grow"), grown("Swell")])]);
     let plan = all_clips(&editor);
     let said = |packaging| editor.plan_losses(&ExportPlan { packaging, ..plan.clone() });
-    assert_eq!(said(Packaging::OneFile), Vec::<String>::new());
+    assert_eq!(said(Packaging::OneFile(OneFileFormat::Glb)), Vec::<String>::new());
     let of_bvh = said(Packaging::FilePerClip(ClipFormat::Bvh));
     let is_said = |text: &String| text.starts_with("scale of “") && text.ends_with("“Grow”, “Swell”");
     assert!(of_bvh.iter().any(is_said), "{of_bvh:?}");

@@ -1,6 +1,18 @@
 //! Exports: the active joint map, the model with a retargeted clip, a clip alone. Images are up to the shell, which has the
 //! graphics device.
 
+mod clip_file;
+mod in_file;
+mod plan;
+mod plan_files;
+mod rooted;
+mod together;
+
+pub use clip_file::{ClipFormat, write_clip};
+pub use in_file::derived_clip;
+pub use plan::{ExportPlan, OneFileFormat, Packaging, PlannedClip, Recipient, RootBone};
+pub use plan_files::PlannedFile;
+
 use std::borrow::Cow;
 
 use gaitway_character::anim::Clip;
@@ -8,9 +20,9 @@ use gaitway_formats::{write_edited_model, write_model, write_motion};
 use gaitway_retarget::merged_clip;
 use glam::Vec3;
 
-use super::in_file::{is_derived, is_in_file};
+use self::in_file::{is_derived, is_in_file};
 use super::names::{plain_name, stem};
-use super::{ClipFormat, Editor, ModelFiles, write_clip};
+use super::{Editor, ModelFiles};
 use crate::frame::{Frame, evaluate};
 use crate::library::{BakedTake, ClipId, Model, ModelClip, MotionId};
 use crate::state::{active_clip, active_map, take_of, written_skeleton};
@@ -27,7 +39,7 @@ pub enum Export {
         /// One of the library's.
         motion: MotionId,
     },
-    /// The model with one of its clips that isn't in its file as it plays: [`super::derived_clip`].
+    /// The model with one of its clips that isn't in its file as it plays: [`derived_clip`].
     Model {
         /// One of the active model's; an unedited one of its own is an error.
         clip: ClipId,
@@ -60,11 +72,11 @@ pub struct ExportedFile {
 }
 
 impl ExportedFile {
-    pub(super) fn new(name: String, bytes: Vec<u8>) -> Self {
+    fn new(name: String, bytes: Vec<u8>) -> Self {
         Self { name, bytes, remark: None }
     }
 
-    pub(super) fn with_remarks(self, remarks: &[Cow<'static, str>]) -> Self {
+    fn with_remarks(self, remarks: &[Cow<'static, str>]) -> Self {
         Self { remark: (!remarks.is_empty()).then(|| remarks.join(" ")), ..self }
     }
 }
@@ -75,12 +87,12 @@ fn about_properties(clip: &Clip) -> Option<&'static str> {
     (!clip.properties().is_empty()).then_some(lost)
 }
 
-pub(super) const NO_SUCH_CLIP: &str = "there is no such clip";
+const NO_SUCH_CLIP: &str = "there is no such clip";
 
-pub(super) const NO_FILE: &str = "Skeleton and clip only: this model has no file to add a clip to.";
+const NO_FILE: &str = "Skeleton and clip only: this model has no file to add a clip to.";
 
 /// A clip with its layers, what is set manually, and its pins baked in.
-pub(super) struct BakedClip {
+struct BakedClip {
     pub clip: Clip,
     pub remarks: Vec<Cow<'static, str>>,
 }
@@ -111,7 +123,7 @@ impl Editor {
         plain_name(&parts.into_iter().flatten().collect::<Vec<_>>().join("-"))
     }
 
-    pub(super) fn model(&self) -> Result<&Model, String> {
+    fn model(&self) -> Result<&Model, String> {
         self.library.active().ok_or_else(|| "there is no model".to_owned())
     }
 
@@ -216,7 +228,7 @@ impl Editor {
     }
 
     /// The same with the keys of a borrowed clip's motion, bit for bit, if that is what it shows.
-    pub(super) fn merged_or_baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
+    fn merged_or_baked_clip(&self, model: &Model, source: &ModelClip) -> BakedClip {
         let mut baked = self.baked_clip(model, source);
         if !take_of(model, Some(source), &self.state).is_more_than_clip() {
             baked.clip = self.merged_clip(model, source).unwrap_or(baked.clip);

@@ -4,12 +4,13 @@
 use std::collections::BTreeMap;
 
 use gaitway_character::anim::{Clip, Keys, PropertyTarget};
+use gaitway_fbx_writer::FbxRecipient;
 use gaitway_retarget::KeyTolerance;
 
 use super::ClipFormat;
 use super::in_file::is_in_file;
-use super::names::plain_name;
 use super::rooted::{hips, own_root};
+use crate::editor::names::plain_name;
 use crate::library::{ClipId, Model, ModelClip};
 use crate::state::ViewerState;
 
@@ -39,13 +40,44 @@ impl Recipient {
         (self == Self::Web).then(KeyTolerance::default)
     }
 
-    /// Returns why nothing that Gaitway writes suits them yet; `None` if something does.
-    fn refusal(self) -> Option<&'static str> {
+    /// Returns why files of this kind don't suit them; `None` if they do.
+    fn refusal(self, packaging: Packaging) -> Option<&'static str> {
+        let is_fbx = packaging == Packaging::OneFile(OneFileFormat::Fbx);
         match self {
-            Self::Unity => Some("Unity imports FBX, which Gaitway can't write yet; choose “as is” for a .glb"),
-            Self::Unreal => Some("Unreal imports FBX, which Gaitway can't write yet; choose “as is” for a .glb"),
+            Self::Unity if !is_fbx => Some("Unity imports FBX; choose an .fbx, or “as is” for a .glb"),
+            Self::Unreal if !is_fbx => Some("Unreal imports FBX; choose an .fbx, or “as is” for a .glb"),
             Self::Vrm => Some("Gaitway can't make a VRM avatar yet; choose “as is”, which keeps a model that is one"),
-            Self::Godot | Self::Blender | Self::Web | Self::AsIs => None,
+            _ => None,
+        }
+    }
+
+    /// Returns the axes, unit and scales that suit them in an FBX file.
+    pub fn fbx(self) -> FbxRecipient {
+        match self {
+            Self::Unity => FbxRecipient::Unity,
+            Self::Unreal => FbxRecipient::Unreal,
+            Self::Blender => FbxRecipient::Blender,
+            Self::Godot | Self::Web | Self::Vrm | Self::AsIs => FbxRecipient::AsIs,
+        }
+    }
+}
+
+/// Format of one file with the model and its clips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OneFileFormat {
+    /// The model's own glTF with the clips.
+    #[default]
+    Glb,
+    /// Binary FBX with the same content.
+    Fbx,
+}
+
+impl OneFileFormat {
+    /// The file extension, in lower case.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Fbx => "fbx",
         }
     }
 }
@@ -53,8 +85,8 @@ impl Recipient {
 /// How clips are divided among files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packaging {
-    /// A .glb with the model and all clips.
-    OneFile,
+    /// A file with the model and all clips.
+    OneFile(OneFileFormat),
     /// A file for each clip, with the skeleton and without meshes.
     FilePerClip(ClipFormat),
 }
@@ -103,7 +135,13 @@ impl ExportPlan {
     /// All clips of a model in one file, under the names that lists show.
     pub fn all_clips(model: &Model) -> Self {
         let clips = model.clips().listed().map(PlannedClip::of).collect();
-        Self { clips, packaging: Packaging::OneFile, recipient: Recipient::AsIs, root_bone: None, fewer_keys: None }
+        Self {
+            clips,
+            packaging: Packaging::OneFile(OneFileFormat::Glb),
+            recipient: Recipient::AsIs,
+            root_bone: None,
+            fewer_keys: None,
+        }
     }
 
     /// Refuses a plan that can't be carried out, or whose files would not have what it says.
@@ -111,7 +149,7 @@ impl ExportPlan {
     /// # Errors
     /// The message for the user.
     pub fn check(&self, model: &Model) -> Result<(), String> {
-        if let Some(refusal) = self.recipient.refusal() {
+        if let Some(refusal) = self.recipient.refusal(self.packaging) {
             return Err(refusal.to_owned());
         }
         if self.clips.is_empty() {
@@ -126,7 +164,7 @@ impl ExportPlan {
         let refusal = match self.root_bone {
             None if has_in_place => Some("clips in place need a root bone; choose one"),
             None => None,
-            Some(_) if self.packaging != Packaging::OneFile => {
+            Some(_) if matches!(self.packaging, Packaging::FilePerClip(_)) => {
                 Some("a root bone is inserted in the model; choose one file")
             }
             Some(_) if hips(model).is_none() => Some("a root bone goes above the hips, and this model has none"),
@@ -150,7 +188,8 @@ impl ExportPlan {
             }
             // Some file systems don't tell capitals apart.
             let key = match self.packaging {
-                Packaging::OneFile => name.clone(),
+                Packaging::OneFile(OneFileFormat::Glb) => name.clone(),
+                Packaging::OneFile(OneFileFormat::Fbx) => name.to_lowercase(),
                 Packaging::FilePerClip(_) => plain_name(name).to_lowercase(),
             };
             if let Some(other) = taken.insert(key, title) {
@@ -176,11 +215,15 @@ impl ExportPlan {
         for PlannedClip { clip, name, .. } in &self.clips {
             let Some(clip) = model.clip(clip) else { continue };
             // The model's own file keeps all of it.
-            let is_kept = self.packaging == Packaging::OneFile && !self.changes_own(model);
-            if is_kept && is_in_file(model, state, clip) {
+            let is_one_file = matches!(self.packaging, Packaging::OneFile(_));
+            let is_kept = is_one_file && !self.changes_own(model) && is_in_file(model, state, clip);
+            if is_kept && self.packaging == Packaging::OneFile(OneFileFormat::Glb) {
                 continue;
             }
-            for kind in lost_kinds(clip.clip(), self.packaging) {
+            let mut kinds = lost_kinds(clip.clip(), self.packaging);
+            // An FBX file is made of the model's own.
+            kinds.retain(|kind| !is_kept || *kind != SINGLE_WEIGHTS);
+            for kind in kinds {
                 let names = lost.entry(kind).or_default();
                 if names.last() != Some(&name.as_str()) {
                     names.push(name);
@@ -192,10 +235,12 @@ impl ExportPlan {
     }
 }
 
+const SINGLE_WEIGHTS: &str = "single morph weights";
+
 /// What a clip animates that these files can't hold.
 fn lost_kinds(clip: &Clip, packaging: Packaging) -> Vec<&'static str> {
     let format = match packaging {
-        Packaging::OneFile => None,
+        Packaging::OneFile(_) => None,
         Packaging::FilePerClip(format) => Some(format),
     };
     let mut kinds = Vec::new();
@@ -210,7 +255,7 @@ fn lost_kinds(clip: &Clip, packaging: Packaging) -> Vec<&'static str> {
         PropertyTarget::Expression(_) | PropertyTarget::LookAt if format == Some(ClipFormat::Vrma) => None,
         PropertyTarget::Expression(_) => Some("expressions"),
         PropertyTarget::LookAt => Some("gaze"),
-        PropertyTarget::MorphWeight(..) => Some("single morph weights"),
+        PropertyTarget::MorphWeight(..) => Some(SINGLE_WEIGHTS),
         PropertyTarget::Material(..) => Some("materials"),
         PropertyTarget::Light(..) => Some("lights"),
         PropertyTarget::Camera(..) => Some("cameras"),

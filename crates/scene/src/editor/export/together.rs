@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use gaitway_character::anim::Clip;
 use gaitway_formats::{OwnClips, write_edited_model, write_motion};
 
-use super::export::{NO_FILE, NO_SUCH_CLIP};
 use super::in_file::is_in_file;
-use super::names::{plain_name, stem};
-use super::{Editor, ExportPlan, ExportedFile, ModelFiles, PlannedClip};
+use super::{ExportPlan, ExportedFile, NO_FILE, NO_SUCH_CLIP, PlannedClip};
+use crate::editor::names::{plain_name, stem};
+use crate::editor::{Editor, ModelFiles};
 use crate::library::{ClipId, Model};
 use crate::state::written_skeleton;
 

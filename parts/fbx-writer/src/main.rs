@@ -1,0 +1,3 @@
+//! The page's module: see [`gaitway_part::module!`].
+
+gaitway_part::module!(gaitway_fbx_writer::convert);
