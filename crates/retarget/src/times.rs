@@ -6,7 +6,6 @@ use gaitway_character::anim::{Clip, Interpolation};
 
 use crate::budget::{corrected_poses, parts_between};
 use crate::keys::resample::union;
-use crate::transfer::Transfer;
 
 /// Maximum distance between keys of a corrected clip.
 const MAX_STEP_SECS: f32 = 1.0 / 30.0;
@@ -33,10 +32,11 @@ pub fn dense_times(clip: &Clip) -> Vec<f32> {
     times
 }
 
-/// The times at which feet are planted and contacts kept, which holds the poses at all of them; `None` if these are too many.
-pub fn corrected_times(transfer: &Transfer) -> Option<Vec<f32>> {
-    let times = dense_times(transfer.tracks.clip);
-    (times.len() <= corrected_poses(transfer.target_skeleton.len())).then_some(times)
+/// The times at which feet are planted and contacts kept, which holds the poses at all of them; `None` if these are too many
+/// for a model with this number of joints.
+pub fn corrected_times(clip: &Clip, joints: usize) -> Option<Vec<f32>> {
+    let times = dense_times(clip);
+    (times.len() <= corrected_poses(joints)).then_some(times)
 }
 
 /// The times within `secs` of one of them.

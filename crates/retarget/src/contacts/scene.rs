@@ -55,7 +55,8 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// Returns `None` if the clip is too long.
     pub fn new(transfer: &'a Transfer<'a>, bodies: &'a Bodies, clip: &Clip) -> Option<Self> {
-        let source = SourceScene::new(transfer, bodies, corrected_times(transfer)?);
+        let source =
+            SourceScene::new(transfer, bodies, corrected_times(transfer.tracks.clip, transfer.target_skeleton.len())?);
         let (poses, target) = (Vec::new(), BodyMotion::default());
         Some(Self { transfer, bodies, source, poses, target, ground: None }.playing(clip))
     }

@@ -74,7 +74,7 @@ pub fn planted_channels(
     clip: &Clip,
     resampled: &[JointIndex],
 ) -> Option<(Vec<NewChannel>, Planting)> {
-    let times = corrected_times(transfer)?;
+    let times = corrected_times(transfer.tracks.clip, transfer.target_skeleton.len())?;
     let mut scratch = Scratch::default();
     let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
     let soles = Soles::new(transfer);

@@ -200,7 +200,8 @@ pub fn measure(
         skin_tear_max_joint: moments.worst_tear.map(|(_, joint)| transfer.target_skeleton.label(joint)),
         idle_chains: moments.idle_chains,
         coverage: moments.coverage,
-        is_too_long: wants_corrections(transfer.map) && corrected_times(transfer).is_none(),
+        is_too_long: wants_corrections(transfer.map)
+            && corrected_times(transfer.tracks.clip, transfer.target_skeleton.len()).is_none(),
     };
     (figures, tracks)
 }

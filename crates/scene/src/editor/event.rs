@@ -1,6 +1,5 @@
 //! Events that a shell presents to the user.
 
-use super::Reading;
 use crate::state::Edited;
 
 /// Drained with [`super::Editor::take_events`].
@@ -47,4 +46,13 @@ pub enum Event {
         /// Name of the motion's joint.
         source: Option<String>,
     },
+}
+
+/// What the user may have meant by files instead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// The files that became clips of a character are models.
+    Models,
+    /// The file that took the place of its older version is another model.
+    Both,
 }

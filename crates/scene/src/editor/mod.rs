@@ -23,14 +23,13 @@ mod validation;
 
 pub use crate::library::ModelFiles;
 pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
-pub use event::Event;
+pub use event::{Event, Reading};
 pub use export::{
     AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, PlannedFile,
     Recipient, RootBone, derived_clip, write_clip,
 };
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
-pub use other_reading::Reading;
 pub use scene::Scene;
 pub use validation::{ValidatorGroup, ValidatorReport};
 

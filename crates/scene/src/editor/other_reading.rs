@@ -1,18 +1,9 @@
 //! Files that could have been meant in two ways are opened in the likelier one. The other one is kept until something else is opened.
 
-use super::{Editor, Event, OpenedModel};
+use super::{Editor, Event, OpenedModel, Reading};
 use crate::library::ModelId;
 
-/// What the user may have meant instead.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reading {
-    /// The files that became clips of a character are models.
-    Models,
-    /// The file that took the place of its older version is another model.
-    Both,
-}
-
-/// The same, with what it takes.
+/// Another [`Reading`], with what it takes.
 #[derive(Debug)]
 pub(super) enum OtherReading {
     Models(Vec<OpenedModel>),
