@@ -200,10 +200,15 @@ pub fn measure(
         skin_tear_max_joint: moments.worst_tear.map(|(_, joint)| transfer.target_skeleton.label(joint)),
         idle_chains: moments.idle_chains,
         coverage: moments.coverage,
-        is_too_long: wants_corrections(transfer.map)
-            && corrected_times(transfer.tracks.clip, transfer.target_skeleton.len()).is_none(),
+        is_too_long: is_too_long(transfer),
     };
     (figures, tracks)
+}
+
+/// Whether the map asks for planting or contacts, and the clip is too long for them.
+fn is_too_long(transfer: &Transfer) -> bool {
+    let times = || corrected_times(transfer.tracks.clip, transfer.target_skeleton.len());
+    wants_corrections(transfer.map) && times().is_none()
 }
 
 /// Returns how deep any of the joints has been below the ground, in this pose or in those before.
