@@ -66,26 +66,33 @@ impl Editor {
     ///
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
-    pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents {
-            mut models,
-            mut motions,
-            map,
-            environment,
-            is_map_private,
-            is_by_hand,
-            mut problems,
-            about_link,
-            ..
-        } = contents;
+    pub fn open(&mut self, mut contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
         self.other_reading = None;
-        let mut taken = Vec::new();
-        if is_by_hand && view.is_none() {
-            (models, taken) = one_character::split(models, self.library.active());
+        if !contents.is_by_hand || view.is_some() {
+            return self.open_contents(contents, view, admit);
         }
+        let (models, taken) = one_character::split(std::mem::take(&mut contents.models), self.library.active());
+        contents.models = models;
         if !taken.is_empty() {
-            motions.get_or_insert_default().extend(one_character::motions(&taken));
+            contents.motions.get_or_insert_default().extend(one_character::motions(&taken));
         }
+        self.open_contents(contents, None, admit)?;
+        if !taken.is_empty() {
+            // Files that fill an empty stage aren't announced.
+            if !self.events.iter().any(|event| matches!(event, Event::Notice { .. })) {
+                let added = self.added_from(&one_character::motions(&taken));
+                added.into_iter().for_each(|text| self.notify(text));
+            }
+            self.offer(OtherReading::Models(taken));
+        }
+        Ok(())
+    }
+
+    /// Opens files as they are sorted.
+    fn open_contents(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
+        let Contents {
+            models, motions, map, environment, is_map_private, is_by_hand, mut problems, about_link, ..
+        } = contents;
         let (is_view, has_models) = (view.is_some(), !models.is_empty());
         let has_step = has_models && self.library.active().is_some();
         let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
@@ -125,14 +132,6 @@ impl Editor {
         };
         self.opened_map = None;
         self.about_link = AboutLink::default();
-        if opened.is_ok() && !taken.is_empty() {
-            // Files that fill an empty stage aren't announced.
-            if !self.events.iter().any(|event| matches!(event, Event::Notice { .. })) {
-                let added = self.added_from(&one_character::motions(&taken));
-                added.into_iter().for_each(|text| self.notify(text));
-            }
-            self.offer(OtherReading::Models(taken));
-        }
         if opened.is_ok()
             && let Some(environment) = environment
         {
