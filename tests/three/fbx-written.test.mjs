@@ -72,13 +72,14 @@ async function compareInThree(file) {
       const time = fraction * duration_secs;
       play(players[0], ours.animations[clip], time);
       play(players[1], theirs.animations[clip], time);
+      /** @type {{ nodes: { name: string, world: number[] }[] }} */
       const { nodes } = await document("pose", file, "--clip", String(clip), "--time", String(time));
       const size = Math.max(...nodes.map((node) => Math.hypot(...node.world.slice(12, 15))));
       const at = new THREE.Vector3();
       for (const { name, world } of nodes) {
         const bone = ours.getObjectByName(THREE.PropertyBinding.sanitizeNodeName(name));
-        if (!(/** @type {any} */ (bone)?.isBone) || nodes.filter((node) => node.name === name).length > 1) continue;
-        const distance = at.setFromMatrixPosition(bone.matrixWorld).multiplyScalar(metresPerUnit).distanceTo(new THREE.Vector3(...world.slice(12, 15)));
+        if (!bone || !(/** @type {any} */ (bone).isBone) || nodes.filter((node) => node.name === name).length > 1) continue;
+        const distance = at.setFromMatrixPosition(bone.matrixWorld).multiplyScalar(metresPerUnit).distanceTo(new THREE.Vector3().fromArray(world, 12));
         assert.ok(distance <= TOLERANCE * size, `${name} in clip ${clip} at ${time} s: ${distance} m off`);
       }
       const [box, expected] = [ours, theirs.scene].map((root) => new THREE.Box3().setFromObject(root, true));
