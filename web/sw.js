@@ -60,7 +60,7 @@ async function isEarlierDamaged() {
   for (const name of await earlierCaches()) {
     const cache = await caches.open(name);
     for (const { url } of await cache.keys()) {
-      const response = sound.has(url) ? undefined : await cache.match(url);
+      const response = await cache.match(url);
       if (response !== undefined && !(await isSound(url, response))) return true;
     }
   }
@@ -80,20 +80,12 @@ async function isSound(file, response) {
 }
 
 /**
- * Stored files that had the hash that their names say when this worker first looked: none is hashed twice.
- * @type {Set<string>}
- */
-const sound = new Set();
-
-/**
  * Returns a file with a hash in its name as any version has stored it, unless that is damaged.
  * @param {string} file
  */
 async function held(file) {
   const response = await caches.match(file);
-  if (response === undefined || !(await isSound(file, response))) return undefined;
-  sound.add(new URL(file, scope).href);
-  return response;
+  return response !== undefined && (await isSound(file, response)) ? response : undefined;
 }
 
 /** @param {string[]} files */

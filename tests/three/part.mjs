@@ -19,7 +19,7 @@ const HEADER_BYTES = 5;
 export async function startPart(part) {
   const folder = path.join(dist, "parts");
   const files = fs.existsSync(folder) ? fs.readdirSync(folder) : [];
-  const file = files.find((file) => new RegExp(`^${part}-[0-9a-f]+\\.wasm$`).test(file));
+  const file = files.find((file) => file.startsWith(`${part}-`) && file.endsWith(".wasm"));
   if (file === undefined) throw new Error(`no part called ${part} in ${folder}: run \`cargo xtask build\``);
   const module = await WebAssembly.compile(fs.readFileSync(path.join(folder, file)));
   return async (/** @type {Uint8Array} */ input) => {

@@ -6,7 +6,7 @@ use crate::array::Array;
 
 /// Maximum number of people or samples in a file: each is a clip.
 const MAX_SAMPLES: usize = 256;
-/// Maximum number of places that are looked at to find out how an array is to be read.
+/// Maximum number of places that are sampled to find out how an array is laid out.
 pub const MAX_LOOKS: usize = 8192;
 /// Maximum number of axes, those of length 1 included.
 const MAX_AXES: usize = 8;

@@ -208,9 +208,11 @@ impl Messages {
                 ui.add(egui::Label::new(text).wrap());
             });
             for (label, action) in offers {
-                let button = ui.button(label);
-                let has_key = action == UiAction::Undo && !style::is_for_fingers(ui);
-                if if has_key { button.on_hover_text("Ctrl+Z") } else { button }.clicked() {
+                let mut button = ui.button(label);
+                if action == UiAction::Undo && !style::is_for_fingers(ui) {
+                    button = button.on_hover_text("Ctrl+Z");
+                }
+                if button.clicked() {
                     chosen = Some(action);
                 }
             }

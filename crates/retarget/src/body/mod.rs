@@ -1,6 +1,6 @@
 //! A body as a value: the chains that its joints form, the twist joints beside or inside its limbs, and the helpers that follow a
-//! joint. It is derived from the humanoid slots, the hierarchy and the rest; names only help to tell helpers apart, and tails and ears. Recognizing
-//! slots is left to `recognize`, using the chains to `transfer`.
+//! joint. It is derived from the humanoid slots, the hierarchy and the rest; names only tell helpers apart, and tails and ears.
+//! Recognizing slots is left to `recognize`, using the chains to `transfer`.
 
 mod appendages;
 mod chains;

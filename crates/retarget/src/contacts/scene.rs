@@ -55,8 +55,8 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// Returns `None` if the clip is too long.
     pub fn new(transfer: &'a Transfer<'a>, bodies: &'a Bodies, clip: &Clip) -> Option<Self> {
-        let source =
-            SourceScene::new(transfer, bodies, corrected_times(transfer.tracks.clip, transfer.target_skeleton.len())?);
+        let times = corrected_times(transfer.tracks.clip, transfer.target_skeleton.len())?;
+        let source = SourceScene::new(transfer, bodies, times);
         let (poses, target) = (Vec::new(), BodyMotion::default());
         Some(Self { transfer, bodies, source, poses, target, ground: None }.playing(clip))
     }

@@ -67,8 +67,8 @@ impl fmt::Display for Planting {
     }
 }
 
-/// Returns all channels of the clip with planted feet, or None if no leg is mapped, or the clip is too long. `resampled` lists the joints whose keys in
-/// `clip` are not the source's own.
+/// Returns all channels of the clip with planted feet; `None` if no leg is mapped or the clip is too long. `resampled` lists the
+/// joints whose keys in `clip` are not the source's own.
 pub fn planted_channels(
     transfer: &Transfer,
     clip: &Clip,

@@ -13,6 +13,7 @@ mod names;
 mod new_version;
 mod one_character;
 mod open;
+mod opened;
 mod other_reading;
 mod reduced_motion;
 mod scene;
@@ -25,8 +26,8 @@ pub use crate::library::ModelFiles;
 pub use contents::{AboutLink, Contents, OpenedMap, OpenedModel};
 pub use event::{Event, Reading};
 pub use export::{
-    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, PlannedFile,
-    Recipient, RootBone, derived_clip, write_clip,
+    AWAITS_IMAGES, ClipFormat, Export, ExportPlan, ExportedFile, OneFileFormat, Packaging, PlannedClip, Recipient,
+    RootBone, derived_clip, write_clip,
 };
 pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};

@@ -60,14 +60,15 @@ impl Editor {
 
 /// By name, and by most of their joints: many files are called “scene.gltf”.
 fn is_version_of(opened: &Model, known: &Model) -> bool {
-    let names = |asset: &'_ Asset| -> BTreeSet<String> {
-        collect_set(asset.skeleton.joints().map(|joint| asset.skeleton.name(joint).to_owned()))
-    };
     let is_same_file = opened.id != known.id && opened.is_own && known.is_own && opened.source == known.source;
     is_same_file && {
-        let (one, other) = (names(&opened.asset), names(&known.asset));
+        let (one, other) = (joint_names(&opened.asset), joint_names(&known.asset));
         2 * one.intersection(&other).count() > one.len().max(other.len())
     }
+}
+
+fn joint_names(asset: &Asset) -> BTreeSet<&str> {
+    collect_set(asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)))
 }
 
 fn has_same_joints(one: &Asset, other: &Asset) -> bool {

@@ -74,10 +74,9 @@ fn skin_joints(asset: &Asset) -> BTreeSet<&str> {
 
 /// By their keys: different takes often have one name.
 fn is_same_clip(one: &Clip, other: &Clip) -> bool {
-    let channels = one.channels().iter().zip(other.channels());
     one.timelines() == other.timelines()
         && one.channels().len() == other.channels().len()
-        && channels.into_iter().all(|(channel, same)| channel.keys == same.keys)
+        && one.channels().iter().zip(other.channels()).all(|(channel, same)| channel.keys == same.keys)
 }
 
 /// Whether both have the same surfaces: another version of a character is a model of its own, and so is one in another colour.

@@ -6,10 +6,11 @@
 
 use std::sync::Arc;
 
-use gaitway_character::asset::{Asset, Warning};
+use gaitway_character::asset::Asset;
 
 use super::motions::{Playing, without_still};
 use super::names::is_obj;
+use super::opened::{Opened, about_images, missing_images};
 use super::other_reading::OtherReading;
 use super::transact::Change;
 use super::{
@@ -46,19 +47,6 @@ struct Companions {
     map: Option<MotionMap>,
     view: Option<ViewerState>,
     is_by_hand: bool,
-}
-
-/// The contents of the notice about an opened model.
-struct Opened {
-    name: String,
-    is_new: bool,
-    others: Vec<String>,
-    evicted: Vec<String>,
-    lacks_joints: bool,
-    about_images: String,
-    about_view: Option<&'static str>,
-    about_motions: Option<String>,
-    about_feet: Option<&'static str>,
 }
 
 impl Editor {
@@ -595,55 +583,4 @@ fn lacking(model: &Model) -> usize {
 
 fn is_jointless_obj(source: &str, asset: &Asset) -> bool {
     is_obj(source) && asset.skins.is_empty()
-}
-
-fn missing_images(asset: &Asset) -> Vec<String> {
-    let missing = |warning: &Warning| match warning {
-        Warning::ImageMissing { uri } => Some(short_name(uri)),
-        _ => None,
-    };
-    asset.warnings.iter().filter_map(missing).collect()
-}
-
-/// Returns sentences about the images that can't be shown.
-fn about_images(asset: &Asset) -> String {
-    let unreadable = |warning: &Warning| match warning {
-        Warning::ImageUnreadable { image, .. } => Some(short_name(image)),
-        _ => None,
-    };
-    let unreadable: Vec<String> = asset.warnings.iter().filter_map(unreadable).collect();
-    // Not how many: warnings of one kind have a limit.
-    let missing = match &missing_images(asset)[..] {
-        [] => String::new(),
-        [image] => format!(" Its image {image} is missing; open it as well."),
-        _ => " Some of its images are missing; open them as well.".to_owned(),
-    };
-    let unreadable = match &unreadable[..] {
-        [] => String::new(),
-        [image] => format!(" Its image {image} can't be read; the Info tab says why."),
-        _ => " Some of its images can't be read; the Info tab says why.".to_owned(),
-    };
-    missing + &unreadable
-}
-
-impl Opened {
-    fn text(&self) -> String {
-        let mut text = if self.is_new { format!("Opened {}.", self.name) } else { format!("Reopened {}.", self.name) };
-        match &self.others[..] {
-            [] => {}
-            [other] => text += &format!(" {other} is in the model list."),
-            others => text += &format!(" {} more are in the model list.", others.len()),
-        }
-        if !self.evicted.is_empty() {
-            text += &format!(" Closed {} to make room, which undo doesn't take back.", self.evicted.join(", "));
-        }
-        if self.lacks_joints {
-            text += " Open its .skel and .attach as well to add its joints.";
-        }
-        text += &self.about_images;
-        for sentence in self.about_view.into_iter().chain(self.about_motions.as_deref()).chain(self.about_feet) {
-            text += &format!(" {sentence}");
-        }
-        text
-    }
 }

@@ -11,7 +11,6 @@ mod together;
 pub use clip_file::{ClipFormat, write_clip};
 pub use in_file::derived_clip;
 pub use plan::{ExportPlan, OneFileFormat, Packaging, PlannedClip, Recipient, RootBone};
-pub use plan_files::PlannedFile;
 
 use std::borrow::Cow;
 

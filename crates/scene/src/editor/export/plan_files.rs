@@ -1,8 +1,7 @@
 //! Writes the files of a plan.
 
 use gaitway_character::anim::Clip;
-use gaitway_fbx_writer::FbxOptions;
-use gaitway_part::{Answer, Output};
+use gaitway_fbx_writer::{FbxOptions, Written, fbx};
 use gaitway_retarget::{KeyTolerance, RootTravel, Thinned, fewer_keys};
 
 use super::rooted::{hips, own_root, rooted};
@@ -11,74 +10,23 @@ use super::{
     ClipFormat, ExportPlan, ExportedFile, NO_SUCH_CLIP, OneFileFormat, Packaging, PlannedClip, RootBone, write_clip,
 };
 use crate::editor::Editor;
-use crate::editor::names::plain_name;
+use crate::editor::names::{plain_name, stem};
 use crate::library::Model;
 use crate::state::written_skeleton;
-
-/// A file of a plan, which may still be the GLB that the FBX writer converts: on the page, that is a part, `fbx-writer`.
-#[derive(Debug)]
-pub struct PlannedFile {
-    file: ExportedFile,
-    fbx: Option<FbxOptions>,
-}
-
-impl PlannedFile {
-    /// Returns the input of the FBX writer; `None` if the file is finished.
-    pub fn part_input(&self) -> Option<Vec<u8>> {
-        self.fbx.as_ref().map(|options| gaitway_fbx_writer::input(&self.file.bytes, options))
-    }
-
-    /// Returns the file, with the FBX writer's answer if it has an input for it.
-    ///
-    /// # Errors
-    /// The FBX writer's message for the user.
-    pub fn finish(self, answer: Option<Answer>) -> Result<ExportedFile, String> {
-        let Self { mut file, fbx } = self;
-        let Some(answer) = answer.filter(|_| fbx.is_some()) else { return Ok(file) };
-        let Output { bytes, warnings } = answer?;
-        file.bytes = bytes;
-        if let Some(stem) = file.name.strip_suffix(".glb") {
-            file.name = format!("{stem}.{}", OneFileFormat::Fbx.extension());
-        }
-        let remarks: Vec<String> = file.remark.into_iter().chain(warnings).collect();
-        file.remark = (!remarks.is_empty()).then(|| remarks.join(" "));
-        Ok(file)
-    }
-}
 
 impl Editor {
     /// Writes the files of a plan: the only one, or one for each clip, in the plan's order.
     ///
     /// # Errors
     /// The message for the user if the plan is refused or writing fails.
-    #[cfg(not(target_arch = "wasm32"))]
     pub fn export_plan(&self, plan: &ExportPlan) -> Result<Vec<ExportedFile>, String> {
-        let finish = |file: PlannedFile| {
-            let answer = file.part_input().map(|input| gaitway_fbx_writer::convert(&input));
-            file.finish(answer)
-        };
-        self.plan_files(plan)?.into_iter().map(finish).collect()
-    }
-
-    /// Like [`Self::export_plan`], for the page, where the FBX writer is a part.
-    ///
-    /// # Errors
-    /// The message for the user if the plan is refused or writing fails.
-    pub fn plan_files(&self, plan: &ExportPlan) -> Result<Vec<PlannedFile>, String> {
         let model = self.model()?;
         plan.check(model)?;
         match plan.packaging {
-            Packaging::OneFile(format) => {
-                let options = FbxOptions { recipient: plan.recipient.fbx(), clips_only: false };
-                let fbx = (format == OneFileFormat::Fbx).then_some(options);
-                Ok(vec![PlannedFile { file: self.export_together(plan)?, fbx }])
-            }
+            Packaging::OneFile(OneFileFormat::Glb) => Ok(vec![self.export_together(plan)?]),
+            Packaging::OneFile(OneFileFormat::Fbx) => Ok(vec![as_fbx(self.export_together(plan)?, plan)?]),
             Packaging::FilePerClip(format) => {
-                let file = |planned: &PlannedClip| -> Result<PlannedFile, String> {
-                    let file = self.export_planned(model, planned, format, plan.fewer_keys)?;
-                    Ok(PlannedFile { file, fbx: None })
-                };
-                plan.clips.iter().map(file).collect()
+                plan.clips.iter().map(|planned| self.export_planned(model, planned, format, plan.fewer_keys)).collect()
             }
         }
     }
@@ -134,6 +82,15 @@ impl Editor {
         }
         Ok(self.together_file(model, bytes, remarks))
     }
+}
+
+/// Converts the .glb of a plan.
+fn as_fbx(glb: ExportedFile, plan: &ExportPlan) -> Result<ExportedFile, String> {
+    let options = FbxOptions { recipient: plan.recipient.fbx(), clips_only: false };
+    let Written { bytes, warnings, .. } = fbx(&glb.bytes, &options).map_err(|error| error.to_string())?;
+    let name = format!("{}.{}", stem(&glb.name), OneFileFormat::Fbx.extension());
+    let remarks: Vec<_> = glb.remark.into_iter().chain(warnings).map(Into::into).collect();
+    Ok(ExportedFile::new(name, bytes).with_remarks(&remarks))
 }
 
 /// Drops keys of a clip and says how many are left.

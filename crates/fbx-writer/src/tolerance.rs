@@ -1,8 +1,8 @@
 //! Tolerances for a joint's keys, such that no joint of the model moves noticeably.
 //!
-//! Every joint must stay within 0.01°, and with every vertex within 0.01 mm per metre of the model's size. The errors of a joint's ancestors
-//! accumulate, and a rotated ancestor moves it farther the farther away it is. So the allowance is shared along the longest chain of
-//! animated joints, as independent errors accumulate, and a rotation gets less the longer the chain below it is.
+//! Every joint must stay within 0.01°, and with every vertex within 0.01 mm per metre of the model's size. The errors of a joint's
+//! ancestors accumulate, and a rotated ancestor moves it farther the farther away it is. So the allowance is shared along the longest
+//! chain of animated joints, as independent errors accumulate, and a rotation gets less the longer the chain below it is.
 
 use gaitway_character::anim::{JointIndex, Skeleton};
 use glam::{DMat4, DVec3};

@@ -1,6 +1,6 @@
 //! Damaged input: an error or a file that can be read, and never a panic.
 
-use gaitway_fbx_writer::{FbxOptions, FbxRecipient, convert, input};
+use gaitway_fbx_writer::{FbxOptions, FbxRecipient, fbx};
 
 use crate::built;
 use crate::data_folder::data_folder;
@@ -72,14 +72,14 @@ fn damaged_models_are_written_or_refused() {
         if let Ok(path) = std::env::var("GAITWAY_FBX_LAST") {
             std::fs::write(path, &file).unwrap();
         }
-        match convert(&input(&file, &options)) {
+        match fbx(&file, &options) {
             Ok(output) => {
                 written += 1;
                 if number % 10 == 0 {
                     asset("model.fbx", &output.bytes);
                 }
             }
-            Err(message) => assert!(!message.is_empty()),
+            Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
     println!("{count} mutations of {} files: {written} written", seeds.len());

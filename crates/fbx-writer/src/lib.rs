@@ -29,7 +29,6 @@ use gaitway_character::anim::JointIndex;
 use gaitway_character::asset::Asset;
 use gaitway_character::mesh::Topology;
 use gaitway_formats::{FileSet, LoadError, load};
-use gaitway_part::{Answer, Output};
 
 use crate::clip::Rig;
 use crate::document::Take;
@@ -60,7 +59,7 @@ pub enum FbxRecipient {
 }
 
 impl FbxRecipient {
-    /// All of them, in the order of the numbers that [`convert`] takes.
+    /// All of them.
     pub const ALL: [Self; 4] = [Self::AsIs, Self::Unity, Self::Unreal, Self::Blender];
 }
 
@@ -111,32 +110,8 @@ pub fn fbx(glb: &[u8], options: &FbxOptions) -> Result<Written, FbxError> {
     let mut files = FileSet::default();
     files.insert(FILE, glb);
     // What needs a decoder was decoded before the model was shown, but its file keeps it as it was.
-    #[cfg(not(target_arch = "wasm32"))]
     gaitway_formats::prepare(&mut files)?;
     asset(&load(&files)?, options)
-}
-
-/// The part of the page: the first byte of the input is the place of the recipient in [`FbxRecipient::ALL`], the second 1 for clips
-/// only; the rest is a GLB.
-///
-/// # Errors
-/// A message for the user.
-pub fn convert(input: &[u8]) -> Answer {
-    let options = input.split_first_chunk::<2>().and_then(|([recipient, clips_only], glb)| {
-        let recipient = FbxRecipient::ALL.get(usize::from(*recipient)).copied()?;
-        Some((FbxOptions { recipient, clips_only: *clips_only != 0 }, glb))
-    });
-    let (options, glb) = options.ok_or("the FBX writer expected two bytes and a GLB")?;
-    let Written { bytes, warnings, .. } = fbx(glb, &options).map_err(|error| error.to_string())?;
-    Ok(Output { bytes, warnings })
-}
-
-/// Returns the input of [`convert`].
-pub fn input(glb: &[u8], options: &FbxOptions) -> Vec<u8> {
-    let recipient = FbxRecipient::ALL.iter().position(|&recipient| recipient == options.recipient);
-    let mut input = vec![recipient.unwrap_or_default() as u8, options.clips_only.into()];
-    input.extend_from_slice(glb);
-    input
 }
 
 /// Writes an asset.
