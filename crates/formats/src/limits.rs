@@ -46,7 +46,8 @@ pub enum Limit {
     SkinMatrices,
     /// Each node of a mesh, and each copy, draws all its vertices.
     DrawnVertices,
-    /// Each primitive takes a draw call for each node of its mesh; consecutive copies that are mirrored alike share one.
+    /// Each primitive takes a draw call for each node of its mesh; consecutive copies that are mirrored alike share one. Blended
+    /// copies count the same, although they are drawn one by one, from back to front.
     DrawCalls,
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
 use serde_json::value::{RawValue, to_raw_value};
 
 /// An object's members in order, values as text. If several members have the same name, the last one counts, as in the
@@ -29,6 +30,11 @@ impl Object {
     /// Parses all members of one type, skipping the others.
     pub fn values<'a, T: Deserialize<'a>>(&'a self) -> impl Iterator<Item = T> {
         self.0.iter().filter_map(|(_, value)| serde_json::from_str(value.get()).ok())
+    }
+
+    /// Parses all members.
+    pub fn members(&self) -> impl Iterator<Item = (&str, Value)> {
+        self.0.iter().filter_map(|(key, value)| Some((&**key, serde_json::from_str(value.get()).ok()?)))
     }
 
     /// Changes all members that are objects.

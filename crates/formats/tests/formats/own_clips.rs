@@ -119,3 +119,24 @@ fn keys_in_a_shared_view_stay() {
     assert_eq!(keys(&asset.clips[0]), keys(&original.clips[1]));
     assert_eq!(asset.meshes[1].primitives[0].positions, original.meshes[1].primitives[0].positions);
 }
+
+/// Extensions may use the accessors of a clip: those of copies, and any whose meaning isn't known.
+#[test]
+fn keys_that_extensions_use_stay() {
+    let mut build = three_clips();
+    let length_of = |index: usize| [24, 24, 36][index];
+    let output = |build: &Build, clip: usize| build.json["animations"][clip]["samplers"][0]["output"].clone();
+    let whole = written(&one("model.glb", three_clips().glb()), &OwnClips::default(), &[]).1;
+    build.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing", "ACME_trail", "KHR_materials_unlit"]);
+    build.json["nodes"][0]["extensions"] =
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": output(&build, 0) } } });
+    build.json["extensions"] = json!({ "ACME_trail": { "paths": [{ "points": output(&build, 2) }] } });
+    build.json["materials"] = json!([{ "extensions": { "KHR_materials_unlit": { "unused": output(&build, 1) } } }]);
+    let files = one("model.glb", build.glb());
+    let original = load(&files).expect("a model");
+    let (asset, length) = written(&files, &without(&[0, 1, 2]), &[]);
+    let copies = |asset: &Asset| asset.instances.iter().map(|copy| copy.joint_from_mesh).collect::<Vec<_>>();
+    assert_eq!(copies(&asset), copies(&original));
+    // Of the third clip, its times go; of the first two, their times and the second one's keys.
+    assert_eq!(length, whole - length_of(1) - 8 - 12);
+}

@@ -10,7 +10,7 @@ use gaitway_character::sort::sort_by_key;
 use gltf::json::Root;
 use gltf::json::animation::Animation;
 use gltf::json::mesh::Primitive;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::gltf::object::{Array, Object, raw};
 
@@ -66,7 +66,9 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
     if views.iter().any(|view| view.read::<Object>("extensions").is_some()) {
         return;
     }
-    let unused = unused_accessors(root, left_out);
+    let named = named_by_extensions(json);
+    let mut unused = unused_accessors(root, left_out);
+    unused.retain(|accessor| !named.contains(accessor));
     let mut accessors: Array = json.read("accessors").unwrap_or_default();
     let (mut used_views, mut unused_views) = (BTreeSet::new(), BTreeSet::new());
     used_views.extend(root.images.iter().filter_map(|image| Some(image.buffer_view?.value())));
@@ -77,7 +79,7 @@ fn cut(json: &mut Object, root: &Root, left_out: &BTreeSet<usize>, binary: &mut 
         let of_accessor = accessor.buffer_view.map(|view| view.value()).into_iter().chain(of_sparse);
         if unused.contains(&index) { unused_views.extend(of_accessor) } else { used_views.extend(of_accessor) }
     }
-    unused_views.retain(|view| *view < views.len() && !used_views.contains(view));
+    unused_views.retain(|view| *view < views.len() && !used_views.contains(view) && !named.contains(view));
     for &index in &unused {
         accessors[index] = raw(&json!({ "componentType": 5126, "count": 1, "type": "SCALAR" }));
     }
@@ -138,6 +140,35 @@ fn unused_accessors(root: &Root, left_out: &BTreeSet<usize>) -> BTreeSet<usize> 
     }
     unused.retain(|&accessor| accessor < root.accessors.len());
     unused
+}
+
+/// Extensions whose numbers are no accessors or views.
+const WITHOUT_DATA: [&str; 5] = ["KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_node_", "VRM"];
+
+/// Returns all whole numbers in extensions and extras: any may be the index of an accessor or a view, as in
+/// `EXT_mesh_gpu_instancing`.
+fn named_by_extensions(json: &Object) -> BTreeSet<usize> {
+    let mut named = BTreeSet::new();
+    json.members().for_each(|(key, value)| collect(key, &value, false, &mut named));
+    named
+}
+
+fn collect(key: &str, value: &Value, is_inside: bool, named: &mut BTreeSet<usize>) {
+    let is_inside = is_inside || matches!(key, "extensions" | "extras");
+    match value {
+        Value::Number(number) if is_inside => {
+            named.extend(number.as_u64().and_then(|index| usize::try_from(index).ok()))
+        }
+        Value::Array(values) => values.iter().for_each(|value| collect("", value, is_inside, named)),
+        Value::Object(members) => {
+            let has_data = |key: &str| !is_inside || !WITHOUT_DATA.iter().any(|prefix| key.starts_with(prefix));
+            members
+                .iter()
+                .filter(|(key, _)| has_data(key))
+                .for_each(|(key, value)| collect(key, value, is_inside, named));
+        }
+        _ => {}
+    }
 }
 
 /// Returns how many indices at the end of a list of `count` items are in the set.
