@@ -34,6 +34,7 @@ mod instancing;
 mod layers;
 mod link;
 mod link_properties;
+mod link_texts;
 mod loop_frames;
 mod manual_pose;
 mod map_edits;
