@@ -63,7 +63,7 @@ impl Editor {
         }
         self.remember(before);
         self.report(problems);
-        self.report(motions.iter().flat_map(lost_frames).collect());
+        self.report(motions.iter().flat_map(about_motion).collect());
         self.choose_retargeted(self.first_of(&motions));
         self.events.push(Event::MotionsAdded);
         let mut notice = added.unwrap_or_default();
@@ -349,10 +349,17 @@ pub(super) fn without_still(motions: Vec<Motion>) -> (Vec<Motion>, Vec<String>) 
     (moving, still.iter().map(why).collect())
 }
 
-/// Returns what is missing of a BVH that was cut short: unlike a model's, the warnings of a motion are in no tab.
-fn lost_frames(motion: &Motion) -> impl Iterator<Item = String> + '_ {
-    let lost = motion.asset.warnings.iter().filter(|warning| matches!(warning, Warning::FramesMissing { .. }));
-    lost.map(|warning| format!("{}: {warning}", short_name(&motion.source)))
+/// Returns what a motion's file lacks or was assumed about it: unlike a model's, its warnings are in no tab.
+fn about_motion(motion: &Motion) -> impl Iterator<Item = String> + '_ {
+    // Those of a conversion are about meshes and materials as well.
+    let is_bare = motion.asset.meshes.is_empty();
+    let is_about_motion = move |warning: &&Warning| match warning {
+        Warning::FramesMissing { .. } => true,
+        Warning::Other { code, .. } => is_bare && *code == "conversion",
+        _ => false,
+    };
+    let told = motion.asset.warnings.iter().filter(is_about_motion);
+    told.map(|warning| format!("{}: {warning}", short_name(&motion.source)))
 }
 
 /// Whether the map has no pairs yet: the user has just started it.

@@ -157,7 +157,9 @@ pub(super) fn restore_edits(state: &mut ViewerState, model: Option<&Model>, from
     if let (Some((model, clip)), Some(before), Some(changes)) = (active, before, changed(state)) {
         follow_changes(state, clip, &before, &changes);
         if changes.trim != before.trim && is_active(model, from, clip) {
-            state.character.playhead.range = from.character.playhead.range;
+            // Both belong to the clip as it is again.
+            let Playhead { range, time_secs, .. } = from.character.playhead;
+            (state.character.playhead.range, state.character.playhead.time_secs) = (range, time_secs);
         }
     }
 }

@@ -245,3 +245,21 @@ fn edits_stay_with_their_clip_whatever_becomes_of_other_motions() {
     assert!(editor.undo());
     check(&editor, &["walk.glb", "run.glb"]);
 }
+
+#[test]
+fn undoing_a_trim_returns_to_the_range_and_the_time() {
+    let mut editor = editor("sample:walker");
+    editor.apply(Command::SetPlaying(false));
+    let range = TimeRange { start_secs: 0.4, end_secs: 0.8 };
+    editor.apply(Command::SetRange(Some(range)));
+    editor.apply(Command::Seek(0.5));
+    let changes = ClipChanges { trim: Some(range), ..ClipChanges::NONE };
+    edit(&mut editor, 0, ClipEdit::Change(Box::new(changes)));
+    let playhead = |editor: &Editor| {
+        let playhead = &editor.state().character.playhead;
+        (playhead.range, playhead.time_secs)
+    };
+    assert_eq!(playhead(&editor), (None, 0.0));
+    editor.undo();
+    assert_eq!(playhead(&editor), (Some(range), 0.5));
+}

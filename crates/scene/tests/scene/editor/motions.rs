@@ -241,3 +241,21 @@ fn an_open_model_lends_its_clips() {
     }
     assert_eq!(active(&editor), "sample:mannequin");
 }
+
+/// Which rate or axis was assumed of an array, for example: a motion's warnings are in no tab.
+#[test]
+fn what_was_assumed_about_a_motion_is_said_when_it_is_borrowed() {
+    let mut editor = editor("sample:walker");
+    let walker = motion("walker.glb").asset;
+    let (skeleton, clips) = (walker.skeleton.clone(), walker.clips.clone());
+    let parts = AssetParts { format: "npz", skeleton, clips, ..AssetParts::default() };
+    let mut asset = Asset::new(parts).expect("a motion");
+    let problem = "The file has no frame rate".to_owned();
+    asset.warnings.push(Warning::Other { code: "conversion", place: String::new(), problem });
+    let walk = Motion::new("walk.npz".to_owned(), Arc::new(asset));
+    let contents = Contents { motions: Some(vec![walk]), ..Contents::default() };
+    editor.open(contents, None, &mut any).expect("fits");
+    let expected = Event::Problem("walk.npz: The file has no frame rate".to_owned());
+    let events = editor.take_events();
+    assert!(events.contains(&expected), "{events:?}");
+}
