@@ -10,7 +10,7 @@ import * as vrm from "@pixiv/three-vrm";
 import { VRMAnimationLoaderPlugin, createVRMAnimationClip } from "@pixiv/three-vrm-animation";
 import * as THREE from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
-import { dataFile, readGltf, repository, skipWithoutData } from "./data.mjs";
+import { dataFile, gltfWithoutLooks, repository, skipWithoutData } from "./data.mjs";
 import { document, program, run } from "./gaitway.mjs";
 
 /** @type {{ VRMHumanoidLoaderPlugin: new (parser: unknown) => any }} The package's types import a folder, which TypeScript can't resolve. */
@@ -42,12 +42,7 @@ after(() => fs.rmSync(folder, { recursive: true, force: true }));
  * @param {(parser: any) => any} plugin
  */
 async function load(file, plugin) {
-  const { json, binary } = readGltf(file);
-  if (binary !== null) json.buffers[0].uri = `data:application/octet-stream;base64,${binary.toString("base64")}`;
-  delete json.materials;
-  delete json.textures;
-  delete json.images;
-  for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives) delete primitive.material;
+  const json = gltfWithoutLooks(file);
   const loader = new GLTFLoader();
   loader.register(plugin);
   return { json, gltf: await loader.parseAsync(/** @type {string} */ (/** @type {unknown} */ (json)), "") };

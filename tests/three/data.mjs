@@ -91,6 +91,20 @@ export function gltfFiles() {
 }
 
 /**
+ * Reads a glTF for GLTFLoader, without what only changes its looks.
+ * @param {string} file
+ */
+export function gltfWithoutLooks(file) {
+  const { json, binary } = readGltf(file);
+  if (binary !== null) json.buffers[0].uri = `data:application/octet-stream;base64,${binary.toString("base64")}`;
+  delete json.materials;
+  delete json.textures;
+  delete json.images;
+  for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives) delete primitive.material;
+  return json;
+}
+
+/**
  * Reads the document and the BIN chunk, if any, of a GLB or .gltf.
  * @param {string} file
  * @returns {{ json: import("../types.d.ts").GltfJson, binary: Buffer | null }}

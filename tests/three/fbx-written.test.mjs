@@ -8,7 +8,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import * as THREE from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
-import { dataFile, readGltf, repository, skipWithoutData } from "./data.mjs";
+import { dataFile, gltfWithoutLooks, repository, skipWithoutData } from "./data.mjs";
 import { document, program, run } from "./gaitway.mjs";
 
 /** Largest distance allowed, in multiples of the farthest joint's distance from the origin. */
@@ -111,12 +111,7 @@ function play(mixer, clip, time) {
  * @param {string} file
  */
 async function original(file) {
-  const { json, binary } = readGltf(file);
-  if (binary !== null) json.buffers[0].uri = `data:application/octet-stream;base64,${binary.toString("base64")}`;
-  delete json.materials;
-  delete json.textures;
-  delete json.images;
-  for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives) delete primitive.material;
+  const json = gltfWithoutLooks(file);
   return await new GLTFLoader().parseAsync(/** @type {string} */ (/** @type {unknown} */ (json)), "");
 }
 
