@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gaitway_character::anim::Clip;
-use gaitway_character::asset::{Asset, AssetParts};
+use gaitway_character::asset::{Asset, AssetParts, Warning};
 use gaitway_formats::{FileSet, load};
 use gaitway_scene::editor::{ClipFormat, Contents, Editor, Event, Export};
 use gaitway_scene::library::{ClipId, Library, Model, Motion};
