@@ -110,6 +110,7 @@ pub fn fbx(glb: &[u8], options: &FbxOptions) -> Result<Written, FbxError> {
     let mut files = FileSet::default();
     files.insert(FILE, glb);
     // What needs a decoder was decoded before the model was shown, but its file keeps it as it was.
+    #[cfg(not(target_arch = "wasm32"))]
     gaitway_formats::prepare(&mut files)?;
     asset(&load(&files)?, options)
 }
