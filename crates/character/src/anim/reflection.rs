@@ -6,7 +6,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::{JointIndex, Keys, Pose, Transform};
+use super::{Interpolation, JointIndex, Keys, Pose, Transform};
 
 /// How the local transforms of a mirrored skeleton change in a mirror. Those of any other skeleton don't change.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -95,6 +95,19 @@ impl Reflection {
     /// Returns a joint's local scale in the mirror.
     pub fn scale(&self, joint: JointIndex, scale: DVec3) -> DVec3 {
         if matches!(self.place(joint), Place::Mirrors(_)) { scale.abs() } else { scale }
+    }
+
+    /// Converts a joint's scale keys to those in the mirror. Tangents have any sign: they turn round where the value does.
+    pub fn change_scales(&self, joint: JointIndex, interpolation: Interpolation, values: &mut [Vec3]) {
+        let in_mirror = |scale: Vec3| self.scale(joint, scale.as_dvec3()).as_vec3();
+        if interpolation != Interpolation::CubicSpline {
+            return values.iter_mut().for_each(|scale| *scale = in_mirror(*scale));
+        }
+        for key in values.chunks_exact_mut(3) {
+            let mirrored = in_mirror(key[1]);
+            let signs = Vec3::select(mirrored.cmpeq(key[1]), Vec3::ONE, Vec3::NEG_ONE);
+            (key[0], key[1], key[2]) = (key[0] * signs, mirrored, key[2] * signs);
+        }
     }
 
     /// Returns a joint's local transform in the mirror.

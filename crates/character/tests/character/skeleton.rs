@@ -1,6 +1,6 @@
 //! Building skeletons: rejected input and the resulting order.
 
-use gaitway_character::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform, model_from_joint};
+use gaitway_character::anim::{Interpolation, Joint, JointIndex, Skeleton, SkeletonError, Transform, model_from_joint};
 use glam::{Affine3A, Vec3};
 
 use crate::random::Random;
@@ -102,4 +102,20 @@ fn the_order_of_the_input_does_not_matter() {
             assert!(found.abs_diff_eq(expected, 1e-5), "joint {at} of {shuffled:?}: {found:?}, expected {expected:?}");
         }
     }
+}
+
+#[test]
+fn tangents_of_a_mirroring_scale_turn_round_with_it() {
+    let scale = Vec3::new(-1.0, 1.0, 1.0);
+    let armature = Joint { rest: Transform { scale, ..Transform::IDENTITY }, ..Joint::default() };
+    let skeleton = Skeleton::new(vec![armature, Joint { parent: Some(0), ..Joint::default() }]).unwrap();
+    let key = [Vec3::new(-0.5, -0.5, 2.0), scale, Vec3::new(0.25, -0.25, 3.0)];
+    let check = |joint: u32, interpolation, expected: [Vec3; 3]| {
+        let mut values = key;
+        skeleton.reflection().change_scales(JointIndex(joint), interpolation, &mut values);
+        assert_eq!(values, expected);
+    };
+    check(0, Interpolation::CubicSpline, [Vec3::new(0.5, -0.5, 2.0), Vec3::ONE, Vec3::new(-0.25, -0.25, 3.0)]);
+    check(0, Interpolation::Linear, key.map(Vec3::abs));
+    check(1, Interpolation::CubicSpline, key);
 }
